@@ -31,7 +31,7 @@ struct Sequence {
 }
 
 impl Converged {
-    /// Finds it by the first family of settings that serves.
+    /// Finds it by the first applicable family of settings.
     pub(crate) fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
         let name = || name.to_string();
         let mut reason = String::new();

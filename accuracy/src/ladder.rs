@@ -231,7 +231,7 @@ fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
     }
 }
 
-/// Families of settings for a converged solution, in the order they are tried: the first that serves the scene is taken. Each holds one or
+/// Families of settings for a converged solution, in the order they are tried: the first that applies to the scene is taken. Each holds one or
 /// more sequences of finer and finer settings, the best of which is followed to its end: a bed may be softened with the mesh, or have the
 /// scene's own coefficients.
 pub(crate) fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {

@@ -1,8 +1,9 @@
 //! Speed against error: a scene run with a ladder of meshes, integrators and steps, each judged against a converged solution.
 //!
-//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven as the
-//! peers are: a host gives position and velocity of the fairlead, one communication step after the other. The runs that the
-//! verdicts name are timed in several rounds, own and peers' in turn. Errors are those of [`errors`], over the second half
+//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline
+//! is driven like the peers: a host gives position and velocity of the fairlead, one communication step after the
+//! other. The runs that the verdicts name are timed in several rounds, own and peers' alternately. Errors are those
+//! of [`errors`], over the second half
 //! of the run. The converged solution is the best of a sequence of fine meshes, its uncertainty the distance from the one of half its
 //! resolution: nothing below that is a statement.
 //!
@@ -147,7 +148,7 @@ pub struct Study {
 /// Reason why a scene cannot be studied.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// Nothing serves for a converged solution.
+    /// No family of settings gives a converged solution.
     #[error("no converged solution of {name}: {reason}")]
     NotConverged {
         /// The scene.
@@ -230,7 +231,7 @@ pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
 }
 
 impl Study {
-    /// Runs all settings but those that come to the same as one before.
+    /// Runs all settings except those equivalent to an earlier one.
     fn climb(
         &mut self,
         scene: &Scene,

@@ -111,7 +111,7 @@ pub(crate) enum Command {
     },
 }
 
-/// A file to read, with what a deck leaves to its host.
+/// Input file, with the data that a deck leaves to its host.
 #[derive(Debug, Args)]
 pub(crate) struct Input {
     /// Scene of moorline, or deck of MoorDyn or MAP++

@@ -16,7 +16,7 @@ const INTERRUPTED: i32 = 130;
 /// Place that the command writes to, while it does.
 static OPEN: Mutex<Option<Place>> = Mutex::new(None);
 
-/// A folder that files come to be in.
+/// Folder that files are written into.
 #[derive(Debug, Clone)]
 struct Place {
     path: PathBuf,

@@ -28,7 +28,7 @@ pub(crate) enum Pace {
     /// Exactly.
     Scene,
     /// The scene's motion as a host gives it, at communication points only: before every step where it starts, or where it ends if
-    /// that is what inputs are to mean.
+    /// the inputs have that meaning.
     Host {
         /// Communication step [s].
         step: f64,

@@ -378,7 +378,7 @@ pub(crate) unsafe fn texts<'a>(pointer: *const *const c_char, count: usize) -> R
         .collect()
 }
 
-/// Saves the state into `*target`, in place where the host hands back an earlier state.
+/// Saves the state into `*target`, in place where the host passes an earlier state.
 ///
 /// # Safety
 /// A `target` that is not null points to null or to a state of [`store_state`] that was not freed.

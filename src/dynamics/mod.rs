@@ -1,4 +1,4 @@
-//! Time integration of the discrete lines: which integrator serves which network, and how far it steps.
+//! Time integration of the discrete lines: choice of the integrator of each network, and its steps.
 
 pub mod advance;
 pub mod beam;

@@ -65,7 +65,7 @@ pub struct InputSample {
     pub velocity: Lanes,
     /// 1 along the axes with a velocity from the host, else 0 [-].
     pub rated: Lanes,
-    /// Acceleration that hardly anything feels along them [m/s², rad/s²].
+    /// Acceleration that is negligible along the axes [m/s², rad/s²].
     ease: f64,
 }
 

@@ -46,7 +46,7 @@ pub struct Chain<const FAR: bool> {
     bordered: bool,
 }
 
-/// What remains of a chain on its two ends: [[aa, ab], [ba, bb]] (x_a, x_b) = (a, b).
+/// Condensed system of a chain on its two ends: [[aa, ab], [ba, bb]] (x_a, x_b) = (a, b).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ends {
     /// First end on itself.

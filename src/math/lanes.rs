@@ -1,6 +1,6 @@
 //! Four numbers side by side, so that the compiler emits vector instructions for the kernels.
 //!
-//! A plain array with inlined element-wise operations: portable, without intrinsics, and compiled for whatever vector
+//! A plain array with inlined element-wise operations: portable, without intrinsics, and compiled for any vector
 //! unit the surrounding function may use.
 
 use std::array::from_fn;

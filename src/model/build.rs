@@ -548,7 +548,7 @@ fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Sections as the mesher sees them.
+/// Sections as used by the mesher.
 fn pieces(line: &scene::Line) -> Vec<mesh::Piece> {
     let piece = |section: &scene::Section| mesh::Piece {
         length: section.length,

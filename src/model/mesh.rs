@@ -24,7 +24,7 @@
 //!   the discrete equilibrium, which is held to published values. With the give of that sag in the stiffness too, 1/EA' = 1/EA +
 //!   (qh)²/(12T³) as Ernst (1965) has it for a whole cable, q the weight across and T the tension at rest, the tension has 1.3 to 1.4 times its
 //!   error on both (14 to 28 elements): a weight is too slow to follow waves along the line. On taut_polyester neither does
-//!   anything, (hκ)²/24 being 5e-8 with 10 elements: what curves that rope is the sea's drag. Its tension was wrong at
+//!   anything, (hκ)²/24 being 5e-8 with 10 elements: the curvature of that rope comes from drag. Its tension was wrong at
 //!   the end, see `dynamics/reaction.rs`.
 //!
 //! Elements of half the length at the touchdown of a line without bending stiffness were measured with the same total
@@ -46,7 +46,7 @@ const QUADRATURE: f64 = 40.0;
 /// Lengthening of fine elements, again and again, until the line has no more than it may have [-].
 const COARSENING: f64 = 1.25;
 
-/// A section as the mesher sees it.
+/// Section as used by the mesher.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Piece {
     /// Unstretched length [m].

@@ -76,7 +76,7 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Makes a folder as [`make_folder`] does, and sees that it takes files.
+/// Makes a folder like [`make_folder`], and checks that files can be written there.
 ///
 /// # Errors
 /// As there, and where it takes none.

@@ -591,7 +591,7 @@ mod tests {
                 (at(place + step) - at(place - step)) / (2.0 * d)
             };
             let [x, y, z] = [slope(0), slope(1), slope(2)];
-            // what stretching adds is of second order in the amplitude
+            // the contribution of stretching is of second order in the amplitude
             assert!((x.x + y.y + z.z).abs() < 1e-3 * x.norm());
             assert!((z.x - x.z).abs() < 1e-3 * x.norm() && (x.y - y.x).abs() < 1e-3 * x.norm());
         }

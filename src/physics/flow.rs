@@ -108,7 +108,7 @@ impl Profile {
 /// The current at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stream<'a> {
-    /// Its shape over the height.
+    /// Shape over the height.
     pub profile: &'a Profile,
     /// Factor on the shape at this time [-].
     pub factor: f64,

@@ -12,7 +12,7 @@
 //! reduced, and reproduces planes.
 //! A bilinear surface would need a normal that is not its gradient to be smooth, and a node that slides
 //! without friction would gain or lose energy with every crossing of a cell; here the normal is the gradient's, and the force k p n is conservative but for p
-//! times the curvature of the surface. Outside the grid the surface goes on as at its edge.
+//! times the curvature of the surface. Outside the grid the surface continues with the values at its edge.
 //!
 //! Source: bicubic interpolation as in Press et al. (2007), Numerical Recipes, 3rd ed., section 3.6.3; convex hull of a Bézier net as in Farin
 //! (2002), Curves and Surfaces for CAGD, 5th ed., chapter 14. Valid where penetrations are small compared with the

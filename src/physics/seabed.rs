@@ -20,7 +20,7 @@
 //! and 1.06 of the error of tension with c = ¼, ½ and 1. There the damper × 0 to × 3 changes nothing above 2 %, × 10 costs 6 %. ζ: on
 //! lindahl_slow, 56, 80 and 160 elements, the RMS error of tension is 1.24, 1.30 and 0.55 % with the damper softened like the spring, and 1.03,
 //! 0.85 and 0.39 % with ζ = 0.2.
-//! Valid where penetrations are small beside the segment length.
+//! Valid where penetrations are small compared with the segment length.
 
 /// Static penetration of a resting node under regularised contact, per nodal length [-].
 pub const REGULARISED_PENETRATION: f64 = 0.02;

@@ -123,7 +123,7 @@ impl Piece {
         })
     }
 
-    /// Points of the quadrature over what crosses the surface: u, weight and ζ/R [-].
+    /// Points of the quadrature over the part that crosses the surface: u, weight and ζ/R [-].
     fn crossing(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let width = self.end - self.start;
         let points = if width > 0.0 { &GAUSS[..] } else { &[] };
@@ -186,7 +186,7 @@ mod tests {
         for [low, high] in [[-3.0, 7.0], [-1.0, 1.0], [-9.0, 0.5]] {
             let at = emerged(RADIUS, [low, high]).unwrap();
             let over = high / (high - low);
-            // what is curved at the surface is of the order of the radius squared
+            // the curved part at the surface is of the order of the radius squared
             assert_relative_eq!(0.5 * (at.parts[0] + at.parts[1]), over, max_relative = 1e-12);
             assert_relative_eq!(at.parts[0], over * over, epsilon = 1e-3);
             let turned = emerged(RADIUS, [high, low]).unwrap();

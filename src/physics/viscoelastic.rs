@@ -441,7 +441,8 @@ mod tests {
         }
     }
 
-    /// Ropes with all, one and none of the dampers, and steps that stay taut, slacken, snap and stay slack, with what a slack one has kept.
+    /// Ropes with all, one and none of the dampers, and steps that stay taut, slacken, snap and stay slack, with the
+    /// memory of a slack one.
     fn all_steps() -> impl Iterator<Item = (Viscoelastic, [f64; 2], f64, f64)> {
         let laws = [0.0, 1.1e7, 4.0e8].map(rope).into_iter();
         let laws = laws.chain([Viscoelastic::plain(1.0e8, 1.0e5)]);

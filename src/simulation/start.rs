@@ -22,7 +22,7 @@ use crate::statics::{self, StaticsError, catenary_network, equilibrium, guess};
 pub(super) enum Shapes {
     /// They start on it.
     AsGiven,
-    /// They come to rest from it.
+    /// Initial shapes from which lines move to rest.
     Equilibrium,
 }
 

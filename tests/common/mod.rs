@@ -193,7 +193,8 @@ pub fn error_of_lost(simulation: &Simulation) -> f64 {
     balance_error(simulation).abs() / flow(simulation).dissipation
 }
 
-/// Claims that a simulation goes on bit for bit from its own snapshot put back, and another simulation of the scene from the snapshot's bytes.
+/// Claims that a simulation continues bit for bit from its restored snapshot, and another simulation of the scene
+/// from the snapshot's bytes.
 pub fn assert_replays(mut simulation: Simulation, mut other: Simulation, go_on: impl Fn(&mut Simulation)) {
     let saved = simulation.snapshot().clone();
     let bytes = postcard::to_stdvec(&saved).unwrap();

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! cargo test --release --test random -- --ignored --nocapture ten_thousand      the long run; with SCENES=500..1000 a part of it
-//! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and what becomes of it
+//! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and its result
 //! ```
 //!
 //! An energy balance closes where its error is at most 2 % of the energy that it counts. The damping of an integrator may bring energy: the share of energy balances to which

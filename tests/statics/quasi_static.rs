@@ -497,7 +497,7 @@ fn the_energy_balance_of_a_line_with_friction_on_the_seabed_closes_in_short_step
     }
 }
 
-/// The bridle in a current that only its knot feels.
+/// The bridle in a current that acts on its knot only.
 fn bridle_in_current() -> Scene {
     let mut scene = bridle(
         8,

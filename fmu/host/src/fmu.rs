@@ -56,7 +56,7 @@ pub enum HostError {
     },
 }
 
-/// The functions of the version that the FMU serves.
+/// Functions of the FMU's version.
 #[derive(Debug)]
 pub(crate) enum Api {
     Two(Box<fmi2::Functions>),
@@ -144,7 +144,7 @@ impl Fmu {
     /// Makes a co-simulation instance; `logging` turns the FMU's log on.
     ///
     /// # Errors
-    /// The FMU refuses; the error holds what it logged.
+    /// The FMU refuses; the error holds its log.
     pub fn instantiate(&self, name: &str, logging: bool) -> Result<Slave, HostError> {
         Slave::new(self, name, &self.description().token, logging)
     }
@@ -152,7 +152,7 @@ impl Fmu {
     /// Does the same as [`Fmu::instantiate`] with another token than the description's: an FMU must refuse it.
     ///
     /// # Errors
-    /// The FMU refuses; the error holds what it logged.
+    /// The FMU refuses; the error holds its log.
     pub fn instantiate_with_token(&self, name: &str, token: &str, logging: bool) -> Result<Slave, HostError> {
         Slave::new(self, name, token, logging)
     }

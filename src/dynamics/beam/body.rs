@@ -1,11 +1,11 @@
 //! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and the bed under it.
 //!
 //!   −w − B (1 − s̄)     weight w under water, buoyancy B of the whole, s̄ the mean of its wetted part over its way: the discrete
-//!                      gradient of the potential, so that the water's surface gives back what it took
+//!                      gradient of the potential, so that the water's surface conserves energy
 //!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its way
 //!   F                  of the bed, as in `physics::contact_step`
 //!
-//! Its mass over the step follows from the submergence at the extrapolated middle of the step.
+//! The mass over the step follows from the submergence at the extrapolated middle of the step.
 //!
 //! Source: as in `physics::point`; discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid as `physics::point` is, in
 //! water without waves.

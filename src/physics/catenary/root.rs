@@ -48,7 +48,7 @@ pub(super) fn increasing(
             upper = at
         }
         let reach = reach(at);
-        // rounding may turn a vanishing slope around; the sign of the value is what counts
+        // rounding may invert a vanishing slope; the sign of the value decides
         let step = if slope > 0.0 {
             (-value / slope).clamp(-reach, reach)
         } else {

@@ -228,7 +228,7 @@ impl Sections {
             from_bed: self.bed.is_some_and(|bed| bed.height >= 0.0) && self.sections[0].weight >= 0.0,
         };
         departure.from_bed = departure.from_bed && self.fly(&departure).gap >= 0.0;
-        // every touchdown lies beyond the lift-off before it, in a section of its own
+        // every touchdown lies beyond the lift-off before it, in a separate section
         for flight in 0..=self.sections.len() {
             if memory.len() <= flight {
                 memory.push(None);
@@ -342,7 +342,7 @@ impl Sections {
         }
     }
 
-    /// What may lie from the touchdown `from` on.
+    /// Stretch that may lie on the bed from the touchdown `from` on.
     fn run(&self, from: &Departure, tight_from: f64) -> Run {
         let sections = self.sections[from.section..].iter();
         let heavy = sections.take_while(|section| section.weight >= 0.0);
@@ -396,7 +396,8 @@ impl Sections {
         (best.1 != flight.reference && best.0.abs() < REFERENCE_SHARE * flight.vertical.abs()).then_some(best)
     }
 
-    /// Where tension begins on the bed after the touchdown `from`: a section and the length between there and its end [m].
+    /// Start of tension on the bed after the touchdown `from`: a section and the length between there and its end
+    /// [m].
     fn tight_place(&self, tight_from: f64, from: &Departure, run_end: usize) -> (usize, f64) {
         let whole = (from.section, self.sections[from.section].length - from.offset);
         if from.horizontal > self.limp() {
@@ -430,7 +431,7 @@ impl Sections {
         (run_end - 1, self.sections[run_end - 1].length)
     }
 
-    /// Appends what lies between a touchdown and the lift-off after it.
+    /// Appends the pieces between a touchdown and the lift-off after it.
     fn lay(&self, from: &Departure, to: &Departure, tight_from: f64, shape: &mut Shape) {
         let friction = self.friction();
         let (mut tension, mut offset) = (from.horizontal, from.offset);

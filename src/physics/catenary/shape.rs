@@ -6,7 +6,7 @@ use super::{Point, Section};
 /// Support of a piece.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
-    /// Its ends only.
+    /// Support at both ends only.
     Flight(Flight),
     /// The bed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
     Laid {

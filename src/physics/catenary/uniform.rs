@@ -159,7 +159,8 @@ struct Balance {
 }
 
 impl Balance {
-    /// ln(what grows with λ / what falls), zero where G is, and nearly linear in ln λ (λ < 1) or λ; with its slope in ln λ.
+    /// ln of the terms that grow with λ over those that fall, zero where G is, and nearly linear in ln λ (λ < 1) or
+    /// λ; with its slope in ln λ.
     fn at(&self, lambda: f64) -> (f64, f64) {
         let (sinh, tanh) = (lambda.sinh(), lambda.tanh());
         let (y, q) = (lambda / sinh, self.kappa / sinh);
