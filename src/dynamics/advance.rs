@@ -43,12 +43,12 @@ pub struct Done {
 #[derive(Debug, Clone)]
 pub struct Integrators {
     networks: Vec<NetworkSolver>,
-    /// Per thread.
+    /// Scratch per thread.
     scratch: Vec<Scratch>,
     sea: SeaWork,
-    /// The state before a step that is made in parts.
+    /// State before a step that is integrated in parts.
     before: State,
-    /// Paths of the winches, by line; empty where there are none.
+    /// Paid-out lengths of the winches, by line; empty where there are none.
     winch_paths: Vec<AxisPath>,
     /// True if the leapfrogs still hold the state that they handed back last.
     holds: bool,
@@ -56,7 +56,7 @@ pub struct Integrators {
     estimate: WorkEstimate,
 }
 
-/// A network's integrator.
+/// Integrator of a network.
 #[derive(Debug, Clone)]
 struct NetworkSolver {
     choice: Choice,
@@ -103,7 +103,7 @@ impl Integrators {
         self.holds = false;
     }
 
-    /// Sets how the winches pay out in the next step, by line.
+    /// Sets the paid-out lengths of the winches in the next step, by line.
     pub fn set_winch_paths(&mut self, paths: impl Iterator<Item = AxisPath>) {
         self.winch_paths.clear();
         self.winch_paths.extend(paths);
@@ -119,7 +119,7 @@ impl Integrators {
         self.estimate.describe(length)
     }
 
-    /// Energy that the networks hold; none of motion where they are quasi-static.
+    /// Stored energy of the networks; no kinetic energy where they are quasi-static.
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
         for (NetworkSolver { solver, .. }, network) in self.networks.iter().zip(&model.networks) {
@@ -132,7 +132,7 @@ impl Integrators {
         sum
     }
 
-    /// Kinetic energy of the networks that leapfrogs serve, which their flow counts as dissipated [J].
+    /// Kinetic energy of the networks with a leapfrog, whose flow counts it as dissipated [J].
     pub fn kinetic_energy_of_leapfrogs(&self, model: &Model, state: &State) -> f64 {
         let solvers = self.networks.iter().zip(&model.networks);
         let served = solvers.filter(|(network, _)| network.solver.is_leapfrog());
@@ -141,7 +141,7 @@ impl Integrators {
             .sum()
     }
 
-    /// Gives a state at rest the accelerations that the implicit integrators start from.
+    /// Sets the initial accelerations of the implicit integrators in a state at rest.
     pub fn start(&mut self, model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
         let time = state.time;
         drop_anchors(model, state);
@@ -220,8 +220,8 @@ impl Integrators {
         }
     }
 
-    /// Refuses a communication step of `whole` [s] in parts of `part` [s] that would take too many internal steps: the guard is of the communication
-    /// step, however many parts it has.
+    /// Refuses a communication step of `whole` [s] in parts of `part` [s] that would take too many internal steps:
+    /// the limit applies to the communication step, regardless of the number of its parts.
     #[cold]
     #[inline(never)]
     fn check_length(
@@ -287,7 +287,7 @@ impl Integrators {
         let next = &mut self.scratch[0].next;
         next.time = state.time + length;
         place_held(model, next, held);
-        // all but the waves, which stay as they are
+        // all but the waves, which are kept
         state.time = next.time;
         std::mem::swap(&mut state.points, &mut next.points);
         std::mem::swap(&mut state.lines, &mut next.lines);
@@ -342,7 +342,8 @@ impl Done {
     }
 }
 
-/// Puts held points, and the velocities of the nodes at all lines' ends but quasi-static ones, where they are at the time of `state`.
+/// Puts held points, and the velocities of the nodes at all lines' ends except quasi-static ones, at their values at
+/// the time of `state`.
 fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
     for (index, point) in state.points.iter_mut().enumerate() {
         if !matches!(model.points[index].role, Role::Fixed | Role::Free(_)) {

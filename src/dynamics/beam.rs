@@ -45,7 +45,7 @@ pub use measures::{BeamView, Momentum};
 
 /// Change of position over the beam's length, and of θ, that ends the iteration [-].
 const TOLERANCE: f64 = 1e-12;
-/// A change below this [-] that no longer shrinks has met rounding.
+/// Change [-] below which a change that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-7;
 /// Iterations of a step [-].
 const SOLVES_MAX: usize = 30;
@@ -73,10 +73,10 @@ pub struct BeamStep<'a> {
     pub energy_balance: bool,
 }
 
-/// Why a step failed, and where.
+/// Failure of a step, with its node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stuck {
-    /// Node where it went wrong.
+    /// Node of the failure.
     pub node: usize,
     /// Reason of the failure.
     pub reason: StuckReason,
@@ -142,10 +142,10 @@ impl BeamWork {
         }
     }
 
-    /// Moves `shape` by one step; gives linear solves and the energy that crossed the border of the beam.
+    /// Moves `shape` by one step; returns linear solves and the energy that crossed the boundary of the beam.
     ///
     /// # Errors
-    /// The iteration did not converge; the shape is as it was.
+    /// The iteration did not converge; the shape is unchanged.
     pub fn step(&mut self, case: &BeamStep, shape: &mut LineState) -> Result<(usize, Flow), Stuck> {
         self.predict(case, shape);
         let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
@@ -181,7 +181,7 @@ impl BeamWork {
         Err(Stuck { node, reason })
     }
 
-    /// Takes over the state before the step and guesses the one after it.
+    /// Copies the state before the step and guesses the one after it.
     fn predict(&mut self, case: &BeamStep, shape: &LineState) {
         let state = beam_state(shape);
         let dt = case.length;
@@ -243,7 +243,7 @@ impl BeamWork {
         }
     }
 
-    /// Applies the solution of the linear system; the node that changed most and by how much [-].
+    /// Applies the solution of the linear system; returns the node that changed most and its change [-].
     fn correct(&mut self, length: f64) -> (usize, f64) {
         let largest = self.largest_change(length);
         let turned = self
@@ -371,7 +371,7 @@ impl BeamWork {
         Some(contact_step(k, penetration, reach, case.length))
     }
 
-    /// Energy that crossed the border of the beam in the step.
+    /// Energy that crossed the boundary of the beam in the step.
     fn flow(&self, case: &BeamStep, shape: &LineState) -> Flow {
         let mut flow = Flow::default();
         let (dt, last) = (case.length, self.now.len() - 1);
@@ -493,7 +493,7 @@ fn mixture(step: f64) -> Mixture {
     }
 }
 
-/// The beam's part of a line's state.
+/// Part of a line's state that belongs to its beam.
 fn beam_state(shape: &LineState) -> &crate::model::BeamState {
     shape
         .beam

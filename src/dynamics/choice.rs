@@ -20,8 +20,8 @@ use super::limit::{
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 
-/// Part of the transverse limit that no line needs to go below for accuracy: where axial waves are much faster than that,
-/// the line stretches quasi-statically [-].
+/// Ratio to the transverse limit below which steps are not needed for accuracy: where axial waves are much faster
+/// than that, the line stretches quasi-statically [-].
 const AXIAL_RESOLUTION_MIN: f64 = 0.125;
 /// Margin on the static tension for the transverse limit: snaps exceed it [-].
 const SNAP_MARGIN: f64 = 3.0;
@@ -40,7 +40,7 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// Integrator and step, and why.
+    /// Integrator and step, with the reason.
     pub fn in_words(&self) -> String {
         let (step, explicit) = (seconds(self.step_max), seconds(self.explicit.step));
         match self.integrator {
@@ -140,7 +140,7 @@ impl Choice {
     }
 }
 
-/// A time [s] in the multiple of the second that fits, in four digits.
+/// Time [s] in the suitable multiple of the second, with four digits.
 fn seconds(time: f64) -> String {
     let (scale, unit) = match time {
         t if t >= 1.0 => (1.0, "s"),
@@ -159,7 +159,7 @@ struct Steps {
     implicit: f64,
 }
 
-/// Step of generalised-α [s]: one that follows the free points, where it need not be taken.
+/// Step of generalised-α [s]: one that resolves the free points, where generalised-α is a choice.
 fn implicit_step(model: &Model, network: &Network) -> f64 {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
     let choosy = lines.all(Line::serves_leapfrog);

@@ -46,7 +46,7 @@ pub const BOSSAK_ALPHA: f64 = -0.3;
 const NEWTON_TOLERANCE: f64 = 1e-7;
 /// Newton iterations of a step.
 const ITERATIONS_MAX: usize = 15;
-/// Iterations after which corrections that fall too slowly are taken for ones that go in circles.
+/// Iterations after which corrections that fall too slowly are taken for a cycle.
 const CIRCLING: usize = 5;
 /// Parts that a step may be cut into by halving: twelve halvings.
 const PARTS_MAX: usize = 4096;
@@ -224,11 +224,11 @@ pub struct Span {
     pub step_max: f64,
 }
 
-/// Advances one network through a span of time, not at all where its end is not after its start; `held` gives position,
-/// velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
+/// Advances one network through a span of time, not at all where its end is not after its start; `held` returns
+/// position, velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
 ///
 /// # Errors
-/// Newton's method failed even in steps 4096 times smaller; the state is then as it was.
+/// Newton's method failed even in steps 4096 times smaller; the state is then unchanged.
 pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -254,7 +254,8 @@ pub struct Driving<'a, K> {
     pub scheme: &'a Scheme,
 }
 
-/// [`advance`], showing every internal step, and once more as one of no length where ends were released after it.
+/// [`advance`], showing every internal step, and once more with a step of no length where ends were released after
+/// it.
 ///
 /// # Errors
 /// As there.
@@ -312,7 +313,7 @@ struct Integration<'a, K> {
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
-    /// Makes the step from `t0` to `t1` [s], in halves where Newton's method fails.
+    /// Takes the step from `t0` to `t1` [s], in halves where Newton's method fails.
     fn pass(
         &self,
         [t0, t1]: [f64; 2],
@@ -394,7 +395,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
     }
 
-    /// One step from the state `before`; whether Newton's method converged. If not, the state is spoilt.
+    /// Takes one step from the state `before`; returns whether Newton's method converged. If not, the state is
+    /// undefined.
     fn step(&self, [t0, t1]: [f64; 2], before: &State, state: &mut State, work: &mut Workspace) -> bool {
         let dt = t1 - t0;
         let ([old, new], rates) = self.scheme.weights(dt);
@@ -435,8 +437,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         false
     }
 
-    /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments that turn within the step make it
-    /// unsymmetric, and with joints of lines that bend that are not indefinite.
+    /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments
+    /// that turn within the step make it unsymmetric, and with positive semi-definite joints of lines that bend.
     fn solve_indefinite(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         let bends = |&line: &usize| self.model.lines[line].bending.is_some();
         if self.network.lines.iter().any(bends) {
@@ -459,7 +461,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         lines.copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Moves everything on with constant acceleration.
+    /// Predicts the state at constant acceleration.
     fn predict(&self, state: &mut State, dt: f64) {
         for &index in &self.network.lines {
             let nodes = &mut state.lines[index];

@@ -40,7 +40,8 @@ use std::ops::{Range, RangeInclusive};
 use crate::model::{End, Line, Model, SHORTEST, Segments};
 use crate::physics::stretch::StretchLaw;
 
-/// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast blows up with five times the drag and 20 elements.
+/// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast diverges with five times the drag
+/// and 20 elements.
 const SAFETY: f64 = 0.9;
 /// The same of a line without damping [-].
 const SAFETY_UNDAMPED: f64 = 0.38;
@@ -85,7 +86,8 @@ impl ExplicitLimit {
         }
     }
 
-    /// For a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; the full safety from the damping ratio `enough` on.
+    /// Limit for a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; the full safety from the damping ratio
+    /// `enough` on.
     fn new(omega: f64, lag: f64, alpha: f64, enough: f64) -> ExplicitLimit {
         let dampers = 0.5 * (omega * omega * lag + alpha);
         let damped = match omega > 0.0 {
@@ -102,7 +104,7 @@ impl ExplicitLimit {
         limit
     }
 
-    /// The one that allows less.
+    /// Returns the limit that allows less.
     pub fn or(self, other: ExplicitLimit) -> ExplicitLimit {
         if other.step < self.step { other } else { self }
     }
@@ -116,7 +118,7 @@ impl ExplicitLimit {
         }
     }
 
-    /// Step [s] to set out with where the greatest K|v|/M of all nodes is `rate` [1/s].
+    /// First step [s] of a span where the greatest K|v|/M of all nodes is `rate` [1/s].
     pub fn with_drag(&self, rate: f64) -> f64 {
         self.step.min(self.stable(rate / DRAG_MARGIN))
     }
@@ -150,7 +152,7 @@ pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     limit
 }
 
-/// Rate α at which damping by mass takes the velocity of a node [1/s].
+/// Rate α at which damping by mass decelerates a node [1/s].
 fn fading(line: &Line, node: usize) -> f64 {
     let damping = line.nodes.mass_damping.as_ref();
     damping.map_or(0.0, |damping| damping[node] / line.least_mass(node))
@@ -197,7 +199,7 @@ fn beside(line: &Line, node: usize) -> Range<usize> {
     node.saturating_sub(1)..(node + 1).min(line.segment_count())
 }
 
-/// Explicit step limit of the node before the end segment of a line on a winch when that is shortest, wherever it may be.
+/// Explicit step limit of the node before the end segment of a line on a winch at its shortest, at any place.
 fn winch_limit(winch_state: &Line) -> ExplicitLimit {
     let limit = |i: usize| {
         let (left, right) = (
@@ -213,7 +215,7 @@ fn winch_limit(winch_state: &Line) -> ExplicitLimit {
     nodes.map(limit).fold(ExplicitLimit::none(), ExplicitLimit::or)
 }
 
-/// Explicit step limit of a free point with all that is tied to it; none without a line.
+/// Explicit step limit of a free point with its lines; none without a line.
 pub fn free_point_limit(model: &Model, point: usize) -> ExplicitLimit {
     let Some(free) = model.points[point].free() else {
         return ExplicitLimit::none();
@@ -261,7 +263,7 @@ fn stiffness(line: &Line, i: usize) -> f64 {
     segments.in_motion(i).0 * slope / segments.length[i]
 }
 
-/// Slope of a strain measure that the step limits count on [-].
+/// Slope of a strain measure that the step limits assume [-].
 pub(super) fn expected_slope(law: &StretchLaw) -> f64 {
     law.at(STRAIN_EXPECTED).slope.max(1.0)
 }
@@ -368,7 +370,7 @@ fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64
     (0..line.segment_count()).map(time).sum()
 }
 
-/// Greatest stiffness that the water's surface gives a node [N/m].
+/// Greatest stiffness of a node due to the water's surface [N/m].
 fn heave(line: &Line, node: usize) -> f64 {
     let surface = line.surface.as_ref();
     surface.map_or(0.0, |surface| surface.stiffness_max(node))
@@ -381,7 +383,7 @@ pub fn point_heave_step(model: &Model, point: usize) -> f64 {
     SAFETY * 2.0 / (stiffness / least_mass(model, point)).sqrt()
 }
 
-/// Mass of a free point and of the half nodes tied to it, at least [kg].
+/// Least mass of a free point and of the half nodes tied to it [kg].
 pub fn least_mass(model: &Model, point: usize) -> f64 {
     let point = &model.points[point];
     let tied = point.attached.iter().map(|&(line, end)| {

@@ -51,7 +51,7 @@ use extrapolation::{Order, SAMPLES_MAX, Samples};
 
 /// Acceleration that the removal of a prediction error may use in any case [m/s²]: a fiftieth of g.
 const EASE: f64 = 0.2;
-/// The same of angles [rad/s²], on levers of some ten metres.
+/// The same for angles [rad/s²], on levers of some ten metres.
 const EASE_OF_ANGLES: f64 = 0.02;
 /// Additional share of the motion's acceleration for the removal of an error [-].
 const SHARE: f64 = 0.5;
@@ -70,7 +70,7 @@ pub struct InputSample {
 }
 
 impl InputSample {
-    /// Of N axes, the last of which stands for those that are not there too.
+    /// Sample of N axes, the last of which stands for missing ones.
     #[inline(always)]
     pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> InputSample {
         InputSample::rated(position, rates(velocity))
@@ -98,18 +98,18 @@ pub fn rates<const N: usize>(told: [Option<f64>; N]) -> [[f64; N]; 2] {
     ]
 }
 
-/// The C1 path of something along four axes side by side, and the samples it is predicted from.
+/// C1 path along four axes side by side, with the samples of its prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxesPath {
     /// Samples from the host, newest first, at the times of the clock [m, rad].
     positions: Samples,
-    /// The same of the velocities, as far as it did along the same axes [m/s, rad/s].
+    /// Samples of the velocities, as far as they were along the same axes [m/s, rad/s].
     velocities: Samples,
     /// 1 along the axes whose last sample has a velocity, else 0 [-].
     rated: Lanes,
     /// Number of such samples along these axes [-].
     times_rated: usize,
-    /// Degrees that the last prediction was judged to need [-].
+    /// Degrees chosen by the last prediction [-].
     degree: Lanes,
     /// The present segments.
     curve: Hermites,
@@ -118,7 +118,7 @@ pub struct AxesPath {
 }
 
 impl AxesPath {
-    /// At rest at a position [m, rad].
+    /// Path at rest at a position [m, rad].
     pub fn at_rest<const N: usize>(position: [f64; N]) -> AxesPath {
         let zero = Lanes::splat(0.0);
         let InputSample { position, .. } = InputSample::new(position, [None; N]);
@@ -347,28 +347,28 @@ fn left(missed: [f64; 2], step: f64, [soon, late]: [f64; 2], acceleration: f64) 
     ]
 }
 
-/// Time over which a cubic brings a distance and a velocity to nothing and nowhere accelerates by more than `most`.
+/// Time over which a cubic brings a distance and a velocity to zero without accelerating by more than `most`.
 fn time_to_meet([distance, velocity]: [f64; 2], most: f64) -> f64 {
     let (reach, speed) = (6.0 * most * distance.abs(), velocity.abs());
     if distance * velocity < 0.0 && 3.0 * speed * speed <= reach {
-        // on its way, and able to brake: 6d/T² + 2v/T at the end is the most
+        // approaching, and able to brake: 6d/T² + 2v/T at the end is the greatest
         return ((speed * speed + reach).sqrt() - speed) / most;
     }
     // −6d/T² − 4v/T at the start is no more than with both of one sign
     (2.0 * speed + (4.0 * speed * speed + reach).sqrt()) / most
 }
 
-/// The path of something along one axis.
+/// Path along one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxisPath(AxesPath);
 
 impl AxisPath {
-    /// At rest at a position [m].
+    /// Path at rest at a position [m].
     pub fn at_rest(position: f64) -> AxisPath {
         AxisPath(AxesPath::at_rest([position]))
     }
 
-    /// Continues the path by a communication step from a position [m] and perhaps a velocity [m/s] at its start.
+    /// Continues the path by a communication step from a position [m] and optionally a velocity [m/s] at its start.
     pub fn extend(&mut self, extrapolation: &Extrapolation, position: f64, velocity: Option<f64>) {
         let before = self.0;
         self.0
@@ -392,12 +392,12 @@ impl AxisPath {
     }
 }
 
-/// The path of a coupled point along x, y and z.
+/// Path of a coupled point along x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HostPath(pub AxesPath);
 
 impl HostPath {
-    /// At rest at a position [m].
+    /// Path at rest at a position [m].
     pub fn at_rest(position: Vector3<f64>) -> HostPath {
         HostPath(AxesPath::at_rest(position.into()))
     }
@@ -408,7 +408,7 @@ impl HostPath {
         HostPath::kinematics(&self.0.at(t))
     }
 
-    /// Of position [m], velocity [m/s] and acceleration [m/s²] along x, y and z; nothing turns.
+    /// Kinematics of position [m], velocity [m/s] and acceleration [m/s²] along x, y and z, without rotation.
     #[inline(always)]
     pub fn kinematics(motion: &[Lanes; 3]) -> Kinematics {
         let [position, velocity, acceleration] = motion.map(|lanes| lanes.xyz());
@@ -421,12 +421,12 @@ impl HostPath {
     }
 }
 
-/// The paths of a vessel's displacement [m] along x, y and z, and of its roll, pitch and yaw [rad].
+/// Paths of a vessel's displacement [m] along x, y and z, and of its roll, pitch and yaw [rad].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct VesselPath(pub [AxesPath; 2]);
 
 impl VesselPath {
-    /// At rest at a pose [m, rad].
+    /// Path at rest at a pose [m, rad].
     pub fn at_rest([x, y, z, roll, pitch, yaw]: [f64; 6]) -> VesselPath {
         VesselPath([
             AxesPath::at_rest([x, y, z]),
@@ -434,7 +434,8 @@ impl VesselPath {
         ])
     }
 
-    /// Becomes the path `before` continued by a communication step from a pose [m, rad] and perhaps its rates [m/s, rad/s] at its start.
+    /// Becomes the path `before` continued by a communication step from a pose [m, rad] and optionally its rates
+    /// [m/s, rad/s] at its start.
     #[inline(always)]
     pub fn extend(
         &mut self,

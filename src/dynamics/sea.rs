@@ -20,17 +20,17 @@ const ROUNDING: f64 = 1e-9;
 /// Scratch of the spans.
 #[derive(Debug)]
 pub(super) struct SeaWork {
-    /// The widest vectors of this machine; results do not depend on it.
+    /// Widest vectors of this machine; results do not depend on it.
     unit: Arch,
     /// Per thread.
     instants: Vec<Instant>,
-    /// The spans that began last.
+    /// Spans that began last.
     due: Vec<Due>,
     /// Wave kinematics at the start of the span before, or room for the end of the next, by line and then by point.
     spare: Vec<Vec<Orbit>>,
 }
 
-/// A span that begins.
+/// Span that begins.
 #[derive(Debug)]
 struct Due {
     place: Place,
@@ -50,7 +50,7 @@ enum Place {
 }
 
 impl Place {
-    /// All places of a model that waves act on.
+    /// Places of a model on which waves act.
     fn of(model: &Model) -> impl Iterator<Item = Place> {
         let lines = model.lines.iter().enumerate();
         let lines = lines.filter(|(_, line)| line.heaves(model));
@@ -83,7 +83,7 @@ impl Place {
         }
     }
 
-    /// Positions [m] and velocities [m/s] of its nodes.
+    /// Positions [m] and velocities [m/s] of the place's nodes.
     fn nodes(self, state: &State) -> (&[Vector3<f64>], &[Vector3<f64>]) {
         match self {
             Place::Line(line) => (&state.lines[line].position, &state.lines[line].velocity),
@@ -97,7 +97,7 @@ impl Place {
         }
     }
 
-    /// Height of its highest node [m].
+    /// Height of the place's highest node [m].
     fn highest(self, state: &State) -> f64 {
         let heights = self.nodes(state).0.iter().map(|position| position.z);
         heights.fold(f64::NEG_INFINITY, f64::max)
@@ -121,7 +121,7 @@ impl SeaWork {
         }
     }
 
-    /// Gives a state the waves of its time, or none.
+    /// Sets the waves of a state at its time, or none.
     pub(super) fn start(&mut self, model: &Model, state: &mut State) {
         state.waves = model.waves.as_ref().map(|waves| {
             let mut spans = WaveSpans::default();
@@ -206,7 +206,7 @@ impl SeaWork {
         !self.due.is_empty()
     }
 
-    /// Puts back the spans before those that began last.
+    /// Restores the spans before those that began last.
     pub(super) fn undo(&mut self, model: &Model, state: &mut State) {
         let Some(spans) = &mut state.waves else {
             return;
@@ -221,7 +221,7 @@ impl SeaWork {
 
     /// Samples the waves at the ends of the spans that begin.
     fn sample_due(&mut self, waves: &Waves, state: &State, (pool, threads): (&mut ThreadPool, usize)) {
-        // spans that end together follow each other, so that the waves are turned to their time once
+        // spans that end together follow each other, so that the waves are evaluated once for their time
         let by_length = |a: &Due, b: &Due| a.length.total_cmp(&b.length);
         self.due.sort_unstable_by(by_length);
         let unit = self.unit;
@@ -263,7 +263,7 @@ fn sample(
     });
 }
 
-/// Time to the end of the span that a place is in [s]; 0 where it is over, or has not begun.
+/// Time to the end of the span of a place [s]; 0 where it is over, or has not begun.
 fn left(place: Place, state: &State, step: f64) -> f64 {
     let rounding = ROUNDING * step;
     let span = state.waves.as_ref().map(|spans| place.span(spans));

@@ -17,7 +17,7 @@ pub(super) struct ViscoelasticSegment {
     slow: f64,
 }
 
-/// Strain of a segment and how it changes.
+/// Strain of a segment with its rate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretching {
     /// l/L − 1 [-].
@@ -27,7 +27,7 @@ pub(super) struct Stretching {
 }
 
 impl Stretching {
-    /// From positions [m] and velocities [m/s] of the ends of segment `i`.
+    /// Strain from positions [m] and velocities [m/s] of the ends of segment `i`.
     pub(super) fn of(
         line: &Line,
         i: usize,
@@ -51,7 +51,7 @@ impl ViscoelasticSegment {
         Some(ViscoelasticSegment { law, slow })
     }
 
-    /// The same at the time of the velocities: half a step before where a leapfrog serves.
+    /// The same at the time of the velocities: half a step before with a leapfrog.
     pub(super) fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let now = ViscoelasticSegment::of(line, state, i)?;
         let before = state.half_step.viscoelastic.get(i);
@@ -70,7 +70,7 @@ impl ViscoelasticSegment {
         (elastic, self.law.damping * now.rate)
     }
 
-    /// Tension [N] of a segment that pushes with `push` [N] at most.
+    /// Tension [N] of a segment that carries at most `push` [N] in compression.
     pub(super) fn tension(&self, now: Stretching, push: f64, negative_tension: bool) -> f64 {
         let (elastic, damping) = self.forces(now);
         total_tension(elastic, damping, 0.0 - push, negative_tension)
@@ -116,12 +116,12 @@ struct Relaxing {
 pub struct Relaxed {
     /// Tension by the discrete gradient of the springs' energy [N].
     pub tension: Lanes,
-    /// Energy that dampers take [J], or per unstretched length [N].
+    /// Dissipation of the dampers [J], or per unstretched length [N].
     pub taken: Lanes,
 }
 
 impl ViscoelasticArrays {
-    /// For a line; `None` where it is not viscoelastic.
+    /// Memory of a line; `None` where it is not viscoelastic.
     pub fn new(line: &Line, striping: Striping) -> Option<ViscoelasticArrays> {
         let laws = line.segments.viscoelastic.as_deref()?;
         Some(ViscoelasticArrays::of(laws, striping))
@@ -238,8 +238,8 @@ impl ViscoelasticArrays {
         self.pass_half(at, [strains[0], half * (slow + after)], step.kick)
     }
 
-    /// Goes on by a step of `kick` [s] to a strain and a slow strain of half a step later: the fast part pulls with the discrete gradient of its energy
-    /// and with its damper, as in [`Viscoelastic::step`].
+    /// Advances by a step of `kick` [s] to a strain and a slow strain of half a step later: the fast part pulls with
+    /// the discrete gradient of its energy and with its damper, as in [`Viscoelastic::step`].
     #[inline(always)]
     fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Relaxed {
         let load = |values: &Column| values.load(at);

@@ -13,7 +13,7 @@ pub struct Beam {
     pub elements: Vec<BeamElement>,
     /// Rotary inertia of the nodes about their three directors [kg m²].
     pub rotary_inertia: Vec<Vector3<f64>>,
-    /// Direction of the line at ends A and B where they are clamped, with the point as it stands in the scene [-].
+    /// Direction of the line at ends A and B where they are clamped, with the point in its scene attitude [-].
     pub clamped: [Option<Vector3<f64>>; 2],
     /// True if the initial shape is free of stress; else the straight line is.
     pub rests_as_it_starts: bool,
@@ -39,7 +39,7 @@ pub struct BeamState {
     pub spins: Vec<Vector3<f64>>,
     /// Starred strains of the elements without stress [-], [1/m].
     pub rest: Vec<Sextuple>,
-    /// Frames of ends A and B as their points, in reference attitude, carry them where they are clamped [-].
+    /// Frames of ends A and B in their points' reference attitude where they are clamped [-].
     pub carried: [Matrix3<f64>; 2],
 }
 

@@ -1,4 +1,4 @@
-//! Scene -> Model.
+//! Conversion of a scene into the discrete model.
 
 mod beam;
 mod reach;
@@ -34,7 +34,7 @@ use crate::scene::{
     SceneError, Strain,
 };
 
-/// Segments that a winch pays out, at most.
+/// Greatest number of segments that a winch pays out.
 const REEL_SEGMENTS_MAX: f64 = 1e5;
 
 /// Elements of every line over those of a line alone [-]: its length over that of the longest line that it meets at free points.
@@ -43,7 +43,7 @@ pub fn line_shares(scene: &Scene) -> Vec<f64> {
 }
 
 impl Model {
-    /// Makes a scene discrete.
+    /// Discretises a scene.
     ///
     /// # Errors
     /// The mistakes that [`Scene::check`] finds, and names that do not exist.
@@ -125,7 +125,7 @@ fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
 /// displacement before a node slides is then a small part of the stretch between two nodes.
 const STICK: f64 = 10.0;
 
-/// Gives a line the bed's surface.
+/// Sets the bed's surface of a line.
 fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
     if let Some(winch) = &mut line.winch {
         lay_on(winch.longest_mut(), bottom);
@@ -245,7 +245,8 @@ fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {
     }
 }
 
-/// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its lines' ends.
+/// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its
+/// lines' ends.
 fn point_contact(scene: &Scene, point: &scene::Point, axes: [bool; 3], dry: f64) -> Option<PointContact> {
     let bed = scene.seabed.as_ref()?;
     let in_reach = scene.lines.iter().any(|line| {
@@ -292,7 +293,7 @@ fn damping_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     line_type.damping_ratio.unwrap_or(open)
 }
 
-/// ζ of every segment, at least: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
+/// Least ζ of every segment: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
 fn numerical_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     let beam = line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam;
     if line_type.leaves_damping_open() && !beam {
@@ -463,7 +464,7 @@ fn build_line(
 }
 
 /// Lengthens the mesh of a line on a winch by all that can be paid out, and a segment more for paths that overshoot. Returns the first
-/// segment of the last section, and how many segments the line has at no change.
+/// segment of the last section, and the number of segments at no change.
 fn reel(
     index: usize,
     line: &scene::Line,
@@ -488,7 +489,7 @@ fn reel(
     Ok(Some([before, before + within]))
 }
 
-/// A line on a winch as it is at no change of its length, out of the line with all that can be paid out.
+/// Line on a winch at no change of its length, from the line with all that can be paid out.
 fn on_winch(
     index: usize,
     longest: Line,
@@ -522,7 +523,7 @@ fn segment_parts<'a>(laws: &'a [LineLaw], lengths: &[Vec<f64>]) -> Vec<SegmentPa
     laws.iter().zip(lengths).flat_map(of_section).collect()
 }
 
-/// When the ends of a line part from their points.
+/// Conditions for the release of a line's ends.
 fn releases(line: &scene::Line) -> Option<[Release; 2]> {
     let mut releases = [Release::default(); 2];
     let side = |end: LineEnd| usize::from(end == LineEnd::B);
@@ -664,7 +665,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
     }
 }
 
-/// Half of each neighbouring segment's share at every node.
+/// Sum of half of each neighbouring segment's share at every node.
 fn lumped(parts: &[SegmentPart], density: &dyn Fn(&LineLaw) -> f64) -> Vec<f64> {
     let mut nodes = vec![0.0; parts.len() + 1];
     for (i, part) in parts.iter().enumerate() {
@@ -737,7 +738,7 @@ fn check_beam(points: &[Point], lines: &[Line], network: &Network) -> Result<(),
     }
 }
 
-/// Refuses a leapfrog for lines that it cannot take.
+/// Refuses a leapfrog for lines that it cannot integrate.
 fn check_integrator(scene: &Scene, lines: &[Line], network: &Network) -> Result<(), SceneError> {
     let integrator = scene.solver.integrator;
     let refuse = |what: String| {

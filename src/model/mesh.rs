@@ -43,7 +43,7 @@ const GROWTH: f64 = 0.25;
 const FEW: usize = 3;
 /// Points of the quadrature of 1/h in every element [-].
 const QUADRATURE: f64 = 40.0;
-/// Lengthening of fine elements, again and again, until the line has no more than it may have [-].
+/// Factor by which fine elements are lengthened repeatedly, until the line has no more than its greatest number [-].
 const COARSENING: f64 = 1.25;
 
 /// Section as used by the mesher.

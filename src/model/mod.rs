@@ -47,7 +47,7 @@ pub use winch::{LONGEST, Passage, SHORTEST, Winch};
 /// Part of a property below which two are one [-].
 const ROUNDING: f64 = 1e-9;
 
-/// A scene made discrete. Immutable; shared by reference.
+/// Discretised scene. Immutable; shared by reference.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// Gravitational acceleration [m/s²].
@@ -102,7 +102,7 @@ pub struct Point {
     pub name: String,
     /// Reference position [m].
     pub reference: Vector3<f64>,
-    /// Who moves it.
+    /// Origin of its motion.
     pub role: Role,
     /// Load in time.
     pub load: Option<PointForce>,
@@ -123,14 +123,14 @@ pub enum Body {
     Vessel(usize),
 }
 
-/// Who moves a point.
+/// Origin of a point's motion.
 #[derive(Debug, Clone)]
 pub enum Role {
     /// Never moves.
     Fixed,
     /// The host moves it; the motion of the scene drives it in `moorline run`.
     Coupled {
-        /// The scene's motion for it.
+        /// Motion of the scene for it.
         motion: Option<Motion>,
     },
     /// Point fixed to a vessel, which the host moves.
@@ -162,7 +162,7 @@ pub struct PointForces {
 pub struct FreePoint {
     /// Axes along which it moves.
     pub axes: [bool; 3],
-    /// Own mass [kg].
+    /// Mass of the point [kg].
     pub mass: f64,
     /// Weight less buoyancy of the point, fully submerged [N].
     pub weight: f64,
@@ -177,7 +177,7 @@ pub struct FreePoint {
 pub struct PointContact {
     /// z of the bed [m].
     pub bed: f64,
-    /// z below which the spring pushes [m]: such that the point lies on the bed where it rests with all of its weight.
+    /// z below which the spring pushes [m]: such that the point lies on the bed when it rests with all of its weight.
     pub level: f64,
     /// Spring and damper.
     pub coefficients: ContactCoefficients,
@@ -188,11 +188,11 @@ pub struct PointContact {
 pub struct PointAtHeight {
     /// Submergence of the point.
     pub wetted: Wetted,
-    /// Own weight less buoyancy [N].
+    /// Weight less buoyancy [N].
     pub weight: f64,
     /// Slope of the weight with height [N/m], not negative.
     pub weight_slope: f64,
-    /// Own and added mass [kg].
+    /// Mass and added mass [kg].
     pub mass: f64,
     /// Slope of the mass with height [kg/m], not positive.
     pub mass_slope: f64,
@@ -222,27 +222,27 @@ pub struct Line {
     pub bending: Option<Bending>,
     /// The water's surface, where the line may pierce it.
     pub surface: Option<Surface>,
-    /// Sections as the closed-form catenary takes them.
+    /// Sections for the closed-form catenary.
     pub sections: Vec<Section>,
     /// Shape at the start.
     pub initial: InitialShape,
     /// Beam properties, where the line is a beam.
     pub beam: Option<Beam>,
-    /// When ends A and B part from their points, where one of them may.
+    /// Conditions for the release of ends A and B, where one of them may be released.
     pub release: Option<[Release; 2]>,
-    /// The winch at end B, where it is on one; the line is then laid out as it is at present.
+    /// Winch at end B, where the line is on one; the line then has its present elements.
     pub winch: Option<Winch>,
     /// True for ends whose load is taken as linear to the next node: the nodes are alike, and neither a winch nor a clamp at the other end
     /// acts on the next one.
     pub linear_load: [bool; 2],
 }
 
-/// When an end of a line parts from its point.
+/// Conditions for the release of an end from its point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Release {
-    /// Tension of the end's segment that parts it [N].
+    /// Tension of the end's segment at which it is released [N].
     pub tension: Option<f64>,
-    /// Time from which on it is released [s].
+    /// Time of its release [s].
     pub time: Option<f64>,
     /// True if the host's input releases the end.
     pub on_release: bool,
@@ -260,7 +260,7 @@ impl Release {
     }
 }
 
-/// A section as the closed-form catenary takes it.
+/// Section for the closed-form catenary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Unstretched length [m].
@@ -364,7 +364,8 @@ impl FroudeKrylov {
 pub struct Contact {
     /// z of the bed [m].
     pub bed: f64,
-    /// z below which the springs push [m]: the bed, or where regularised contact begins so that a node at rest lies on it.
+    /// z below which the springs push [m]: the bed, or the level of regularised contact at which a node at rest lies
+    /// on it.
     pub level: Vec<f64>,
     /// Stiffness [N/m].
     pub stiffness: Vec<f64>,
@@ -386,7 +387,7 @@ pub struct Network {
 }
 
 impl Segments {
-    /// Stiffness [N] and damping [N s] that a segment has in fast motion.
+    /// Stiffness [N] and damping [N s] of a segment in fast motion.
     pub fn in_motion(&self, i: usize) -> (f64, f64) {
         match &self.viscoelastic {
             Some(laws) => (laws[i].fast, laws[i].damping),
@@ -456,7 +457,7 @@ impl Line {
         }
     }
 
-    /// Segment `segment` at a strain [-]: its law while it pulls, and no more than it can push.
+    /// Segment `segment` at a strain [-]: its law in tension, and its limit in compression.
     #[inline(always)]
     pub fn spring(&self, segment: usize, strain: f64) -> Spring {
         let push = self.compression_max(segment);
@@ -556,7 +557,7 @@ impl FreePoint {
         sphere.map_or(Vector3::zeros(), |sphere| sphere.drag(wetted, velocity))
     }
 
-    /// Force [N] of the water that waves accelerate, where it is wet.
+    /// Force [N] of the accelerated water of waves, where the point is wet.
     #[inline]
     pub fn froude_krylov(&self, wetted: Wetted, orbit: &Orbit) -> Vector3<f64> {
         let sphere = self.sphere.as_ref();
@@ -593,7 +594,7 @@ impl FreePoint {
         }
     }
 
-    /// Greatest of its weight, its buoyancy and the difference of the two [N].
+    /// Greatest of the weight, the buoyancy and the difference of the two [N].
     pub fn weight_max(&self) -> f64 {
         let buoyancy = self.sphere.map_or(0.0, |sphere| sphere.buoyancy);
         (self.weight + buoyancy)
@@ -679,7 +680,7 @@ impl Point {
 }
 
 impl Model {
-    /// The beam that makes up a network, if one does.
+    /// Beam of a network, if it consists of one.
     pub fn beam_of(&self, network: usize) -> Option<usize> {
         let line = self.networks[network].lines[0];
         self.lines[line].beam.is_some().then_some(line)

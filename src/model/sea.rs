@@ -26,7 +26,7 @@ pub struct WaveSpans {
 pub struct WaveSpan {
     /// Start and end [s].
     pub times: [f64; 2],
-    /// At both times, by node; empty where waves do nothing.
+    /// Kinematics at both times, by node; empty where no waves act.
     pub ends: [Vec<Orbit>; 2],
 }
 
@@ -59,7 +59,7 @@ impl Clone for WaveSpan {
 }
 
 impl WaveSpan {
-    /// Motion at the nodes at time `t` [s]; `None` where waves do nothing.
+    /// Motion at the nodes at time `t` [s]; `None` where no waves act.
     pub fn at(&self, t: f64) -> Option<WavesAlong<'_>> {
         let [before, after] = &self.ends;
         (!before.is_empty()).then_some(WavesAlong {

@@ -1,4 +1,4 @@
-//! All that changes: positions, velocities and the memory of the integrators. Cloning it saves a simulation.
+//! Changing state: positions, velocities and the memory of the integrators. A clone of it saves a simulation.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -48,7 +48,7 @@ pub struct LineState {
     pub acceleration: Vec<Vector3<f64>>,
     /// Memory of the leapfrogs from the steps before.
     pub half_step: HalfStep,
-    /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
+    /// Remaining data of the closed-form catenary of the nodes; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
     /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
     pub viscoelastic: Vec<f64>,
@@ -76,7 +76,7 @@ pub struct WinchState {
 }
 
 impl WinchState {
-    /// At rest at a length change [m].
+    /// Winch at rest at a length change [m].
     pub fn at_rest(change: f64) -> WinchState {
         WinchState {
             change,
@@ -103,9 +103,9 @@ pub struct ClosedForm {
     pub stretched_length: f64,
     /// Greatest vertical distance below the chord between the ends [m].
     pub sag: f64,
-    /// Energy of the stretch of the whole line, held ends included [J].
+    /// Strain energy of the whole line, held ends included [J].
     pub axial_energy: f64,
-    /// Energy of its weight above z = 0, held ends included [J].
+    /// Potential energy of its weight above z = 0, held ends included [J].
     pub gravitational_energy: f64,
 }
 
@@ -116,9 +116,10 @@ pub struct HalfStep {
     pub velocity: Vec<Vector3<f64>>,
     /// Velocities one step before those [m/s].
     pub velocity_before: Vec<Vector3<f64>>,
-    /// The last step and the one before [s]; 0 before the first step, where `velocity` is that of t itself.
+    /// The last step and the one before [s]; 0 before the first step, where `velocity` is at t.
     pub steps: [f64; 2],
-    /// Tensions of the segments' springs at t − Δt and t − 2Δt as if they pushed too [N]; kept by the axial-implicit leapfrog only.
+    /// Tensions of the segments' springs at t − Δt and t − 2Δt, negative in compression [N]; kept by the
+    /// axial-implicit leapfrog only.
     pub tension: [Vec<f64>; 2],
     /// Slow strains of viscoelastic segments at t − Δt/2 [-]; none before the first step.
     pub viscoelastic: Vec<f64>,
@@ -132,7 +133,7 @@ impl HalfStep {
 }
 
 impl PointState {
-    /// At rest at a position [m].
+    /// Point at rest at a position [m].
     pub fn at_rest(position: Vector3<f64>) -> PointState {
         let zero = Vector3::zeros();
         PointState {
@@ -159,7 +160,7 @@ impl PointState {
 }
 
 impl PointState {
-    /// At rest where a held point is.
+    /// Point at rest at the place of a held point.
     pub fn held(kinematics: &Kinematics) -> PointState {
         PointState {
             orientation: kinematics.orientation,
@@ -169,7 +170,7 @@ impl PointState {
 }
 
 impl LineState {
-    /// The velocities that a leapfrog goes on from [m/s], and the time from then to the positions [s].
+    /// Velocities from which a leapfrog continues [m/s], and the time from then to the positions [s].
     pub fn velocities_before(&self) -> (&[Vector3<f64>], f64) {
         let memory = &self.half_step;
         match memory.is_unset() {
@@ -194,7 +195,7 @@ impl LineState {
             .map(|beam| BeamState::at_rest(beam, &self.position, attitude));
     }
 
-    /// Gives a viscoelastic line at rest on its positions the slow strains that belong to them.
+    /// Sets the slow strains of a viscoelastic line at rest at its positions.
     pub fn become_viscoelastic(&mut self, line: &Line) {
         self.viscoelastic.clear();
         if let Some(laws) = &line.segments.viscoelastic {

@@ -28,7 +28,7 @@ pub struct Dry {
     pub part: f64,
     /// Slope of the dry weight with the node's height [1/m], not negative.
     pub slope: f64,
-    /// Buoyancy that the node lacks [N].
+    /// Buoyancy that the node loses [N].
     pub weight: f64,
 }
 
@@ -72,7 +72,7 @@ impl Surface {
         surface::emerged(self.radius[i].max(breadth), heights)
     }
 
-    /// Energy [J] of the buoyancy that segment `i` lacks between ends at `heights` [m].
+    /// Energy [J] of the buoyancy that segment `i` loses between ends at `heights` [m].
     pub fn energy(&self, i: usize, heights: [f64; 2]) -> f64 {
         2.0 * self.buoyancy[i] * surface::energy(self.radius[i], heights)
     }
@@ -109,7 +109,7 @@ impl Surface {
         segments.any(|(pair, radius)| self.height(&pair[0]).max(self.height(&pair[1])) > -radius)
     }
 
-    /// Greatest stiffness that the surface gives a node in heave [N/m].
+    /// Greatest stiffness of a node in heave due to the surface [N/m].
     pub fn stiffness_max(&self, node: usize) -> f64 {
         let of = |segment: usize| self.buoyancy[segment] * slope_max(self.radius[segment]);
         let below = node.checked_sub(1).map_or(0.0, of);

@@ -19,9 +19,9 @@ use crate::scene::TimeFunction;
 pub const LONGEST: f64 = 1.5;
 /// Length of the end segment below which it merges with its neighbour, over its nominal one [-].
 pub const SHORTEST: f64 = 0.4;
-/// Least length of the end segment where nothing is left to merge with, over its nominal one [-].
+/// Least length of the end segment without a neighbour to merge with, over its nominal one [-].
 const LAST: f64 = 0.1;
-/// Segments of a line, at least.
+/// Least number of segments of a line.
 const SEGMENTS_MIN: usize = 2;
 
 /// The winch at end B of a line.
@@ -39,7 +39,7 @@ pub struct Winch {
     pub length_max: f64,
     /// Greatest speed [m/s].
     pub speed_max: Option<f64>,
-    /// Length paid out in time [m] where the scene's own motion is followed.
+    /// Length paid out in time [m] where the scene's motion is followed.
     pub path: Option<TimeFunction>,
 }
 
@@ -72,7 +72,7 @@ impl Winch {
         &self.longest
     }
 
-    /// The same, to be completed.
+    /// The same, for modification.
     pub(super) fn longest_mut(&mut self) -> &mut Line {
         &mut self.longest
     }
@@ -115,7 +115,7 @@ impl Winch {
 }
 
 impl Line {
-    /// Most nodes that it ever has.
+    /// Greatest number of nodes of the line.
     pub fn nodes_max(&self) -> usize {
         let winch = self.winch.as_ref();
         winch.map_or(self.nodes.arc.len(), |winch| winch.longest.nodes.arc.len())

@@ -16,11 +16,11 @@ use crate::elements::{self, copy_network};
 use crate::model::{Kinematics, Model, Network, State};
 use crate::scene::Integrator;
 
-/// Internal steps of a communication step, at most [-].
+/// Greatest number of internal steps of a communication step [-].
 const SUBSTEPS_MAX: f64 = 1e7;
-/// Parts of a communication step in waves, at most [-]: each evaluates the waves at every node.
+/// Greatest number of parts of a communication step in waves [-]: each evaluates the waves at every node.
 const PARTS_MAX: f64 = 1e5;
-/// A failed step is tried again with half the internal step, at most so often [-].
+/// Greatest number of retries of a failed step with half the internal step [-].
 const RETRIES_MAX: u32 = 6;
 
 /// Refuses a communication step of `length` [s] that has taken `passed` [s] of it in too many internal steps.
@@ -91,7 +91,7 @@ fn leapfrog<K: Kernel>(model: &Model, network: &Network) -> LeapfrogNetwork<K> {
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
     pub(super) implicit: elements::Workspace,
-    /// The state at the end of the step, as it is built.
+    /// State at the end of the step, under construction.
     pub(super) next: State,
 }
 
@@ -172,7 +172,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
                 return Ok(Done { counters, flow });
             }
             if !is_whole {
-                // numbers that are none would stay in padding, and in masses of nodes that the water's surface seems not to meet
+                // NaN would stay in padding, and in masses of nodes that the water's surface does not reach
                 broken = work.broken_node();
                 *work = leapfrog(model, network);
             }
@@ -316,7 +316,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         Ok(Done { counters, flow })
     }
 
-    /// Refuses a communication step that would take a network too many internal steps, none longer than `part` [s].
+    /// Refuses a communication step that needs too many internal steps of a network, none longer than `part` [s].
     pub(super) fn check_length(&self, number: usize, choice: &Choice, part: f64) -> Result<(), StepError> {
         let longest = match choice.integrator {
             Integrator::QuasiStatic => part,

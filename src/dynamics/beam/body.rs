@@ -28,18 +28,18 @@ pub struct Body<'a> {
 
 /// Mean forces on a body over a step.
 pub(super) struct BodyStep {
-    /// Of weight and buoyancy, upwards [N].
+    /// Force of weight and buoyancy, upwards [N].
     lift: f64,
-    /// Of the water [N].
+    /// Force of the water [N].
     drag: Vector3<f64>,
-    /// Of the bed, upwards [N].
+    /// Force of the bed, upwards [N].
     push: f64,
     /// −∂f/∂φ₁ of all [N/m].
     pub(super) slope: Matrix3<f64>,
 }
 
 impl Body<'_> {
-    /// Over a step of a length [s] from one place to another [m].
+    /// Forces over a step of a length [s] from one place to another [m].
     pub(super) fn over(&self, [from, to]: [&Vector3<f64>; 2], length: f64) -> BodyStep {
         let mut step = BodyStep {
             lift: -self.point.weight,
@@ -68,7 +68,7 @@ impl Body<'_> {
         step
     }
 
-    /// Energy that crosses the border on a way [m] through a step of a length [s].
+    /// Energy that crosses the boundary on a path [m] through a step of a length [s].
     pub(super) fn flow(&self, step: &BodyStep, moved: &Vector3<f64>, length: f64) -> Flow {
         let drift = length * self.water;
         Flow {
@@ -80,7 +80,7 @@ impl Body<'_> {
 }
 
 impl BodyStep {
-    /// All of them [N].
+    /// Sum of the forces [N].
     pub(super) fn force(&self) -> Vector3<f64> {
         self.drag + (self.lift + self.push) * Vector3::z()
     }

@@ -11,7 +11,7 @@ use crate::physics::section::{
     Mixture, Section, Sextuple, StrainEnergy, join, response, split, strain, strain_gradient,
 };
 
-/// Momenta of a beam's own mass.
+/// Momenta of a beam's mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Momentum {
     /// Linear momentum [N s].
@@ -32,7 +32,7 @@ pub struct BeamView<'a> {
 }
 
 impl<'a> BeamView<'a> {
-    /// Of a line, where it is a beam.
+    /// Measures of a line, where it is a beam.
     pub fn of(line: &'a Line, shape: &'a LineState) -> Option<BeamView<'a>> {
         let beam = line.beam.as_ref()?;
         shape.beam.is_some().then_some(BeamView {
@@ -97,7 +97,7 @@ impl<'a> BeamView<'a> {
         beam_state(self.shape).frames[i].column(2).into_owned()
     }
 
-    /// Stress of an element as it works on the plain strains, with or without its damping.
+    /// Stress of an element conjugate to the plain strains, with or without its damping.
     fn stress(&self, i: usize, damped: bool) -> Sextuple {
         let (element, state) = (&self.beam.elements[i], beam_state(self.shape));
         let (a, b) = (self.section(i), self.section(i + 1));
@@ -126,7 +126,7 @@ impl<'a> BeamView<'a> {
         force.dot(&along)
     }
 
-    /// Force [N] and moment [N m] that the section at the lower (0) or upper (1) end of an element needs against its stress.
+    /// Force [N] and moment [N m] that balance the stress of an element at its lower (0) or upper (1) end.
     fn end_stress(&self, i: usize, side: usize, damped: bool) -> (Vector3<f64>, Vector3<f64>) {
         let element = &self.beam.elements[i];
         let gradient = strain_gradient(&self.section(i), &self.section(i + 1), element.length);
@@ -155,7 +155,8 @@ impl<'a> BeamView<'a> {
         self.bending_moment(node) * compliance.iter().sum::<f64>()
     }
 
-    /// Force [N] and moment [N m] of the beam on the point at one of its ends: its element's and its half node's.
+    /// Force [N] and moment [N m] of the beam on the point at one of its ends: those of its element and its half
+    /// node.
     pub fn end_action(&self, end: End, point: &PointState) -> (Vector3<f64>, Vector3<f64>) {
         let last = self.beam.elements.len();
         let (node, element, side) = match end {

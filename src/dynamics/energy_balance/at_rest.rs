@@ -38,7 +38,7 @@ pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times
     flow
 }
 
-/// Work [J] of the mean of two forces [N] on the way between two places [m].
+/// Work [J] of the mean of two forces [N] on the path between two places [m].
 fn work(forces: [Vector3<f64>; 2], [from, to]: [Vector3<f64>; 2]) -> f64 {
     0.5 * (forces[0] + forces[1]).dot(&(to - from))
 }
@@ -119,8 +119,8 @@ fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
     (1..line.segment_count()).map(on_node).sum()
 }
 
-/// Work [J] along a bed at a height [m] of the friction by which the horizontal tension of closed-form catenaries grows: that of a
-/// segment acts on the one of its nodes that lies, or on both.
+/// Work [J] along a bed at a height [m] of the friction by which the horizontal tension of closed-form catenaries
+/// grows: that of a segment acts on the one of its nodes on the bed, or on both.
 fn friction_work(bed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm; 2]) -> f64 {
     let on_segment = |i: usize| {
         let force = |k: usize| {

@@ -31,12 +31,12 @@ use crate::physics::morison::drag;
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::slender::Slender;
 
-/// A step that an implicit integrator has made.
+/// Completed step of an implicit integrator.
 #[derive(Clone, Copy)]
 pub struct Passed<'a> {
-    /// The states around it.
+    /// States before and after the step.
     pub states: [&'a State; 2],
-    /// Their times [s].
+    /// Times of the states [s].
     pub times: [f64; 2],
     /// Scheme of the step.
     pub scheme: &'a Scheme,
@@ -44,7 +44,7 @@ pub struct Passed<'a> {
     pub work: &'a Workspace,
 }
 
-/// Energy [J] that crossed the border of a network in a step.
+/// Energy [J] that crossed the boundary of a network in a step.
 pub fn flow(model: &Model, network: &Network, passed: &Passed) -> Flow {
     let alpha_f = passed.scheme.alpha_f;
     let mut flow = Flow::default();
@@ -315,7 +315,7 @@ impl Side<'_> {
         flow
     }
 
-    /// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
+    /// Power that water, mass damping and seabed dissipate at a node, and the power of moving water on it [W].
     fn node_power(&self, index: usize, i: usize, water: WaterAlong) -> Flow {
         let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
         let (nodes, velocity, mean) = (
@@ -362,8 +362,8 @@ impl Side<'_> {
         flow
     }
 
-    /// Power of held ends on the buoyancy that they lack in calm water, and that of the buoyancy by which waves exceed it on the other
-    /// nodes [W].
+    /// Power of held ends on their missing buoyancy in calm water, and that of the additional buoyancy in waves on
+    /// the other nodes [W].
     fn surface_power(&self, index: usize, held: [bool; 2], water: WaterAlong) -> f64 {
         let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
         let Some(surface) = &line.surface else {
@@ -411,7 +411,7 @@ impl Side<'_> {
         }
     }
 
-    /// Power that moving water gives a free point, and that water and seabed take from it [W].
+    /// Power of moving water on a free point, and the power that water and seabed dissipate there [W].
     fn point_power(&self, free: &FreePoint, point: usize) -> Flow {
         let (model, state) = (self.model, &self.state.points[point]);
         let (z, velocity, mean) = (

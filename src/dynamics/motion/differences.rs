@@ -14,14 +14,14 @@ const HANDICAPS: [Terms; 2] = [
     [1.0 / BETTER_AT_REST; DEGREE_MAX + 1],
     [1.0 / BETTER_AT_REST, 1.0 / BETTER, 1.0 / BETTER, 1.0 / BETTER],
 ];
-/// Step over the time between the first two samples, above which they make no line [-].
+/// Ratio of the step to the time between the first two samples, above which they do not determine a line [-].
 const UNJUDGED_MAX: f64 = 2.0;
 
-/// Divided differences of the samples that count.
+/// Divided differences of the samples in use.
 pub(super) struct Differences {
-    /// Of the newest samples, by order from 0 on.
+    /// Differences of the newest samples, by order from 0 on.
     newest: [Lanes; DEGREE_MAX + 1],
-    /// By how much polynomials of every degree through the samples before would have missed the newest ones.
+    /// Errors of polynomials of every degree through the samples before at the newest ones.
     miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
     /// Factors on the errors for the end of the step, where the host does not keep its step.
     stretch: Option<[Terms; JUDGED]>,
@@ -46,7 +46,7 @@ impl Differences {
         let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = extrapolation.reach;
         let miss = |next: Lanes, reach: f64| over(next, reach).abs();
         let newest = miss(ps, r3);
-        // where a sample is passed over, there is no other difference of fourth order
+        // where a sample is skipped, there is no other difference of fourth order
         let before = if extrapolation.all { miss(qt, s3) } else { newest };
         Differences {
             newest: [a, p, pq, pr],
@@ -99,7 +99,7 @@ impl Differences {
         *degree
     }
 
-    /// The degree along an axis that can be expected to predict best, the present one being `degree`.
+    /// Degree along an axis with the least expected error, the present one being `degree`.
     #[cold]
     #[inline(never)]
     fn judge(&self, known: usize, degree: f64, axis: usize) -> f64 {

@@ -10,13 +10,14 @@ use crate::scene::Reconstruction;
 
 /// Highest degree of the extrapolated polynomial [-].
 pub(super) const DEGREE_MAX: usize = 3;
-/// Samples that a degree is judged by: one alone can be met by chance, where the motion inflects.
+/// Samples by which a degree is assessed: one alone can be met by chance, where the motion inflects.
 pub(super) const JUDGED: usize = 2;
 /// Samples kept.
 pub(super) const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
-/// The longest step in sight over the distance of two samples, above which only one of them counts [-]. A step h makes ε(h/δ)ᵏ of noise ε in samples
-/// δ apart; but one sample less is one degree less. On `oc3_catenary`, 12 makes the error in tension up to four times as large where steps vary by
-/// a factor of 20; 100 gains nothing there, and shows three times as much of a noise of 1 µm in a step of 3 s after some of 0.05 s.
+/// Ratio of the longest step in the record to the distance of two samples, above which only one of them counts [-]. A
+/// step h makes ε(h/δ)ᵏ of noise ε in samples δ apart; but one sample less is one degree less. On `oc3_catenary`, 12
+/// makes the error in tension up to four times as large where steps vary by a factor of 20; 100 gains nothing there,
+/// and amplifies a noise of 1 µm three times as much in a step of 3 s after some of 0.05 s.
 const STEP_RATIO_MAX: f64 = 30.0;
 /// Number of steps up to which samples that lie this far apart count in any case [-]: a host that continues in short
 /// steps after a long one then soon has a complete record.
@@ -24,10 +25,10 @@ const STEPS_PASSED_MAX: f64 = 4.0;
 /// Rounding of a host's times over its steps [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Of four axes, newest first.
+/// Samples of four axes, newest first.
 pub(super) type Samples = [Lanes; SAMPLES_MAX];
 
-/// When a host spoke, as far back as predictions look: at the same times of all that it moves.
+/// Times of a host's samples, as far back as predictions need: the same for all that it moves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// Newest first; the first `count` are in use [s].
@@ -35,7 +36,7 @@ pub struct Clock {
     count: usize,
     /// Time by which all errors are removed [s].
     made_up: f64,
-    /// The time between two samples [s] that the `even` newest pairs of neighbours are apart, but for rounding.
+    /// Time between two samples [s] that the `even` newest pairs of neighbours are apart, but for rounding.
     gap: f64,
     even: usize,
 }
@@ -47,7 +48,7 @@ pub(super) enum Order {
     After,
     /// Later, in place of the newest one before, which lies too close to the one before that.
     Instead,
-    /// The same instant again: the newer word counts.
+    /// The same instant again: the newer sample counts.
     Again,
     /// Earlier: the samples before are discarded.
     Before,
@@ -66,7 +67,7 @@ impl Order {
 }
 
 impl Clock {
-    /// Begins at a time [s].
+    /// Clock that starts at a time [s].
     pub fn new(time: f64) -> Clock {
         Clock {
             times: [time; SAMPLES_MAX],
@@ -106,7 +107,7 @@ impl Clock {
         extrapolation.renew(self, order, step, reconstruction);
     }
 
-    /// Takes in a time [s] that comes a step [s] after the newest, before another one [s].
+    /// Adds a time [s] that comes a step [s] after the newest, before another one [s].
     fn follow(&mut self, time: f64, last_step: f64, step: f64) -> Order {
         if self.crowds(last_step.max(step)) {
             (self.gap, self.even) = (time - self.times[1], 1);
@@ -188,7 +189,7 @@ pub(super) struct Reciprocals {
 }
 
 impl Reciprocals {
-    /// Of these times.
+    /// Reciprocals of these times.
     fn new(t: &[f64; SAMPLES_MAX]) -> Reciprocals {
         Reciprocals {
             first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
@@ -203,7 +204,7 @@ impl Reciprocals {
 pub(super) type Terms = [f64; DEGREE_MAX + 1];
 
 impl Extrapolation {
-    /// Empty extrapolation, as before [`Clock::tell`].
+    /// Empty extrapolation, before the first sample.
     pub fn none() -> Extrapolation {
         let zeros = [0.0; DEGREE_MAX + 1];
         Extrapolation {
@@ -263,7 +264,7 @@ impl Extrapolation {
         self.foresee(&t, start + step);
     }
 
-    /// From samples at the times `t` to an end.
+    /// Extrapolation from samples at the times `t` to an end.
     fn foresee(&mut self, t: &[f64; SAMPLES_MAX], end: f64) {
         self.inverse = Reciprocals::new(t);
         let [h, e1, e2, e3] = [end - t[0], end - t[1], end - t[2], end - t[3]];
@@ -288,7 +289,7 @@ impl Extrapolation {
         ];
     }
 
-    /// The samples that count; the last ones are not in use where there are fewer.
+    /// Samples that count; the last ones are not in use where there are fewer.
     pub(super) fn pick<T: Copy>(&self, &[a, b, c, d, e, f]: &[T; SAMPLES_MAX]) -> [T; SAMPLES_MAX] {
         match self.all {
             true => [a, b, c, d, e, f],
@@ -302,7 +303,8 @@ impl Extrapolation {
         self.count.min(self.usable(newest))
     }
 
-    /// The same if there are no more. Where one of all is passed over, the highest degree is judged by one sample instead of two.
+    /// The same if there are no more. Where one of all is skipped, the highest degree is assessed by one sample
+    /// instead of two.
     fn usable(&self, newest: usize) -> usize {
         let passed_over = !self.all && (2..SAMPLES_MAX).contains(&newest);
         newest - usize::from(passed_over)

@@ -23,9 +23,9 @@
 use crate::model::{Contact, Line, Nodes, Point, Role};
 use crate::physics::seabed::REGULARISED_PENETRATION;
 
-/// Static compression that the line rests in the bed by [-].
+/// Static compression of the contact at which the line rests [-].
 const SUNK: f64 = 0.5;
-/// Elements over which the line comes up to a held end [-].
+/// Elements over which the line rises to a held end [-].
 const RISE: f64 = 3.0;
 /// The same over ℓ where the line bends, and at most over an element.
 const RISE_BENT: f64 = 5.0;

@@ -22,8 +22,8 @@ const MOMENTS: usize = 400;
 /// Parts of the length of a line below which two arc lengths are one [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Elements that every line is to have [-]: those of a line alone for the longest of lines that meet at free points, shares by length
-/// for the others.
+/// Elements of every line [-]: those of a line alone for the longest of lines that meet at free points, shares by
+/// length for the others.
 pub(super) fn elements(scene: &Scene) -> Vec<f64> {
     let alone = alone(scene);
     let pairs = lengths(scene).into_iter().zip(longest(scene));
