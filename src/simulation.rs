@@ -118,7 +118,7 @@ impl Simulation {
         still.snapshot.inputs = Inputs::new(&self.model);
         let model = Arc::make_mut(&mut still.model);
         model.waves = None;
-        // the shape that a beam is given may be the one that bends nothing, and is where its search begins
+        // the initial shape of a beam may be the one free of bending moments, and is the start of its search
         for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
             line.initial = InitialShape::Static;
         }

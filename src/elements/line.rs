@@ -14,7 +14,8 @@ use crate::physics::slender::Slender;
 use crate::physics::stretch::total_tension;
 use crate::physics::stretch_step::Stretched;
 
-/// Least length that a segment is stiff across by, over its unstretched length: one that is folded to nothing has no direction [-].
+/// Least length for the lateral stiffness of a segment, over its unstretched length: a segment folded to nothing has
+/// no direction [-].
 const FOLDED: f64 = 0.1;
 
 /// Scratch of a line.
@@ -26,7 +27,7 @@ pub(crate) struct LineWork {
     pub diagonal: Vec<Matrix3<f64>>,
     /// J of neighbouring nodes on each other, per segment: −A.
     pub coupling: Vec<Matrix3<f64>>,
-    /// Tension that the geometric stiffness is taken from, per segment [N]; statics predicts it.
+    /// Tension of the geometric stiffness, per segment [N]; predicted by statics.
     pub tension: Vec<f64>,
     /// Elastic and damping force of the segment at the last assembly [N], unclipped.
     pub elastic: Vec<f64>,
@@ -42,9 +43,9 @@ pub(crate) struct LineWork {
     pub reach: Vec<f64>,
     /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
     pub push: Vec<f64>,
-    /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
+    /// Drag of the current that statics keeps constant, per node [N]; empty where none acts.
     pub load: Vec<Vector3<f64>>,
-    /// Effect of the water's surface on every node; empty where the line does not meet it.
+    /// Effect of the water's surface on every node; empty where the line does not reach it.
     pub dry: Vec<Dry>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
@@ -62,7 +63,7 @@ pub(crate) struct LineWork {
     pub(super) chain: Chain<false>,
 }
 
-/// A segment as it lies.
+/// Geometry of a segment.
 pub(super) struct Geometry {
     /// Length [m].
     pub(super) length: f64,
@@ -365,7 +366,7 @@ impl LineWork {
         }
     }
 
-    /// Force of water that waves accelerate; it does not depend on the state but by the tangent, which is frozen.
+    /// Force of water that waves accelerate; it depends on the state only by the tangent, which is frozen.
     fn add_froude_krylov(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
         let (Some(pressed), Some(waves)) = (&line.nodes.froude_krylov, &water.waves) else {
             return;

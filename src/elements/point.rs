@@ -23,11 +23,11 @@ pub(crate) struct PointWork {
     pub solution: Vector3<f64>,
     /// Terms that the time integrator carries over from the last step [N].
     pub history: Vector3<f64>,
-    /// Half the range of penetrations over which its seabed damper fades in [m].
+    /// Half the range of penetrations over which the point's seabed damper fades in [m].
     pub reach: f64,
     /// Friction of the seabed at the last assembly [N].
     pub rubbed: Vector3<f64>,
-    /// Normal force that friction at rest may go by [N].
+    /// Normal force of the limit of friction at rest [N].
     pub pressed: f64,
 }
 impl PointWork {

@@ -59,7 +59,7 @@ pub(crate) fn stretch_step(
 /// Response of a segment to its strain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Response {
-    /// Elastic force, uncut [N].
+    /// Elastic force, before any limit [N].
     pub elastic: f64,
     /// Slope with the strain [N].
     pub tangent: f64,
@@ -70,7 +70,7 @@ pub(super) struct Response {
 /// Tension of a segment at the end of a step, from the last solution.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepEnd {
-    /// True where it pulls by the last solution, though its present nodes leave it slack.
+    /// True where the segment is taut in the last solution, though its present nodes leave it slack.
     pub keeps: bool,
     /// Tension by the last solution beyond that of its present nodes [N].
     pub excess: f64,

@@ -73,7 +73,8 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling by the last solution.
+    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling by the last
+    /// solution.
     #[inline(always)]
     pub(super) fn mean(&self, i: usize, strain: f64, keeps: bool) -> Mean {
         let ([before, slow], law) = (self.start[i], &self.laws[i]);

@@ -12,10 +12,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Which pivots an elimination takes.
+/// Pivots that an elimination accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pivots {
-    /// Positive ones, as they come; any other is reported.
+    /// Positive ones in the given order; any other is reported.
     Positive,
     /// Of either sign, the greatest of the rows of a block; only one that is zero is reported.
     Any,
@@ -63,18 +63,18 @@ pub struct Ends {
     pub b: Vector3<f64>,
 }
 
-/// A row that is not eliminated yet, as far as earlier nodes have changed it.
+/// Row that is not eliminated yet, including the changes by earlier nodes.
 #[derive(Clone, Copy)]
 struct Row {
-    /// On itself.
+    /// Block on itself.
     own: Matrix3<f64>,
-    /// On the next node.
+    /// Block on the next node.
     next: Matrix3<f64>,
-    /// On the node before.
+    /// Block on the node before.
     last: Matrix3<f64>,
-    /// On the first end.
+    /// Block on the first end.
     first: Matrix3<f64>,
-    /// Of the first end on this node.
+    /// Block of the first end on this node.
     border: Matrix3<f64>,
     /// Right-hand side.
     right: Vector3<f64>,
@@ -202,7 +202,7 @@ impl<const FAR: bool> Chain<FAR> {
 
 /// LU factors of a 3×3 matrix; the pivots are stored inverted.
 pub(super) struct Lu3 {
-    /// Which rows of the matrix its rows are.
+    /// Rows of the original matrix in the order of the factors.
     rows: [usize; 3],
     pivots: [f64; 3],
     inverse: [f64; 3],

@@ -61,7 +61,7 @@ impl Lanes {
         Lanes(from_fn(|i| self.0[i].abs()))
     }
 
-    /// max(x, 0), and 0 where x is not a number.
+    /// max(x, 0), and 0 where x is NaN.
     #[inline(always)]
     pub fn positive(self) -> Lanes {
         Lanes(from_fn(|i| if self.0[i] > 0.0 { self.0[i] } else { 0.0 }))

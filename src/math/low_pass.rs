@@ -4,8 +4,8 @@
 //!
 //!   b = K²/(1 + √2 K + K²) · [1, 2, 1],   a₁ = 2(K² − 1)/(1 + √2 K + K²),   a₂ = (1 − √2 K + K²)/(1 + √2 K + K²)
 //!
-//! Both passes together have no phase, gain ½ at f_c and fourth order beyond it. Each pass starts as if its first value had
-//! always been there.
+//! Both passes together have no phase, gain ½ at f_c and fourth order beyond it. Each pass starts from the steady
+//! state of its first value.
 //!
 //! Source: Butterworth (1930), Experimental Wireless 7, 536-541; the transform as in Oppenheim & Schafer (2010), Discrete-Time
 //! Signal Processing, section 7.2. Valid for f_c < 1/(2Δt); above, the signal is returned as it is.

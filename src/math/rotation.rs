@@ -37,7 +37,7 @@ pub fn cayley_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     2.0 * axial(rotation) / twice_cosine_half_squared.max(f64::MIN_POSITIVE)
 }
 
-/// T(θ): the spin that a change of the Cayley vector makes.
+/// T(θ): the spin that results from a change of the Cayley vector.
 #[inline(always)]
 pub fn spin_of_cayley(theta: Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() + 0.5 * skew(theta)) / (1.0 + 0.25 * theta.norm_squared())

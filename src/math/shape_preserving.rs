@@ -6,7 +6,6 @@
 //! given by [`End`]. Where a cubic then turns between two rows i and i + 1, its excursion beyond both is that of a
 //! smooth extremum if, with the divided second differences d_k = (s_k − s_{k−1})/(h_k + h_{k−1}) of the secants s and
 //! spans h,
-//! secants s and spans h,
 //!
 //!   excursion ≤ ¾ min|d_k| min(h_i, 2h_{i−1}, 2h_{i+1})²,   k = i − 1 … i + 2, all d_k of one sign,
 //!
@@ -103,7 +102,7 @@ fn secant(at: &[f64], values: &[f64], k: usize) -> f64 {
     (values[k + 1] - values[k]) / (at[k + 1] - at[k])
 }
 
-/// Slope at row i of the polynomial through it and up to two neighbours on either side; 0 where it is no number.
+/// Slope at row i of the polynomial through it and up to two neighbours on either side; 0 where it is NaN.
 fn quartic_slope(at: &[f64], values: &[f64], i: usize) -> f64 {
     let mut rows = [i; 5];
     let mut count = 0;
@@ -155,7 +154,8 @@ impl<'a> Limiter<'a> {
         }
     }
 
-    /// Limits both slopes of every cubic that turns without support. A row is limited once at most, and may make the cubic before it turn.
+    /// Limits both slopes of every cubic that turns without support. A row is limited at most once, which may cause
+    /// the cubic before it to turn.
     fn limit(&self, slopes: &mut [f64]) {
         let mut limited = vec![false; slopes.len()];
         let mut k = 0;
@@ -234,7 +234,7 @@ fn is_monotone(secant: f64, [start, end]: [f64; 2]) -> bool {
     steep <= 0.0 || 2.0 * a + b <= 3.0 || a + 2.0 * b <= 3.0 || least >= 0.0
 }
 
-/// By how much a cubic leaves the range of the values at its ends, with its slopes there times its span.
+/// Excursion of a cubic beyond the range of the values at its ends, with its slopes there times its span.
 fn excursion([low, high]: [f64; 2], [start, end]: [f64; 2]) -> f64 {
     let rise = high - low;
     let [b, c, d] = [start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise];

@@ -77,7 +77,7 @@ impl Eliminated {
         }
     }
 
-    /// Goes on to the row below, which is not the last.
+    /// Advances to the row below, which is not the last.
     #[inline(always)]
     pub fn eliminate(&self, row: &Equations) -> Eliminated {
         let zero = Lanes::splat(0.0);
@@ -100,7 +100,7 @@ impl Eliminated {
         }
     }
 
-    /// Goes on to the last row. Returns the last unknowns of the pieces before, and of the pieces themselves.
+    /// Advances to the last row. Returns the last unknowns of the pieces before, and of the pieces themselves.
     #[inline(always)]
     pub fn close(&self, row: &Equations) -> (Lanes, Lanes) {
         let zero = Lanes::splat(0.0);

@@ -1,4 +1,4 @@
-//! Reads a simulation into the plain numbers that the writers take.
+//! Reads a simulation into plain numbers for the writers.
 
 use nalgebra::Vector3;
 
@@ -132,7 +132,7 @@ pub fn flight(simulation: &Simulation, time: f64) -> Option<Flight> {
     })
 }
 
-/// The equilibrium that a simulation stands in.
+/// Static equilibrium of a simulation.
 pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
     json::Statics {
         title: scene.title.clone(),

@@ -95,7 +95,7 @@ pub struct ProfileNode {
 pub struct Point {
     /// Name of the point.
     pub name: String,
-    /// Who moves it, by the scene's word.
+    /// Origin of its motion, by the scene's word.
     pub kind: &'static str,
     /// Position [m].
     pub position: [f64; 3],
@@ -108,10 +108,10 @@ pub struct Point {
 pub struct Vessel {
     /// Name of the vessel.
     pub name: String,
-    /// Of closed-form catenaries, where the lines have them.
+    /// Stiffness from closed-form catenaries, where the lines have them.
     #[serde(flatten)]
     pub hold: Hold,
-    /// Of the lines' elements.
+    /// Stiffness from the lines' elements.
     pub elements: Hold,
 }
 

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 
 use crate::scene::Scene;
 
-/// Why something could not be written.
+/// Reason for which something could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// A folder could not be made.

@@ -26,7 +26,7 @@ pub struct NaturalModes {
 /// A natural mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mode {
-    /// Natural period [s]; `None` where nothing restores.
+    /// Natural period [s]; `None` without a restoring force.
     pub period: Option<f64>,
     /// Natural frequency [Hz].
     pub frequency: f64,

@@ -19,13 +19,13 @@ use crate::scene::{Scene, SceneError};
 /// Name of the scene below `resources/`.
 pub const SCENE_FILE: &str = "scene.toml";
 
-/// Why an FMU was not written.
+/// Reason for which an FMU was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum PackageError {
     /// The scene cannot be described.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The FMU library is not where it should be.
+    /// The FMU library is missing.
     #[error(
         "the FMU library {name} is not beside the program in {}: build it with `cargo build --release` in the workspace",
         folder.display()

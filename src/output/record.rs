@@ -47,11 +47,11 @@ pub struct Frame {
 pub struct Flight {
     /// Time [s].
     pub time: f64,
-    /// Energy of motion [J].
+    /// Kinetic energy [J].
     pub kinetic: f64,
-    /// Energy of strain [J].
+    /// Strain energy [J].
     pub strain: f64,
-    /// Energy of weight, above z = 0 [J].
+    /// Potential energy of weight, above z = 0 [J].
     pub gravitational: f64,
     /// Angular momentum about the origin [N m s].
     pub angular_momentum: [f64; 3],
@@ -108,19 +108,19 @@ pub struct Counters {
     pub substeps: u64,
     /// Simulated time [s].
     pub simulated: f64,
-    /// Time by the clock on the wall that the steps took.
+    /// Wall-clock time of the steps.
     pub wall: Duration,
 }
 
 impl Counters {
-    /// Simulated seconds per second by the clock [-]; `None` where no time was measured.
+    /// Simulated seconds per second of wall-clock time [-]; `None` where no time was measured.
     pub fn real_time_factor(&self) -> Option<f64> {
         let wall = self.wall.as_secs_f64();
         (wall > 0.0).then(|| self.simulated / wall)
     }
 }
 
-/// Everything that a run leaves behind.
+/// All results of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Description of the run, in a line.

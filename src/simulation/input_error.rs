@@ -26,15 +26,15 @@ use crate::dynamics::motion::AxesPath;
 use crate::model::{Model, Role};
 use crate::scene::Reconstruction;
 
-/// Error of tension over the share of the velocity that is missed [-].
+/// Error of tension over the relative error of velocity [-].
 const GAIN: f64 = 2.5;
-/// Periods of the motion over which mean values forget [-].
+/// Periods of the motion over which mean values decay [-].
 const PERIODS: f64 = 10.0;
-/// Periods that must have passed before a warning [-].
+/// Periods before a warning [-].
 const PERIODS_MIN: f64 = 3.0;
-/// Samples that do not count, from the start [-].
+/// Number of samples from the start that are not counted [-].
 const SAMPLES_MIN: usize = 8;
-/// Share of the scene's size that may be missed without any effect [-].
+/// Share of the scene's size below which an error has no effect [-].
 const NEGLIGIBLE: f64 = 1e-7;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;
@@ -42,7 +42,7 @@ const ORDER: f64 = 3.0;
 /// Mean squares of the motion given and of its extrapolation error.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct InputRecord {
-    /// Samples so far, up to those that do not count [-].
+    /// Samples so far, up to the number not counted [-].
     samples: usize,
     /// Time in the sums [s].
     time: f64,
@@ -58,7 +58,7 @@ pub(super) struct InputRecord {
     step: f64,
 }
 
-/// Squares of one sample, summed over all bodies: of m, v and a.
+/// Squares of one sample, summed over all bodies: those of m, v and a.
 type Squares = [f64; 3];
 
 impl InputRecord {
@@ -172,7 +172,7 @@ impl Simulation {
     }
 }
 
-/// A positive number with one digit, no greater than it is.
+/// Positive number with one digit, rounded down.
 fn rounded_down(number: f64) -> f64 {
     let unit = 10.0_f64.powi(number.log10().floor() as i32);
     let digits = (number / unit).floor().max(1.0);

@@ -67,7 +67,7 @@ impl VesselInput {
 }
 
 impl Simulation {
-    /// Sets where a coupled point is now, from its reference position [m].
+    /// Sets the present displacement of a coupled point from its reference position [m].
     pub fn set_displacement(&mut self, point: usize, displacement: [f64; 3]) {
         self.snapshot.inputs.points[point].displacement = displacement;
     }
@@ -77,7 +77,8 @@ impl Simulation {
         self.snapshot.inputs.points[point].displacement
     }
 
-    /// Sets how a coupled point moves now [m/s]; axes without a velocity are derived from the displacements.
+    /// Sets the present velocity of a coupled point [m/s]; axes without a velocity are derived from the
+    /// displacements.
     pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
         self.snapshot.inputs.points[point].rates = rates(velocity);
     }
