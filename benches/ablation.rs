@@ -139,7 +139,7 @@ fn taken_out() {
     table("oc3_catenary, n = 40, leapfrog", cases);
 }
 
-/// Prints the cost of scenes, beside the first.
+/// Prints the cost of scenes, compared with the first.
 fn table(title: &str, cases: Vec<(&str, Scene)>) {
     println!("{title:<34} {:>14} {:>10}", "ns/node/step", "of first");
     let mut first = None;

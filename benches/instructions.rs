@@ -1,6 +1,7 @@
-//! Instructions of fixed steps, counted by valgrind, against a table of this processor: what others run on the machine hardly moves them.
+//! Instructions of fixed steps, counted by valgrind, against a table of this processor: other programs on the machine
+//! hardly change them.
 //!
-//! `cargo bench --bench instructions` says what has changed, and fails where steps of a scene take over 3 % more than the table says.
+//! `cargo bench --bench instructions` prints the changes, and fails where steps of a scene take over 3 % more than the table says.
 //! `-- --write` makes the table of this machine, `benches/tables/<processor>.instructions.csv`. Where there is no valgrind or no table,
 //! nothing is claimed.
 //!

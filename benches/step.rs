@@ -42,7 +42,7 @@ const TURN: usize = 8;
 const TURNS: usize = 200;
 const REPETITIONS: usize = 60;
 
-/// Measures a part, and writes what it finds into the table.
+/// Measures a part, and writes the result into the table.
 type Part = fn(&mut String);
 
 fn main() -> ExitCode {
@@ -139,7 +139,7 @@ fn kernel_heading(kernel: &str, times: &str) {
     );
 }
 
-/// Notes what a step costs, [ns] with the widest vectors and with portable ones.
+/// Records the cost of a step, [ns] with the widest vectors and with portable ones.
 fn note_kernel(
     table: &mut String,
     (what, lines): (&str, usize),
@@ -178,7 +178,7 @@ fn kernels(table: &mut String) {
     }
 }
 
-/// The axial-implicit kernel alone, with what it prepares and hands back in an advance.
+/// The axial-implicit kernel alone, with its preparation and hand-over in an advance.
 fn axial_kernels(table: &mut String) {
     kernel_heading("axial-implicit", "steps");
     for name in SCENES {

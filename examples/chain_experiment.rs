@@ -41,7 +41,7 @@ pub struct Case {
     pub measured: f64,
 }
 
-/// How far the computed forces of all cases are from the measured ones.
+/// Distances of the computed forces of all cases from the measured ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
     /// Root of the mean square [N].

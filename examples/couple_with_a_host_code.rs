@@ -73,7 +73,7 @@ sections = [{ type = "chain", length = 450.0, elements = 40 }]
 const MASS: f64 = 4.0e6;
 /// Linear damping of the body [N s/m].
 const DAMPING: f64 = 1.0e4;
-/// Surge at which the body is let go [m].
+/// Surge at which the body is released [m].
 const RELEASE: f64 = 6.0;
 /// Communication step [s].
 const STEP: f64 = 0.1;

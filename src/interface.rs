@@ -1,10 +1,10 @@
 //! The one table of a scene's inputs, outputs and parameters: names, units, roles and bindings.
 //!
 //! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table, so
-//! that they cannot drift apart. The value reference of a variable is its position in the table, counted from 1.
+//! that they always agree. The value reference of a variable is its position in the table, counted from 1.
 //!
 //! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
-//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Releases and
+//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene requests them. Releases and
 //! winches have their rows between vessels and lines.
 
 mod dependencies;
@@ -22,10 +22,10 @@ use crate::simulation::{Simulation, reference_catenary};
 pub use parameters::{Parameter, Place};
 pub use results::{LineResult, SolverResult};
 
-/// Message for a value of an energy balance that the scene does not ask for.
+/// Message for a value of an energy balance that the scene does not request.
 const NO_BALANCE: &str = "the scene asks for no energy balance (`energy_balance` in [output])";
 
-/// Role of a variable in FMI's words.
+/// Role of a variable, by FMI's names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
     /// The host sets it before every step.
@@ -38,7 +38,7 @@ pub enum Causality {
     Parameter,
 }
 
-/// Times at which a variable may change, in FMI's words.
+/// Times at which a variable may change, by FMI's names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
     /// Not after initialization.
@@ -126,7 +126,7 @@ units! {
 }
 
 impl Unit {
-    /// The unit that a doc comment or the scene format writes as `N m²`; dimensionless where it is not known.
+    /// Unit written as `N m²` in a doc comment or the scene format; dimensionless where it is unknown.
     fn of_scene(text: &str) -> Unit {
         let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
         let found = Unit::ALL.iter().find(|unit| unit.name == name);
@@ -141,21 +141,21 @@ pub enum Binding {
     Displacement {
         /// The point or vessel.
         body: Body,
-        /// Its axis: x, y, z and of a vessel roll, pitch, yaw, 0 to 5.
+        /// Axis: x, y, z and of a vessel roll, pitch, yaw, 0 to 5.
         axis: usize,
     },
     /// Velocity of a coupled point or a vessel [m/s] or [rad/s].
     Velocity {
         /// The point or vessel.
         body: Body,
-        /// Its axis, 0 to 5.
+        /// Axis, 0 to 5.
         axis: usize,
     },
     /// Force of all lines on a coupled point or a vessel [N], and moment on a vessel [N m].
     EndForce {
         /// The point or vessel that the lines pull at.
         body: Body,
-        /// Its axis, 0 to 5.
+        /// Axis, 0 to 5.
         axis: usize,
     },
     /// Release of a line from a point.
@@ -163,7 +163,7 @@ pub enum Binding {
         /// The line.
         line: usize,
     },
-    /// Length that the winch of a line is to have paid out [m].
+    /// Length change of a line's winch [m].
     LengthChange {
         /// The line.
         line: usize,

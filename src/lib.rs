@@ -13,7 +13,7 @@
 //!
 //! SI units throughout. z points up, z = 0 is the still water level, the seabed lies at z = −depth. Lines run from end A (the
 //! anchor) to end B (the fairlead), and arc length counts unstretched metres from A. Forces at points are those that the
-//! mooring applies to what holds the point.
+//! mooring applies to the point's support.
 //!
 //! Layers point one way, each using those before it:
 //!

@@ -1,8 +1,8 @@
-//! One mooring that a host, the command line, a test or a bench drives: model, state and scratch behind one facade.
+//! One mooring, driven by a host, the command line, a test or a bench: model, state and scratch behind one facade.
 //!
 //! A scene is made discrete, its static equilibrium solved, and then [`Simulation::advance`] steps from one communication
-//! point to the next. Coupled points follow what [`Simulation::set_displacement`] says, or the scene's own motion after
-//! [`Simulation::follow_scene`].
+//! point to the next. Coupled points follow the displacements of [`Simulation::set_displacement`], or the scene's
+//! motion after [`Simulation::follow_scene`].
 
 mod input_error;
 mod inputs;
@@ -37,16 +37,16 @@ pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
 pub use watch::Watch;
 
-/// The shortest step that is made [s]. A host that cuts its last step to the end of its run asks for what its clock has summed up in
-/// rounding, some 1e-14 s. Over less than this, accelerations and rates of strain would be rounding of coordinates: the fairlead's force of a
-/// chain 800 m long would be off by thousandths of itself in a step of 1e-7 s and by five times itself in one of 1e-9 s. Such steps are made
-/// together with the next one.
+/// Shortest step that is integrated [s]. A host that cuts its last step to the end of its run may request the
+/// rounding of its clock as a step, some 1e-14 s. Over less than this, accelerations and rates of strain would be
+/// rounding of coordinates: the fairlead's force of a chain 800 m long would be off by thousandths of its value in a
+/// step of 1e-7 s and by five times its value in one of 1e-9 s. Such steps are integrated together with the next one.
 const STEP_MIN: f64 = 1e-6;
 
-/// Why a simulation could not be made.
+/// Reason for which a simulation could not be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The scene is wrong.
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// No static equilibrium was found.
@@ -54,7 +54,7 @@ pub enum Error {
     Statics(#[from] StaticsError),
 }
 
-/// All that changes in a simulation. Putting it back replays it bit for bit.
+/// All that changes in a simulation. Restoring it replays the simulation bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     state: State,
@@ -62,21 +62,21 @@ pub struct Snapshot {
     paths: Box<Paths>,
     follows_scene: bool,
     counters: Counters,
-    /// Kept where the scene asks for it.
+    /// Stored where the scene requests it.
     balance: Option<EnergyBalance>,
     start_time: f64,
     input_record: InputRecord,
-    /// By how much the host is ahead of the state, less than [`STEP_MIN`] [s].
+    /// Time by which the host is ahead of the state, less than [`STEP_MIN`] [s].
     ahead: f64,
 }
 
-/// A mooring in time.
+/// Mooring in time.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     model: Arc<Model>,
     snapshot: Snapshot,
     work: Integrators,
-    /// The paths of the step that is made.
+    /// Paths of the present step.
     paths: Box<Paths>,
     extrapolation: Extrapolation,
     prescribed: PrescribedMotion,
@@ -109,7 +109,7 @@ impl Simulation {
         })
     }
 
-    /// This mooring in static equilibrium at its reference positions: no shape that a line is given to start on, no motion, no waves.
+    /// This mooring in static equilibrium at its reference positions, without initial shapes, motion and waves.
     ///
     /// # Errors
     /// An equilibrium that does not exist.
@@ -118,7 +118,7 @@ impl Simulation {
         still.snapshot.inputs = Inputs::new(&self.model);
         let model = Arc::make_mut(&mut still.model);
         model.waves = None;
-        // the shape that a beam is given may be the one that bends nothing, and is where its search begins
+        // the initial shape of a beam may be the one free of bending moments, and is the start of its search
         for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
             line.initial = InitialShape::Static;
         }
@@ -126,18 +126,18 @@ impl Simulation {
         Ok(still)
     }
 
-    /// Starts again at rest, with coupled points that follow the scene's own motion exactly instead of what a host sets.
+    /// Restarts at rest, with coupled points that follow the scene's motion exactly instead of the inputs of a host.
     ///
     /// # Errors
-    /// As [`Simulation::new`]; the simulation is then as it was.
+    /// As for [`Simulation::new`]; the simulation is then unchanged.
     pub fn follow_scene(&mut self) -> Result<(), Error> {
         self.begin(self.time(), true, start::Shapes::AsGiven)
     }
 
-    /// Starts again at rest, at a start time [s] and the displacements set so far.
+    /// Restarts at rest, at a start time [s] and the displacements set so far.
     ///
     /// # Errors
-    /// As [`Simulation::new`]; the simulation is then as it was.
+    /// As for [`Simulation::new`]; the simulation is then unchanged.
     pub fn restart(&mut self, start_time: f64) -> Result<(), Error> {
         let follows_scene = self.snapshot.follows_scene;
         self.begin(start_time, follows_scene, start::Shapes::AsGiven)
@@ -176,7 +176,7 @@ impl Simulation {
         &self.snapshot
     }
 
-    /// Puts back what [`Simulation::snapshot`] gave.
+    /// Restores a snapshot of [`Simulation::snapshot`].
     pub fn restore(&mut self, snapshot: Snapshot) {
         self.snapshot = snapshot;
         self.paths.clone_from(&self.snapshot.paths);
@@ -187,21 +187,21 @@ impl Simulation {
         winches::follow(&mut self.model, &self.snapshot.state);
     }
 
-    /// Which integrator serves each network, and its step limits.
+    /// Integrator of each network, with its step limits.
     pub fn choices(&self) -> impl Iterator<Item = &Choice> {
         self.work.choices()
     }
 
-    /// How many threads share communication steps of a length [s], and why.
+    /// Number of threads that share communication steps of a length [s], with the reason.
     pub fn threads_in_words(&self, length: f64) -> String {
         self.work.threads_in_words(length)
     }
 
-    /// Steps from the present time to `step` [s] later. A step of 0 s does nothing. Steps of less than a microsecond leave the state as it
-    /// is until they add up to one.
+    /// Steps from the present time to `step` [s] later. A step of 0 s does nothing. Steps of less than a microsecond
+    /// leave the state unchanged until they add up to one.
     ///
     /// # Errors
-    /// The state stays as it was.
+    /// The state is unchanged.
     pub fn advance(&mut self, step: f64) -> Result<(), StepError> {
         if step <= 0.0 {
             return Ok(());
@@ -244,7 +244,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Refuses inputs that lead too far in a step [s].
+    /// Refuses inputs that exceed the limits of a step [s].
     fn check_inputs(&self, step: f64) -> Result<(), StepError> {
         let (snapshot, time) = (&self.snapshot, self.snapshot.state.time);
         match snapshot.follows_scene {
@@ -253,7 +253,7 @@ impl Simulation {
         }
     }
 
-    /// Parts the lines from their points that are to let go; returns the state before.
+    /// Releases the lines from their points as commanded; returns the state before.
     fn release_lines(&mut self) -> Option<(State, Option<EnergyBalance>)> {
         if !self.snapshot.inputs.releases.contains(&true) {
             return None;

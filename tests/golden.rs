@@ -1,7 +1,7 @@
-//! Reference values of the public scenes, with the work they took. `tests/reference/golden.csv` says what made it.
+//! Reference values of the public scenes, with their work. `tests/reference/golden.csv` names their origin.
 //!
-//! A change of these numbers is a change of results or of cost: write the file anew with
-//! `cargo test --test golden -- --ignored write_the_reference_values` and say why in the commit.
+//! A change of these numbers is a change of results or of cost: write the file again with `cargo test --test golden
+//! -- --ignored write_the_reference_values` and give the reason in the commit.
 
 mod common;
 

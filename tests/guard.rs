@@ -1,7 +1,8 @@
 //! Work of the shipped scenes at their default settings: elements, linear solves of the equilibrium, internal steps, solves of the motion.
-//! `tests/reference/work.csv` holds the counts of before. Counters do not depend on the machine, so that a change shows its cost.
+//! `tests/reference/work.csv` holds the earlier counts. Counters do not depend on the machine, so that a change shows
+//! its cost.
 //!
-//! A change that is meant writes the table anew, for the commit to show the difference and to say why:
+//! For an intended change the table is written again, so that the commit shows the difference with its reason:
 //!
 //! ```text
 //! cargo test --test guard -- --ignored write_the_table_of_work
@@ -84,7 +85,7 @@ impl fmt::Display for Work {
     }
 }
 
-/// Linear solves of the equilibrium at the reference positions [-]; none of lines whose shapes are given.
+/// Linear solves of the equilibrium at the reference positions [-]; none for lines whose shapes are given.
 fn statics(simulation: &Simulation) -> usize {
     let model = simulation.model();
     let mut work = Workspace::new(model);

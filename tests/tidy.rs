@@ -26,8 +26,8 @@ const LAYERS: [&str; 11] = [
     "output",
 ];
 
-/// The packages of the workspace, each with those it may use: the library uses none, the program and what goes into an FMU stand
-/// on top.
+/// Packages of the workspace, each with those it may use: the library uses none; the program and the code of an FMU
+/// are on top.
 const PACKAGES: [(&str, &[&str]); 7] = [
     (".", &[]),
     ("accuracy", &["moorline"]),
@@ -108,7 +108,7 @@ impl Source {
         calls.map(move |i| (self.tokens[i].line, format!("{name}!")))
     }
 
-    /// The bracket that closes what is open at a token.
+    /// Bracket that closes the one at a token.
     fn closing(&self, open: usize) -> usize {
         let mut depth = 0;
         let closes = |i: &usize| {
@@ -231,7 +231,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Files of the repository with one of these extensions, without what builds and tools leave behind.
+/// Files of the repository with one of these extensions, without the output of builds and tools.
 fn files(folder: &Path, extensions: &[&str], found: &mut Vec<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;

@@ -1,9 +1,10 @@
-//! The converged solution of a scene, and how far it has converged.
+//! Converged solution of a scene, and its distance from convergence.
 //!
-//! Meshes are made finer and finer, and the one that lies closest to the one before it is taken; their distance is its uncertainty. Under a
-//! well-posed law that is the finest. Where damping acts in compression a slack line without bending stiffness is ill posed: its short
-//! waves grow, and meshes beyond some fineness lead away again. A bed softened with the mesh and one as given have the same limit and come
-//! near it at different rates; the better of the two is followed.
+//! Meshes are refined step by step, and the one closest to the mesh before it is taken; their distance is its
+//! uncertainty. Under a well-posed law that is the finest. Where damping acts in compression a slack line without
+//! bending stiffness is ill posed: its short waves grow, and meshes beyond some fineness diverge again. A bed
+//! softened with the mesh and one as given have the same limit and converge to it at different rates; the better of
+//! the two is used.
 
 use moorline::scene::Scene;
 
@@ -30,8 +31,8 @@ struct Sequence {
 }
 
 impl Converged {
-    /// Finds it by the first family of settings that serves.
-    pub fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
+    /// Finds it by the first applicable family of settings.
+    pub(crate) fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
         let name = || name.to_string();
         let mut reason = String::new();
         for family in ladder::converged(scene, shortest_period(scene)) {

@@ -98,8 +98,9 @@ impl Judge {
         ])
     }
 
-    /// Uncertainty of a solution, from its distance to one on another mesh. Two greatest tensions may agree by chance where the
-    /// histories do not: the peak is known no better than the tension is on the whole, its RMS distance over its range.
+    /// Uncertainty of a solution, from its distance to one on another mesh. Two greatest tensions may agree by chance
+    /// where the histories do not: the uncertainty of the peak is at least that of the whole tension, its RMS
+    /// distance over its range.
     pub fn uncertainty(&self, coarse: &Histories, fine: &Histories) -> Errors {
         let mut errors = self.errors(coarse, fine);
         let tensions = coarse.tension.iter().zip(&fine.tension);
@@ -156,7 +157,7 @@ fn range(values: &[f64]) -> f64 {
     greatest(values) - values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// The greatest; what is no number is infinitely wrong.
+/// Greatest of the errors; NaN counts as infinite.
 fn worst(errors: impl Iterator<Item = f64>) -> f64 {
     let finite = |error: f64| {
         if error.is_finite() { error } else { f64::INFINITY }

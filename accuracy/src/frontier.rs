@@ -153,7 +153,7 @@ fn shown_runs(study: &Study, metric: Metric, code: &Code) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The staircase of a frontier: what an error costs at least.
+/// Staircase of a frontier: the least cost of an error.
 fn frontier(study: &Study, metric: Metric, codes: impl Fn(&Code) -> bool) -> Vec<[f64; 2]> {
     let runs = study.frontier(metric, codes);
     let runs = runs.into_iter().filter(|run| run.errors.of(metric) <= ERROR_MAX);

@@ -31,8 +31,8 @@ const STEPS_AXIAL: [f64; 20] = [
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
 /// Communication steps over the interval of the output that explicit runs are tried with [-].
 const COMMUNICATIONS: [usize; 10] = [1, 2, 3, 4, 8, 10, 13, 16, 20, 28];
-/// Elements up to which explicit runs are tried with more than the first of them [-]: what a communication step costs does not
-/// count on finer meshes.
+/// Elements up to which explicit runs are tried with more than the first of the communication steps [-]: the cost of
+/// a communication step is negligible on finer meshes.
 const COMMUNICATING_ELEMENTS: usize = 32;
 /// Communication steps to the shortest period, at least [-]: the motion in between is a cubic, and histories are read by cubics.
 const COMMUNICATIONS_PER_PERIOD: f64 = 5.0;
@@ -109,7 +109,7 @@ impl Setting {
         if self.tolerance.is_none() {
             scene.solver.input_reconstruction = Reconstruction::Interpolate;
         }
-        // A step that is not given is limited by the integrator's own rules only.
+        // A missing step is limited by the integrator's rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
         // Processor time is that of one thread, as that of other codes.
@@ -137,8 +137,8 @@ impl Setting {
     }
 }
 
-/// The ladder of a scene whose motion has this shortest period [s].
-pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
+/// Ladder of a scene whose motion has this shortest period [s].
+pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     if is_quasi_static(scene) {
         return ELEMENTS_STATIC.map(quasi_static).into();
     }
@@ -169,7 +169,7 @@ pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
 }
 
 /// Returns whether a scene is quasi-static: dynamics is then no measure of it.
-pub fn is_quasi_static(scene: &Scene) -> bool {
+pub(crate) fn is_quasi_static(scene: &Scene) -> bool {
     scene.solver.integrator == Integrator::QuasiStatic
 }
 
@@ -231,10 +231,10 @@ fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
     }
 }
 
-/// Families of settings for a converged solution, in the order they are tried: the first that serves the scene is taken. Each holds one or
+/// Families of settings for a converged solution, in the order they are tried: the first that applies to the scene is taken. Each holds one or
 /// more sequences of finer and finer settings, the best of which is followed to its end: a bed may be softened with the mesh, or have the
 /// scene's own coefficients.
-pub fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
+pub(crate) fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
     if is_quasi_static(scene) {
         return vec![vec![CONVERGED_ELEMENTS_STATIC.map(quasi_static).into()]];
     }

@@ -1,8 +1,9 @@
 //! Speed against error: a scene run with a ladder of meshes, integrators and steps, each judged against a converged solution.
 //!
-//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven as the
-//! peers are: a host gives position and velocity of the fairlead, one communication step after the other. The runs that the
-//! verdicts name are timed in several rounds, own and peers' in turn. Errors are those of [`errors`], over the second half
+//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline
+//! is driven like the peers: a host gives position and velocity of the fairlead, one communication step after the
+//! other. The runs that the verdicts name are timed in several rounds, own and peers' alternately. Errors are those
+//! of [`errors`], over the second half
 //! of the run. The converged solution is the best of a sequence of fine meshes, its uncertainty the distance from the one of half its
 //! resolution: nothing below that is a statement.
 //!
@@ -43,7 +44,7 @@ const PERIOD: f64 = 10.0;
 pub enum Code {
     /// moorline with this integrator.
     Own(Integrator),
-    /// moorline with what it chose itself.
+    /// moorline with its default choices.
     Chosen,
     /// Another code, by name.
     Peer(String),
@@ -117,7 +118,7 @@ impl Run {
 pub struct Failed {
     /// Code, mesh and step.
     pub label: String,
-    /// Its message.
+    /// Message of the failure.
     pub reason: String,
 }
 
@@ -147,7 +148,7 @@ pub struct Study {
 /// Reason why a scene cannot be studied.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// Nothing serves for a converged solution.
+    /// No family of settings gives a converged solution.
     #[error("no converged solution of {name}: {reason}")]
     NotConverged {
         /// The scene.
@@ -230,7 +231,7 @@ pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
 }
 
 impl Study {
-    /// Runs all settings but those that come to the same as one before.
+    /// Runs all settings except those equivalent to an earlier one.
     fn climb(
         &mut self,
         scene: &Scene,
@@ -323,7 +324,7 @@ fn code(setting: &Setting) -> Code {
     }
 }
 
-/// Mesh and step of a run, in words; what became of the bed, where there is one.
+/// Mesh and step of a run, in words, with the treatment of the bed, where there is one.
 fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
     let communication = timed.communication.map_or(String::new(), |step| {
         format!(", communication step {}", seconds(step))
@@ -391,7 +392,7 @@ mod tests {
     use super::*;
 
     /// A study of these runs, certain to 0.1 %.
-    pub fn study_of(runs: Vec<Run>) -> Study {
+    pub(crate) fn study_of(runs: Vec<Run>) -> Study {
         Study {
             name: "scene".to_string(),
             title: "a scene".to_string(),
@@ -411,12 +412,12 @@ mod tests {
     }
 
     /// A run of moorline with one error [-] in all respects.
-    pub fn own(cost: f64, error: f64) -> Run {
+    pub(crate) fn own(cost: f64, error: f64) -> Run {
         run_of(Code::Own(Integrator::Leapfrog), cost, error)
     }
 
     /// A run of a peer with one error [-] in all respects.
-    pub fn peer(name: &str, cost: f64, error: f64) -> Run {
+    pub(crate) fn peer(name: &str, cost: f64, error: f64) -> Run {
         run_of(Code::Peer(name.to_string()), cost, error)
     }
 

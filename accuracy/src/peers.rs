@@ -58,7 +58,7 @@ pub enum PeerError {
     NoPackages {
         /// The interpreter.
         python: PathBuf,
-        /// Its message.
+        /// Message of the peer.
         said: String,
     },
     /// The script cannot be put into the folder.

@@ -1,9 +1,10 @@
-//! Timing again, own runs and peers' in turn, what the verdicts rest on.
+//! Repeated timing, of moorline's and peers' runs alternately, on which the verdicts rest.
 //!
-//! A cheapest run is the least of many timings and so the luckiest; and what shares the machine changes from minute to minute. Every run
-//! that a verdict or the tool's own choice names is therefore timed in several rounds, each of which takes moorline and peers in turn.
-//! The cost is the least of the rounds, the spread their range. A run that was slowed when it was first timed is named by none: at the
-//! levels that moorline is held to, runs that cost little more than the cheapest of their code are timed so too.
+//! A cheapest run is the least of many timings and so biased low, and the load of the machine changes from minute to
+//! minute. Every run named by a verdict or chosen by default is therefore timed in several rounds, each of which
+//! takes moorline and peers alternately. The cost is the least of the rounds, the spread their range. A run that was
+//! slowed in its first timing is not named; at the levels that moorline is held to, runs that cost little more than
+//! the cheapest of their code are therefore timed in rounds too.
 
 use moorline::scene::Scene;
 
@@ -21,7 +22,7 @@ const PASSES_MAX: usize = 8;
 const CONTENDER_COST: f64 = 1.5;
 
 impl Study {
-    /// Times in rounds what the verdicts name.
+    /// Times the runs that the verdicts name in rounds.
     pub(crate) fn settle(&mut self, scene: &Scene, mut peers: Option<&mut Conversation>) {
         for _ in 0..PASSES_MAX {
             let open = self.unsettled();

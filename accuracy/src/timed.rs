@@ -1,8 +1,9 @@
-//! One run of a scene: its histories and what they cost.
+//! One run of a scene: its histories and their cost.
 //!
-//! A timed run is driven as a host drives it: before every communication step it is given displacement and velocity of the moving bodies,
-//! made beforehand: at the end of the step, as the peers are, or with [`Reconstruction::Smooth`] at its start, and nothing later. The
-//! converged solution follows the scene's motion exactly.
+//! A timed run is driven like a run under a host: before every communication step it is given displacement and
+//! velocity of the moving bodies, computed beforehand: at the end of the step, as for the peers, or with
+//! [`Reconstruction::Smooth`] at its start, and nothing later. The converged solution follows the scene's motion
+//! exactly.
 
 use std::hint::black_box;
 
@@ -55,7 +56,7 @@ pub(crate) struct Timed {
 
 impl Timed {
     /// Returns whether any tension changes.
-    pub fn moves(&self) -> bool {
+    pub(crate) fn moves(&self) -> bool {
         let changes = |tension: &Vec<f64>| {
             let (first, last) = (tension.first(), tension.len() / 2);
             let scale = first.map_or(0.0, |t| t.abs());
@@ -69,7 +70,7 @@ impl Timed {
 
 impl Trial {
     /// A run driven as a host drives it; the error is a message.
-    pub fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+    pub(crate) fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let interval = scene.output.interval;
         let step = setting.communication as f64 * interval;
         let samples = samples(scene);
@@ -95,7 +96,7 @@ impl Trial {
     }
 
     /// A run that follows the scene's motion exactly.
-    pub fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+    pub(crate) fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
         start.follow_scene().map_err(|error| error.to_string())?;
         let samples = samples(scene);
@@ -111,7 +112,7 @@ impl Trial {
     }
 
     /// Integrator and planned steps in a communication step, by network: two runs with one mesh and the same plan are the same.
-    pub fn plan(&self) -> Vec<(Integrator, usize)> {
+    pub(crate) fn plan(&self) -> Vec<(Integrator, usize)> {
         let steps = |step_max: f64| (self.step / step_max - 1e-9).ceil() as usize;
         let choices = self.start.choices();
         choices
@@ -119,8 +120,9 @@ impl Trial {
             .collect()
     }
 
-    /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short ones are timed anew.
-    pub fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
+    /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short
+    /// ones are timed again without reading.
+    pub(crate) fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
         let mut record = Record::new(&self.start, self.count);
         let mut steps = 0;
         let elapsed = self.step_through(|simulation| {
@@ -142,7 +144,7 @@ impl Trial {
     }
 
     /// Processor time over simulated time [-], the median of a few passes that read nothing.
-    pub fn cost(&self) -> Result<f64, String> {
+    pub(crate) fn cost(&self) -> Result<f64, String> {
         let mut times = Vec::with_capacity(PASSES_MAX);
         while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
             times.push(self.step_through(|simulation| {
@@ -208,7 +210,7 @@ impl Record {
         }
     }
 
-    /// Histories after every interval [s] of what was read after every step [s].
+    /// Histories after every interval [s] of the samples taken after every step [s].
     fn sampled(self, step: f64, interval: f64, samples: usize) -> Histories {
         let parts = step / interval;
         let tension = self.tension.into_iter();

@@ -36,7 +36,7 @@ const ENOUGH: f64 = 0.02;
 
 /// Studies scenes, with their own motion or with a given one, prints the cost of each level of error and writes tables and figures into
 /// a folder.
-pub fn accuracy(
+pub(crate) fn accuracy(
     paths: &[PathBuf],
     supplement: &Supplement,
     drive: &Drive,
@@ -61,7 +61,7 @@ pub fn accuracy(
         bar.finish_and_clear();
         let done = done.map_err(|error| Failure::Computation(error.to_string()))?;
         studies.push(done);
-        // After every scene: an interrupted run keeps what it has.
+        // Written after every scene: an interrupted run keeps the finished ones.
         write_studies(&machine, &studies, folder)?;
         let last = studies.last().map(told).unwrap_or_default();
         printed = printed.and_then(|()| print(&last));

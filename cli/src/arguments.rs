@@ -9,7 +9,7 @@ use moorline_decks::Supplement;
 /// Mooring-line dynamics: statics, time-domain runs, FMUs.
 #[derive(Debug, Parser)]
 #[command(name = "moorline", version, arg_required_else_help = true, after_help = EXIT_CODES)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// The command and its arguments.
     #[command(subcommand)]
     pub command: Command,
@@ -19,7 +19,7 @@ const EXIT_CODES: &str =
     "Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Say in words what a scene models and what it does not; find every mistake
     Check {
         #[command(flatten)]
@@ -111,9 +111,9 @@ pub enum Command {
     },
 }
 
-/// A file to read, with what a deck leaves to its host.
+/// Input file, with the data that a deck leaves to its host.
 #[derive(Debug, Args)]
-pub struct Input {
+pub(crate) struct Input {
     /// Scene of moorline, or deck of MoorDyn or MAP++
     pub scene: PathBuf,
     #[command(flatten)]
@@ -122,7 +122,7 @@ pub struct Input {
 
 /// Values that a deck of another program leaves to its host.
 #[derive(Debug, Args)]
-pub struct FromHost {
+pub(crate) struct FromHost {
     /// Water depth D [m], where a deck leaves it to its host
     #[arg(long, value_name = "D", value_parser = positive_number)]
     depth: Option<f64>,
@@ -136,7 +136,7 @@ pub struct FromHost {
 
 impl FromHost {
     /// The same for the reader of decks.
-    pub fn supplement(&self) -> Supplement {
+    pub(crate) fn supplement(&self) -> Supplement {
         Supplement {
             depth: self.depth,
             positions: self.at.iter().cloned().collect(),

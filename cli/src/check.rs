@@ -1,4 +1,4 @@
-//! `moorline check`: what a scene models, in words.
+//! `moorline check`: description of a scene's model, in words.
 
 use moorline::discretisation;
 use moorline::dynamics::Choice;
@@ -13,8 +13,8 @@ use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::terminal::{noted, print};
 
-/// Reads a scene, makes it discrete, and prints what it models, notes on it, and the variables of its FMU.
-pub fn check(input: &Input) -> Result<(), Failure> {
+/// Reads a scene, discretises it, and prints a description of its model, notes on it, and the variables of its FMU.
+pub(crate) fn check(input: &Input) -> Result<(), Failure> {
     let loaded = load_with(&input.scene, &input.host.supplement())?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let settled = discretisation::select(&loaded.scene);

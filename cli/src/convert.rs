@@ -12,8 +12,8 @@ use crate::failure::Failure;
 use crate::folder::{Folder, check_apart};
 use crate::terminal::print;
 
-/// Reads a deck with what it leaves to its host, and writes the same system as a scene with comments.
-pub fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Result<(), Failure> {
+/// Reads a deck with the data that it leaves to its host, and writes the same system as a scene with comments.
+pub(crate) fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Result<(), Failure> {
     check_file(target)?;
     check_apart(path, target)?;
     let _open = Folder::of_file(target);

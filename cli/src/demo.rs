@@ -23,8 +23,8 @@ use crate::terminal::{discretise, print, progress, simulate};
 /// The built-in scene.
 const SCENE: &str = include_str!("../../scenes/demo.toml");
 
-/// Packages the built-in scene, drives the FMU, shows and writes what comes out.
-pub fn demo(folder: &Path) -> Result<(), Failure> {
+/// Packages the built-in scene, drives the FMU, shows and writes the results.
+pub(crate) fn demo(folder: &Path) -> Result<(), Failure> {
     let mut loaded = load_text(Path::new("demo.toml"), SCENE.to_string())?;
     discretise(&mut loaded, discretisation::select);
     let _open = Folder::open(folder)?;

@@ -10,7 +10,7 @@ use moorline::output::package::PackageError;
 use moorline::scene::{LoadError, LoadedScene, SceneError};
 use moorline::simulation;
 
-/// The input is wrong, or a path that is to be read or written.
+/// The input is wrong, or a path cannot be read or written.
 const INPUT: u8 = 2;
 /// The computation failed.
 const COMPUTATION: u8 = 1;
@@ -19,7 +19,7 @@ const WIDTH: usize = 110;
 
 /// Failure of a command.
 #[derive(Debug)]
-pub enum Failure {
+pub(crate) enum Failure {
     /// The scene cannot be read, or is wrong.
     Scene(LoadError),
     /// An argument is wrong.
@@ -32,7 +32,7 @@ pub enum Failure {
 
 impl Failure {
     /// A mistake that shows only when the scene is made discrete or brought to equilibrium.
-    pub fn of_simulation(error: simulation::Error, loaded: &LoadedScene) -> Failure {
+    pub(crate) fn of_simulation(error: simulation::Error, loaded: &LoadedScene) -> Failure {
         match error {
             simulation::Error::Scene(mistake) => Failure::of_scene(mistake, loaded),
             simulation::Error::Statics(error) => Failure::Computation(error.to_string()),
@@ -40,7 +40,7 @@ impl Failure {
     }
 
     /// A mistake in a scene that has been read.
-    pub fn of_scene(mistake: SceneError, loaded: &LoadedScene) -> Failure {
+    pub(crate) fn of_scene(mistake: SceneError, loaded: &LoadedScene) -> Failure {
         Failure::Scene(LoadError::Scene {
             path: loaded.path.clone(),
             text: loaded.text.clone(),
@@ -49,7 +49,7 @@ impl Failure {
     }
 
     /// A package that was not written.
-    pub fn of_package(error: PackageError, loaded: &LoadedScene) -> Failure {
+    pub(crate) fn of_package(error: PackageError, loaded: &LoadedScene) -> Failure {
         match error {
             PackageError::Scene(mistake) => Failure::of_scene(mistake, loaded),
             PackageError::Output(error) => error.into(),
@@ -58,7 +58,7 @@ impl Failure {
     }
 
     /// A file that was not written: its path is wrong, or the disk is full or broken.
-    pub fn of_file(kind: ErrorKind, text: String) -> Failure {
+    pub(crate) fn of_file(kind: ErrorKind, text: String) -> Failure {
         match kind {
             ErrorKind::NotFound
             | ErrorKind::PermissionDenied
@@ -71,8 +71,8 @@ impl Failure {
         }
     }
 
-    /// Says on standard error what went wrong, and returns the exit code. Who closed the pipe has read enough.
-    pub fn tell(self) -> ExitCode {
+    /// Reports the failure on standard error, and returns the exit code. A closed pipe is no failure of the reader.
+    pub(crate) fn tell(self) -> ExitCode {
         let (code, text) = match self {
             Failure::Print(error) if error.kind() == ErrorKind::BrokenPipe => {
                 return ExitCode::SUCCESS;

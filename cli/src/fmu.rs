@@ -15,7 +15,7 @@ use crate::folder::{Folder, check_apart};
 use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
-pub fn fmu(input: &Input, target: &Path, version: &str) -> Result<(), Failure> {
+pub(crate) fn fmu(input: &Input, target: &Path, version: &str) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     check_file(target)?;
     check_apart(&input.scene, target)?;
@@ -33,7 +33,7 @@ pub fn fmu(input: &Input, target: &Path, version: &str) -> Result<(), Failure> {
 }
 
 /// Writes the FMU of a scene; its name appears when the file is whole.
-pub fn package(loaded: &LoadedScene, target: &Path, version: FmiVersion) -> Result<(), Failure> {
+pub(crate) fn package(loaded: &LoadedScene, target: &Path, version: FmiVersion) -> Result<(), Failure> {
     let written =
         find_library().and_then(|library| write_fmu(&loaded.scene, &loaded.text, version, &library, target));
     written.map_err(|error| Failure::of_package(error, loaded))

@@ -1,5 +1,5 @@
-//! The folder that a command writes into: made and tried before any work, and gone again where nothing came to be in it. What an interrupted
-//! command leaves behind.
+//! Folder that a command writes into: made and tested before any work, and removed again where it stays empty. Also
+//! the message on the results that an interrupted command leaves behind.
 
 use std::fs;
 use std::io::{self, Write};
@@ -10,13 +10,13 @@ use moorline::output::{open_folder, remove_partial};
 
 use crate::failure::Failure;
 
-/// Exit code of a program that Ctrl-C ends, as shells have it: 128 and the signal's number.
+/// Exit code of a program that Ctrl-C ends, by the convention of shells: 128 and the signal's number.
 const INTERRUPTED: i32 = 130;
 
-/// Where the command writes, as long as it does.
+/// Place that the command writes to, while it does.
 static OPEN: Mutex<Option<Place>> = Mutex::new(None);
 
-/// A folder that files come to be in.
+/// Folder that files are written into.
 #[derive(Debug, Clone)]
 struct Place {
     path: PathBuf,
@@ -28,11 +28,12 @@ struct Place {
 
 /// A folder that is open for results as long as this lives.
 #[derive(Debug)]
-pub struct Folder(Place);
+pub(crate) struct Folder(Place);
 
 impl Folder {
-    /// Makes a folder where it is missing, and checks that it takes files. An interrupted command names what is kept in it.
-    pub fn open(path: &Path) -> Result<Folder, Failure> {
+    /// Makes a folder where it is missing, and checks that files can be written there. An interrupted command names
+    /// the results kept in it.
+    pub(crate) fn open(path: &Path) -> Result<Folder, Failure> {
         let above = path.ancestors();
         let missing = above.take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let made = missing.map(Path::to_path_buf).collect();
@@ -41,7 +42,7 @@ impl Folder {
     }
 
     /// The folder of one file, whose beginning an interrupted command removes.
-    pub fn of_file(target: &Path) -> Folder {
+    pub(crate) fn of_file(target: &Path) -> Folder {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
         Folder::of(folder.unwrap_or(Path::new(".")), Vec::new(), false)
     }
@@ -91,7 +92,7 @@ impl Place {
         }
     }
 
-    /// Removes what is not whole; returns whether results are left.
+    /// Removes incomplete files; returns whether results are left.
     fn clear(&self) -> bool {
         remove_partial(&self.path);
         self.remove_empty();
@@ -99,8 +100,8 @@ impl Place {
     }
 }
 
-/// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on what is kept.
-pub fn end_on_interrupt() {
+/// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on the results kept.
+pub(crate) fn end_on_interrupt() {
     // Without a handler, they end the program as they end any other.
     let _ = ctrlc::set_handler(|| {
         let kept = match set_open(None).filter(Place::clear) {

@@ -21,7 +21,7 @@ const DIGITS: usize = 6;
 
 /// Options of the command.
 #[derive(Debug)]
-pub struct Shown<'a> {
+pub(crate) struct Shown<'a> {
     /// Modes, of all lines together.
     pub count: usize,
     /// JSON in place of a table.
@@ -31,7 +31,7 @@ pub struct Shown<'a> {
 }
 
 /// Finds the lowest modes, prints them and draws them.
-pub fn modes(input: &Input, shown: &Shown) -> Result<(), Failure> {
+pub(crate) fn modes(input: &Input, shown: &Shown) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Some(water) = &mut loaded.scene.water {
         water.waves = None; // an equilibrium is that of the sea at rest

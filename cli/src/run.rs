@@ -19,16 +19,16 @@ use crate::folder::Folder;
 use crate::summary::run_summary;
 use crate::terminal::{discretise, print, progress, read_scene, remark, remark_all, simulate};
 
-/// Shapes kept of a run whose scene does not ask for all of them [-].
+/// Number of shapes kept of a run whose scene does not request all of them [-].
 const FRAMES_MAX: usize = 240;
 
 /// Coupling of the motion to the mooring.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Pace {
+pub(crate) enum Pace {
     /// Exactly.
     Scene,
     /// The scene's motion as a host gives it, at communication points only: before every step where it starts, or where it ends if
-    /// that is what inputs are to mean.
+    /// the inputs have that meaning.
     Host {
         /// Communication step [s].
         step: f64,
@@ -48,7 +48,7 @@ impl Pace {
 }
 
 /// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
-pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<(), Failure> {
+pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Pace::Host { .. } = pace
         && let Some(packaged) = discretisation::frozen(&loaded.scene)
@@ -211,7 +211,7 @@ impl Recorder<'_> {
 
 /// Output times: multiples of an interval, and the end.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Times {
+pub(crate) struct Times {
     interval: f64,
     /// End [s].
     pub end: f64,
@@ -221,14 +221,14 @@ pub struct Times {
 
 impl Times {
     /// Times from 0 to `end` [s] every `interval` [s]; the last step is shorter where the interval does not divide the end.
-    pub fn new(end: f64, interval: f64) -> Times {
+    pub(crate) fn new(end: f64, interval: f64) -> Times {
         // A remainder of a millionth of a step is rounding of the quotient, not a step.
         let count = (end / interval - 1e-6).ceil().max(0.0) as usize;
         Times { interval, end, count }
     }
 
     /// Time at the beginning of a step, or the end [s].
-    pub fn at(&self, index: usize) -> f64 {
+    pub(crate) fn at(&self, index: usize) -> f64 {
         // Six times 0.05 is 0.30000000000000004, six twentieths are 0.3.
         let a_second = (1.0 / self.interval).round();
         if index == self.count {
@@ -241,7 +241,7 @@ impl Times {
     }
 
     /// Length of a step [s]: the interval to the last bit, save for a shorter last one.
-    pub fn step(&self, index: usize) -> f64 {
+    pub(crate) fn step(&self, index: usize) -> f64 {
         let rest = self.end - index as f64 * self.interval;
         if index + 1 == self.count && rest < self.interval * (1.0 - 1e-6) {
             rest
@@ -251,7 +251,7 @@ impl Times {
     }
 
     /// Every how many steps a shape is kept [-].
-    pub fn frame_stride(&self, all: bool) -> usize {
+    pub(crate) fn frame_stride(&self, all: bool) -> usize {
         if all {
             1
         } else {
@@ -261,7 +261,7 @@ impl Times {
 }
 
 /// Inputs and outputs, without profiles: these have a file of their own.
-pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
+pub(crate) fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
     interface.variables().iter().filter(|variable| {
         matches!(variable.causality, Causality::Input | Causality::Output)
             && !matches!(variable.binding, Binding::Profile { .. })
@@ -269,7 +269,7 @@ pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
 }
 
 /// Columns of these variables.
-pub fn columns(variables: &[&Variable]) -> Vec<Column> {
+pub(crate) fn columns(variables: &[&Variable]) -> Vec<Column> {
     variables
         .iter()
         .map(|variable| Column {
@@ -292,7 +292,7 @@ fn value(variable: &Variable, simulation: &Simulation, time: f64) -> f64 {
 }
 
 /// An input by the scene's motion at `time` [s], in its unit; `None` of an output.
-pub fn scene_input(variable: &Variable, model: &Model, time: f64) -> Option<f64> {
+pub(crate) fn scene_input(variable: &Variable, model: &Model, time: f64) -> Option<f64> {
     let of = |body: Body, part: fn(&Moving) -> [f64; 6], axis: usize| {
         let moving = model.moving(time);
         let found = moving.iter().find(|moving| moving.body == body);

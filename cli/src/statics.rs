@@ -13,7 +13,7 @@ use crate::summary::{Table, static_table};
 use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Solves the equilibrium and prints it.
-pub fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
+pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Some(water) = &mut loaded.scene.water {
         water.waves = None; // an equilibrium is that of the sea at rest

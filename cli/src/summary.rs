@@ -10,7 +10,7 @@ const DIGITS: usize = 7;
 
 /// A table with a name in front of every row of numbers.
 #[derive(Debug)]
-pub struct Table {
+pub(crate) struct Table {
     rows: Vec<Vec<String>>,
     /// The last column holds words.
     ends_in_words: bool,
@@ -18,7 +18,7 @@ pub struct Table {
 
 impl Table {
     /// A table with this head.
-    pub fn new(head: &[&str]) -> Table {
+    pub(crate) fn new(head: &[&str]) -> Table {
         Table {
             rows: vec![head.iter().map(|cell| (*cell).to_string()).collect()],
             ends_in_words: false,
@@ -26,7 +26,7 @@ impl Table {
     }
 
     /// The same with words in the last column.
-    pub fn ending_in_words(self) -> Table {
+    pub(crate) fn ending_in_words(self) -> Table {
         Table {
             ends_in_words: true,
             ..self
@@ -34,14 +34,14 @@ impl Table {
     }
 
     /// Adds a row of numbers.
-    pub fn row(&mut self, name: &str, numbers: &[f64]) {
+    pub(crate) fn row(&mut self, name: &str, numbers: &[f64]) {
         let cells = numbers.iter().map(|&number| rounded(number, DIGITS));
         self.rows
             .push(std::iter::once(name.to_string()).chain(cells).collect());
     }
 
     /// Adds a row of text.
-    pub fn text_row(&mut self, cells: Vec<String>) {
+    pub(crate) fn text_row(&mut self, cells: Vec<String>) {
         self.rows.push(cells);
     }
 }
@@ -70,7 +70,7 @@ impl fmt::Display for Table {
 }
 
 /// Lines that have an equilibrium, compared with the closed-form catenary.
-pub fn static_table(record: &Record) -> Table {
+pub(crate) fn static_table(record: &Record) -> Table {
     let mut table = Table::new(&["static equilibrium", "solved", "catenary", "difference"]);
     for line in &record.lines {
         let Some(equilibrium) = &line.equilibrium else {
@@ -103,7 +103,7 @@ pub fn static_table(record: &Record) -> Table {
 }
 
 /// Results of a run: ranges in time, and its cost.
-pub fn run_summary(record: &Record) -> String {
+pub(crate) fn run_summary(record: &Record) -> String {
     let mut table = Table::new(&["in time", "least", "mean", "greatest"]);
     for LineRecord { name, .. } in &record.lines {
         for (stem, label) in [("tension_b", "tension at end B [N]"), ("sag", "sag [m]")] {

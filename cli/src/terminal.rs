@@ -11,20 +11,20 @@ use moorline_decks::{Supplement, load_with};
 
 use crate::failure::Failure;
 
-/// Reads a scene file with what a deck leaves to its host; remarks on it go to standard error.
-pub fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Failure> {
+/// Reads a scene file with the data that a deck leaves to its host; remarks on it go to standard error.
+pub(crate) fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Failure> {
     let loaded = load_with(path, supplement)?;
     loaded.notes.iter().for_each(|note| remark(path, note));
     Ok(loaded)
 }
 
 /// Writes a remark on a scene, or on another file, to standard error. A remark that cannot be written does not end the command.
-pub fn remark(path: &Path, note: &Note) {
+pub(crate) fn remark(path: &Path, note: &Note) {
     let _ = writeln!(io::stderr(), "{}", noted(path, note));
 }
 
 /// A remark with its file and, where it has one, its line.
-pub fn noted(path: &Path, note: &Note) -> String {
+pub(crate) fn noted(path: &Path, note: &Note) -> String {
     match note.line {
         Some(line) => format!("note: {}:{line}: {note}", path.display()),
         None => format!("note: {}: {note}", path.display()),
@@ -32,7 +32,7 @@ pub fn noted(path: &Path, note: &Note) -> String {
 }
 
 /// Remarks that were found after the scene was read.
-pub fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
+pub(crate) fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
     for note in notes {
         remark(&loaded.path, &loaded.locate_note(note));
     }
@@ -40,7 +40,7 @@ pub fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
 
 /// Gives a scene the mesh, integrator and step that it leaves open, once for all that a command does with it. Remarks where they are not
 /// expected to keep the tolerance.
-pub fn discretise(loaded: &mut LoadedScene, select: fn(&Scene) -> Option<Discretisation>) {
+pub(crate) fn discretise(loaded: &mut LoadedScene, select: fn(&Scene) -> Option<Discretisation>) {
     let Some(found) = select(&loaded.scene) else {
         return;
     };
@@ -51,12 +51,12 @@ pub fn discretise(loaded: &mut LoadedScene, select: fn(&Scene) -> Option<Discret
 }
 
 /// The simulation of a scene, in static equilibrium.
-pub fn simulate(loaded: &LoadedScene) -> Result<Simulation, Failure> {
+pub(crate) fn simulate(loaded: &LoadedScene) -> Result<Simulation, Failure> {
     Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, loaded))
 }
 
 /// Prints text to standard output.
-pub fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())
         .and_then(|()| out.flush())
@@ -64,7 +64,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// A bar on a terminal, nothing in a pipe.
-pub fn progress(steps: u64) -> ProgressBar {
+pub(crate) fn progress(steps: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left")
         .expect("the template is a constant that indicatif accepts");
     ProgressBar::new(steps).with_style(style)

@@ -42,7 +42,7 @@ fn tension(run: &Run, [from, to]: [f64; 2], unit: f64) -> Vec<[f64; 2]> {
     inside.map(|(t, tension)| [*t, tension / unit]).collect()
 }
 
-/// The same without what is faster than 0.5 Hz.
+/// The same without frequencies above 0.5 Hz.
 fn slow_tension(run: &Run, span: [f64; 2], unit: f64) -> Vec<[f64; 2]> {
     let slow = low_pass(&run.tension, run.time[1] - run.time[0], 0.5);
     let run = Run {

@@ -1,4 +1,4 @@
-//! The figures of `docs/hard-cases.md`, and the numbers that stand beside them.
+//! Figures of `docs/hard-cases.md`, and their numbers.
 //!
 //! `cargo run --release --example hard_cases -- docs/figures` runs all cases, prints for every run its internal steps for a second, the
 //! error of its energy ledger and the energy that it gained over the energy that flowed, and draws a figure of each case.
@@ -15,7 +15,7 @@ use std::path::Path;
 use moorline::output::figures::compared::{Panel, compared};
 use run::Run;
 
-/// What a case shows: its charts, and its runs by name.
+/// Result of a case: its charts, and its runs by name.
 pub struct Page {
     /// Stem of the figure's file.
     pub stem: &'static str,

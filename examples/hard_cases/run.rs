@@ -1,4 +1,4 @@
-//! A run of a hard case, and what is measured on it.
+//! Run of a hard case, with its measures.
 
 use std::cell::RefCell;
 
@@ -6,7 +6,7 @@ use moorline::math::low_pass::low_pass;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 
-/// What a run left behind, sampled at every communication point, the start included.
+/// Result of a run, sampled at every communication point, the start included.
 #[derive(Debug, Clone)]
 pub struct Run {
     /// Time [s].
@@ -15,9 +15,10 @@ pub struct Run {
     pub tension: Vec<f64>,
     /// Error of the energy ledger [J].
     pub error: Vec<f64>,
-    /// Energy held beyond what was there at the start and given since [J]: without a gain it is minus what was lost.
+    /// Energy in excess of the initial energy and the external work since [J]: without a gain it is minus the
+    /// dissipation.
     pub gained: Vec<f64>,
-    /// Most energy that was given, or lost, or in motion [J]: what errors of energy are held against.
+    /// Greatest of external work, dissipation and kinetic energy [J], to which errors of energy refer.
     pub flowed: f64,
     /// Integrator of the first network.
     pub chosen: Integrator,
@@ -45,12 +46,13 @@ impl Run {
         Run::driven(simulation, steps, |_| ())
     }
 
-    /// A scene that a host drives: `say` tells it where its points are before each of its communication steps [s].
+    /// Scene driven by a host: `say` sets the places of its points before each of its communication steps [s].
     pub fn hosted(scene: &Scene, steps: impl Iterator<Item = f64>, say: impl Fn(&mut Simulation)) -> Run {
         Run::driven(begun(scene), steps, say)
     }
 
-    /// A scene that follows its own motion to these times [s], one communication step to each, and what is seen of it there.
+    /// Scene that follows its motion to these times [s], one communication step to each, with the samples taken
+    /// there.
     pub fn watched(scene: &Scene, times: &[f64], see: impl Fn(&Simulation) -> f64) -> (Run, Vec<f64>) {
         let starts = std::iter::once(0.0).chain(times.iter().copied());
         let steps = starts.zip(times).map(|(from, to)| to - from);
@@ -107,7 +109,7 @@ impl Run {
         self.error.push(balance.error());
     }
 
-    /// Whether every node is at a finite place and every tension finite.
+    /// Returns whether every node is at a finite place and every tension finite.
     pub fn is_finite(&self) -> bool {
         let nodes = self.end.state().lines.iter().flat_map(|line| &line.position);
         self.tension.iter().all(|tension| tension.is_finite())
@@ -131,12 +133,12 @@ impl Run {
         self.error.iter().fold(0.0, |a: f64, b| a.max(b.abs())) / self.flowed
     }
 
-    /// Greatest energy held beyond what was given, over the energy that flowed [-].
+    /// Greatest energy in excess of the external work, over the energy that flowed [-].
     pub fn energy_gain(&self) -> f64 {
         self.gained.iter().copied().fold(0.0, f64::max) / self.flowed
     }
 
-    /// Half of what lies between the greatest and the least tension of the last 400 samples [N].
+    /// Half of the range of tension over the last 400 samples [N].
     pub fn last_amplitude(&self) -> f64 {
         let last = &self.tension[self.tension.len() - 400..];
         let greatest = last.iter().copied().fold(0.0, f64::max);
@@ -155,7 +157,7 @@ impl Run {
         relative_rms(&self.tension[first..], &reference.tension[first..])
     }
 
-    /// The same of the tensions without what is faster than `cut_off` [Hz].
+    /// The same of the tensions without frequencies above `cut_off` [Hz].
     pub fn slow_tension_error(&self, reference: &Run, from: f64, cut_off: f64) -> f64 {
         let first = reference.time.partition_point(|t| *t < from);
         let slow = |run: &Run| low_pass(&run.tension, run.time[1] - run.time[0], cut_off);

@@ -1,6 +1,7 @@
-//! The hard cases: their scenes, what drives them, and the closed forms that they are held against.
+//! The hard cases: their scenes, their excitation, and the closed forms for comparison.
 //!
-//! Shared by the test that asserts what must hold, `tests/systems/hard`, and the example that draws the figures of `docs/hard-cases.md`.
+//! Shared by the test that asserts the bounds, `tests/systems/hard`, and the example that draws the figures of
+//! `docs/hard-cases.md`.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,7 +16,7 @@ use nalgebra::Complex;
 /// Gravity of the scenes that are written here [m/s²].
 pub const G: f64 = 9.80665;
 
-/// The integrators that serve a single cable.
+/// Integrators that apply to a single cable.
 pub const INTEGRATORS: [Integrator; 4] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
@@ -60,7 +61,7 @@ pub fn with_elements(mut scene: Scene, count: usize) -> Scene {
     scene
 }
 
-/// The same scene with an integrator, and the upper limit of its step [s] where that is the implicit one, which has none of its own.
+/// The same scene with an integrator, and the upper limit of its step [s] where that is the implicit one, which has no limit.
 pub fn by(mut scene: Scene, integrator: Integrator, implicit_step: f64) -> Scene {
     scene.solver.integrator = integrator;
     if integrator == Integrator::GeneralisedAlpha {
@@ -181,7 +182,7 @@ pub fn irregular_steps(duration: f64) -> Vec<f64> {
     steps
 }
 
-/// A rope of 100 m between points 90 m apart, dry, without damping, released 40° beside its plane.
+/// Rope of 100 m between points 90 m apart, dry, without damping, released 40° out of its plane.
 pub fn undamped_swing(elements: usize) -> Scene {
     let mut scene = single(
         "line_types.rope = { mass = 5.0, axial_stiffness = 1.0e6, axial_damping = 0.0 }",
@@ -254,7 +255,8 @@ pub const ROPE: f64 = 20.0;
 /// EA of its rope [N].
 pub const ROPE_STIFFNESS: f64 = 2.0e6;
 
-/// A clump of 1 t on 20 m of rope of 0.1 kg/m, dry, held `lift` metres above where the rope is straight, or by `angle` [rad] beside it.
+/// Clump of 1 t on 20 m of rope of 0.1 kg/m, dry, released `lift` metres above the straight rope's position, or at
+/// `angle` [rad] to it.
 pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
     let reach = ROPE * (1.0 + CLUMP * G * angle.cos() / ROPE_STIFFNESS);
     let (x, z) = if lift > 0.0 {
@@ -274,7 +276,7 @@ pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
             piece("rope", ROPE, elements)
         ),
     );
-    // a rope that is too long hangs in two straight halves, its middle beside them
+    // a rope that is too long hangs in two straight halves, with its middle between them
     let beside = (0.25 * (ROPE * ROPE - x * x - z * z)).max(0.0).sqrt();
     let node = |i: usize| {
         let part = 1.0 - i as f64 / elements as f64;
@@ -378,7 +380,7 @@ pub fn fall_time(part: f64) -> f64 {
     2.0 * (CHAIN / G).sqrt() * simpson
 }
 
-/// Pull of that chain on what holds it over its weight, its free end having fallen by `part` of its length [-].
+/// Pull of that chain on its support over its weight, its free end having fallen by `part` of its length [-].
 pub fn fall_pull(part: f64) -> f64 {
     0.25 * (2.0 + 2.0 * part - 3.0 * part * part) / (1.0 - part)
 }

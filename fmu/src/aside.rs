@@ -22,7 +22,7 @@ unsafe extern "C" {
     fn pthread_join(thread: usize, result: *mut *mut c_void) -> c_int;
 }
 
-/// Runs work on a thread of its own and waits for its end; does nothing where there is no thread to be had.
+/// Runs work on a separate thread and waits for its end; does nothing where the system grants no thread.
 pub(crate) fn run(mut work: Work) {
     let mut thread = 0_usize; // pthread_t is as wide as a pointer
     // SAFETY: `work` outlives the thread, which is joined before this function returns, and no one else uses it meanwhile.

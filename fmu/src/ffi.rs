@@ -1,6 +1,6 @@
-//! Handles, slices, texts, callbacks and the panic guard: all the reasoning about unsafe code.
+//! Handles, slices, texts, callbacks and the panic guard: all unsafe code, with its reasons.
 //!
-//! What a host promises (FMI 2.0.4 section 2.1, FMI 3.0.2 section 2.2): a handle is what instantiate returned and is
+//! Guarantees of the host (FMI 2.0.4 section 2.1, FMI 3.0.2 section 2.2): a handle is what instantiate returned and is
 //! not used after free; no two calls use one handle at once; a pointer with a length points to that many values that
 //! stay valid during the call; a text ends with a zero byte. Everything else is checked here.
 
@@ -22,20 +22,20 @@ use crate::instance::{Instance, Refusal};
 use crate::log::Topic;
 use crate::saved::Snapshot;
 
-/// What a handle points to.
+/// Target of a handle.
 pub(crate) struct Handle {
     instance: Instance,
     version: FmiVersion,
     sink: Sink,
     /// A call panicked: nothing but free is served any more.
     is_poisoned: bool,
-    /// A text that the host was given; it lives until the next one.
+    /// Text given to the host; it lives until the next one.
     text: CString,
 }
 
-/// Where messages go.
+/// Destination of messages.
 pub(crate) enum Sink {
-    /// FMI 2.0: variadic logger, which wants the instance's name.
+    /// FMI 2.0: variadic logger, which requires the instance's name.
     Two {
         logger: fmi2CallbackLogger,
         environment: *mut c_void,
@@ -49,7 +49,7 @@ pub(crate) enum Sink {
 }
 
 impl Sink {
-    /// Copies what an FMI 2.0 host hands over.
+    /// Copies the callbacks and the name of an FMI 2.0 host.
     ///
     /// # Safety
     /// `functions` is null or points to the host's callbacks; `name` is null or ends with a zero byte.
@@ -74,7 +74,7 @@ impl Sink {
                 name,
             } => {
                 // SAFETY: the host's own logger and environment; all texts live during the call. The message is an
-                // argument and never the format, whatever characters it holds.
+                // argument and never the format, so that any character is safe.
                 unsafe {
                     logger(
                         *environment,
@@ -104,14 +104,14 @@ fn c_text(text: &str) -> CString {
 }
 
 thread_local! {
-    /// Whether this thread is inside the guard. Without a destructor, so that the library can be unloaded.
+    /// True while this thread is inside the guard. Without a destructor, so that the library can be unloaded.
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Stands for all worker threads of an instance; a guard passes on what panics there.
+/// Key of all worker threads of an instance, whose panics a guard passes on.
 const HELPER: usize = 0;
 
-/// Where guarded panics happened, by thread, until their guards have told it.
+/// Places of guarded panics, by thread, until their guards have reported them.
 static PANIC_PLACES: Mutex<BTreeMap<usize, String>> = Mutex::new(BTreeMap::new());
 
 fn panic_places() -> MutexGuard<'static, BTreeMap<usize, String>> {
@@ -171,8 +171,8 @@ fn panic_text(payload: &(dyn Any + Send)) -> String {
         .unwrap_or_else(|| "no message".to_string())
 }
 
-/// Makes an instance and gives its handle away; null and a message where it is refused. The message is sent even while
-/// logging is off: without an instance there is no other way to say why.
+/// Makes an instance and returns its handle; null and a message where it is refused. The message is sent even while
+/// logging is off: without an instance there is no other way to report the reason.
 pub(crate) fn instantiate(
     version: FmiVersion,
     sink: Sink,
@@ -200,7 +200,7 @@ pub(crate) fn instantiate(
     }
 }
 
-/// Frees an instance in whatever state; null is nothing to free.
+/// Frees an instance in any state; null is ignored.
 ///
 /// # Safety
 /// `handle` is null or came from [`instantiate`] and is not used again.
@@ -286,7 +286,7 @@ pub(crate) unsafe fn keep_text(handle: *mut c_void, text: &str) -> *const c_char
     handle.text.as_ptr()
 }
 
-/// Whether `count` values of type T can be at `pointer`.
+/// Returns whether `count` values of type T can be at `pointer`.
 fn check_pointer<T>(pointer: *const T, count: usize) -> Result<(), Refusal> {
     if pointer.is_null() {
         return Err("a pointer is null".into());
@@ -327,7 +327,7 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> Result<&
     Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
 }
 
-/// Writes one result where the host wants it.
+/// Writes one result to the host's pointer.
 ///
 /// # Safety
 /// A pointer that is not null may be written to.
@@ -350,7 +350,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a str> {
     unsafe { CStr::from_ptr(pointer) }.to_str().ok()
 }
 
-/// A path or URI of the host, in whatever encoding; `None` if it is null.
+/// Path or URI of the host, in any encoding; `None` if it is null.
 ///
 /// # Safety
 /// As for [`text`].
@@ -378,7 +378,7 @@ pub(crate) unsafe fn texts<'a>(pointer: *const *const c_char, count: usize) -> R
         .collect()
 }
 
-/// Saves the state into `*target`, in place where the host hands back an earlier state.
+/// Saves the state into `*target`, in place where the host passes an earlier state.
 ///
 /// # Safety
 /// A `target` that is not null points to null or to a state of [`store_state`] that was not freed.

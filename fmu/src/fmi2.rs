@@ -392,7 +392,7 @@ unsafe extern "C" fn fmi2DoStep(
     }
 }
 
-/// Steps are carried out in the call, so the last one is done whenever a host can ask.
+/// Steps are carried out in the call, so the last one is complete when a host can query it.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetStatus(
     c: fmi2Component,

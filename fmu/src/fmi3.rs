@@ -358,7 +358,7 @@ unsafe extern "C" fn fmi3SetBoolean(
     }
 }
 
-/// Access by types that no variable has; `rest` is what follows the references.
+/// Access by types that no variable has; `rest` are the parameters after the references.
 macro_rules! no_variables {
     ($($name:ident($($rest:ty),*): $kind:literal;)*) => {
         $(

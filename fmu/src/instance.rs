@@ -1,7 +1,7 @@
-//! The FMI state machine over a simulation, for both versions of FMI. Safe code; knows no pointer.
+//! The FMI state machine over a simulation, for both versions of FMI. Safe code without pointers.
 //!
 //! Sources: FMI 2.0.4 section 4.2.4 (state machine of co-simulation), FMI 3.0.2 section 4.2. Two choices within them:
-//! a refused call leaves everything as it was, so the instance goes on; and a step that fails is an error, not
+//! a refused call leaves everything unchanged, so the instance continues; and a step that fails is an error, not
 //! `Discard`, since a smaller communication step cannot help a solver that has already substepped.
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
@@ -33,7 +33,7 @@ impl From<&str> for Refusal {
 
 type Outcome = Result<(), Refusal>;
 
-/// What an input may be at most [m, rad, m/s, rad/s]: beyond this, squares and cubes of it would overflow.
+/// Greatest magnitude of an input [m, rad, m/s, rad/s]: beyond this, squares and cubes of it would overflow.
 const INPUT_MAX: f64 = 1e12;
 
 /// Difference between the host's clock and ours that is rounding, relative to the step [-].
@@ -56,15 +56,15 @@ pub(crate) struct Instance {
     stop_time: Option<f64>,
     time: f64,
     inputs: Vec<BodyInput>,
-    /// Whether each line is to let go.
+    /// Release command of each line.
     releases: Vec<bool>,
-    /// What the winches are to have paid out, by line [m].
+    /// Length changes of the winches, by line [m].
     length_changes: Vec<f64>,
     /// Displacements at which the statics were solved last [m].
     start_displacements: Vec<[f64; 6]>,
-    /// What the winches had paid out then, by line [m].
+    /// Length changes of the winches at that time, by line [m].
     start_length_changes: Vec<f64>,
-    /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
+    /// Statics with the present parameters and inputs, or the end of the last step; `None` until they are solved.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
     has_warned_of_inputs: bool,
@@ -208,7 +208,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Says which integrator was chosen.
+    /// Logs the integrators chosen.
     fn log_choices(&mut self) {
         let Some(simulation) = &self.simulation else {
             return;
@@ -254,8 +254,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Static equilibrium with the present parameters and displacements, unless it is known. Always solved from the
-    /// same first guess, so that it does not depend on what was set before.
+    /// Static equilibrium with the present parameters and displacements, unless it is already solved. Always solved
+    /// from the same first guess, so that it does not depend on earlier inputs.
     fn solve_statics(&mut self) -> Result<&mut Simulation, Refusal> {
         if self.simulation.is_none() {
             let places = self.inputs.iter().map(|input| input.displacement);
@@ -571,7 +571,7 @@ impl Instance {
         outcome
     }
 
-    /// What the last step returned.
+    /// Status of the last step.
     pub(crate) fn step_status(&self) -> Status {
         self.step_status
     }
@@ -764,7 +764,7 @@ fn statics(
     displacements: &[[f64; 6]],
     length_changes: &[f64],
 ) -> Result<Simulation, Refusal> {
-    // what the package leaves open is not tried again: the interface has the mesh of the rules
+    // choices that the package leaves open are not tried again: the interface has the mesh of the rules
     let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
     let bodies: Vec<Body> = simulation.model().bodies().collect();
     for (body, displacement) in bodies.into_iter().zip(displacements) {
@@ -782,7 +782,7 @@ fn same_bits(these: &[f64], those: &[f64]) -> bool {
     these.iter().map(bits).eq(those.iter().map(bits))
 }
 
-/// Gives the simulation what the host last set.
+/// Passes the host's last inputs to the simulation.
 fn hand_over(inputs: &[BodyInput], simulation: &mut Simulation) {
     for (index, input) in inputs.iter().enumerate() {
         let body = simulation.model().body(index);

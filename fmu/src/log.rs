@@ -6,13 +6,13 @@ use moorline_host::Status;
 /// Kind of a message; each has its category in the description.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Topic {
-    /// What was chosen and why.
+    /// Choices made, with their reasons.
     Event,
     /// Carried out with a reservation.
     Warning,
     /// Refused or failed.
     Error,
-    /// The instance is lost.
+    /// The instance is unusable.
     Fatal,
 }
 
@@ -32,7 +32,7 @@ impl Topic {
     }
 }
 
-/// Messages not yet handed over, and what the host wants to hear.
+/// Messages not yet handed over, and the categories that the host has selected.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     enabled: [bool; LOG_CATEGORIES.len()],
@@ -48,7 +48,7 @@ impl Log {
         }
     }
 
-    /// Turns categories on or off; no name means all. An unknown name is given back and changes nothing.
+    /// Turns categories on or off; no name means all. An unknown name is returned and changes nothing.
     pub(crate) fn select(&mut self, on: bool, categories: &[&str]) -> Result<(), String> {
         if categories.is_empty() {
             self.enabled = [on; LOG_CATEGORIES.len()];
@@ -70,7 +70,7 @@ impl Log {
         Ok(())
     }
 
-    /// Whether messages of a topic are kept.
+    /// Returns whether messages of a topic are kept.
     pub(crate) fn keeps(&self, topic: Topic) -> bool {
         self.enabled[topic as usize]
     }

@@ -1,4 +1,4 @@
-//! Where the FMU's resources are: FMI 2.0 gives a URI, FMI 3.0 a path, and hosts give both in many forms.
+//! Location of the FMU's resources: FMI 2.0 gives a URI, FMI 3.0 a path, and hosts give both in many forms.
 //!
 //! Source: RFC 8089 (file URIs) with its appendix E on common deviations; FMI 2.0.4 section 2.1.5, FMI 3.0.2 section 2.3.1.
 
@@ -8,10 +8,10 @@ use std::path::PathBuf;
 use moorline::output::package::SCENE_FILE;
 use moorline::scene::input_file;
 
-/// The text of the FMU's scene.
+/// Text of the FMU's scene.
 ///
 /// # Errors
-/// Where it was looked for.
+/// Names the place of the failed search.
 pub(crate) fn read_scene(location: Option<&[u8]>) -> Result<String, String> {
     let location = location
         .filter(|location| !location.is_empty())
@@ -78,7 +78,7 @@ fn candidates(location: &[u8], windows: bool) -> Result<Vec<Vec<u8>>, String> {
     Ok(folders)
 }
 
-/// The path in what follows `file:`, still escaped.
+/// Path of the part after `file:`, still escaped.
 fn path_of_uri(rest: &[u8], windows: bool) -> Result<Vec<u8>, String> {
     let path = match rest.strip_prefix(b"//") {
         None => rest,                         // file:/p, or file:p
@@ -109,7 +109,7 @@ fn path_of_uri(rest: &[u8], windows: bool) -> Result<Vec<u8>, String> {
     Ok(path.to_vec())
 }
 
-/// Whether a path begins with a drive letter.
+/// Returns whether a path begins with a drive letter.
 fn is_drive(path: &[u8]) -> bool {
     matches!(path, [letter, b':' | b'|', ..] if letter.is_ascii_alphabetic())
 }

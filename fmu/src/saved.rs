@@ -7,7 +7,7 @@ use moorline::simulation;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// Where an instance is in its life.
+/// Phase of an instance's life cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phase {
     /// After instantiation or reset.
@@ -20,24 +20,24 @@ pub(crate) enum Phase {
     Terminated,
 }
 
-/// What the host last set at a point or a vessel; points use the first three axes.
+/// Last input of the host for a point or a vessel; points use the first three axes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BodyInput {
     /// Displacement [m] and angles [rad].
     pub(crate) displacement: [f64; 6],
     /// Velocity [m/s] and angular velocity [rad/s].
     pub(crate) velocity: [f64; 6],
-    /// Whether the host gives the velocity.
+    /// True if the host gives the velocity.
     pub(crate) has_velocity: [bool; 6],
-    /// Whether it has moved since the start, along and about the axes.
+    /// True if it has moved since the start, along and about the axes.
     pub(crate) has_moved: [bool; 2],
-    /// Whether any velocity was ever another than 0, along and about the axes.
+    /// True if any velocity was ever another than 0, along and about the axes.
     pub(crate) has_speed: [bool; 2],
 }
 
 impl BodyInput {
-    /// What the host says of the velocity; nothing along or about all axes where it says nothing but 0 of what has moved. Hosts that write all
-    /// inputs at every communication point write 0 to those that nothing is connected to.
+    /// Velocities given by the host; none along or about all axes where it gives only 0 for a body that has moved.
+    /// Hosts that write all inputs at every communication point write 0 to unconnected ones.
     pub(crate) fn told(&self) -> [Option<f64>; 6] {
         std::array::from_fn(|axis| {
             let kind = axis / 3;
@@ -61,14 +61,14 @@ pub(crate) struct Snapshot {
     pub(crate) parameters: Vec<f64>,
     /// Inputs of every point of the scene, then of every vessel.
     pub(crate) inputs: Vec<BodyInput>,
-    /// Whether each line is to let go.
+    /// Release command of each line.
     pub(crate) releases: Vec<bool>,
-    /// What the winches are to have paid out, by line [m].
+    /// Length changes of the winches, by line [m].
     pub(crate) length_changes: Vec<f64>,
-    /// Displacements of every body at which the statics were solved [m, rad]: what the solver decided there, such as its
-    /// step limits, is not in its state and is decided again from them.
+    /// Displacements of every body at which the statics were solved [m, rad]: the solver's choices there, such as its
+    /// step limits, are not in its state and are made again from them.
     pub(crate) start_displacements: Vec<[f64; 6]>,
-    /// What the winches had paid out then, by line [m].
+    /// Length changes of the winches at that time, by line [m].
     pub(crate) start_length_changes: Vec<f64>,
     /// The solver's state, once there is one.
     pub(crate) solver: Option<simulation::Snapshot>,
@@ -90,7 +90,7 @@ impl Snapshot {
         Ok(bytes)
     }
 
-    /// Reads what [`Snapshot::to_bytes`] wrote.
+    /// Reads the bytes of [`Snapshot::to_bytes`].
     pub(crate) fn from_bytes(bytes: &[u8], token: &str) -> Result<Snapshot, String> {
         let rest = bytes
             .strip_prefix(MARK)

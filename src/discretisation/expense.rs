@@ -1,4 +1,4 @@
-//! Time that a run takes, by what steps cost.
+//! Estimated time of a run, from the cost of its steps.
 
 use crate::dynamics::node_time;
 use crate::scene::{Integrator, Note, Scene};

@@ -1,4 +1,4 @@
-//! Mesh, integrator and step that keep a stated error, found by trying them on the scene's own motion.
+//! Mesh, integrator and step that keep a stated error, found by trial runs on the scene's motion.
 //!
 //! The error of a line that slackens and lands does not follow from lengths, speeds and periods: n times the RMS error of the fairlead's
 //! tension lies between 0.45 and 2 for chains of similar shape and motion, and the error falls with n² where nothing slackens. A scene
@@ -10,10 +10,11 @@
 //! where n_{j+2} has twice the elements. If the errors of the meshes are uncorrelated, d(j, j+2) ≈ e_j and
 //! c ≈ 1; if they fall with n², d(j, j+2) = ¾ e_j, d(j, j+1) = ½ e_j and c = 4/3. On fifteen scenes and nine meshes d(j, j+2)/e_j was
 //! 0.74 to 1.15 wherever the error is 0.5 % or more, but for a chain that snaps at n = 7 (0.65). The mesh is the coarsest whose e_j is
-//! below a part of the tolerance, interpolated between the rungs and tried once more there.
+//! below a part of the tolerance, interpolated between the mesh levels and tried once more there.
 //!
-//! Every network of lines has its own mesh: its error is that of the line that is furthest off, over the standard deviation of that line's
-//! own tension. All networks run together, at the elements of the rung until their error is known to be small enough.
+//! Every network of lines has a separate mesh: its error is that of the line with the greatest error, over the
+//! standard deviation of that line's tension. All networks run together, at the elements of the mesh level until
+//! their error is small enough.
 //!
 //! The axial-implicit leapfrog costs about three times as much a step as the explicit one. On the mesh found it is tried with steps from the
 //! longest allowed down, as long as that is cheaper, and taken with the first step that keeps the error against the finest mesh; else
@@ -21,7 +22,7 @@
 //!
 //! All this is bounded, by a work of the order of a second, and the same on every machine. Beyond that the number of elements is extrapolated
 //! from the last one tried, with an error that falls as 1/n. A scene whose motion is not known, whose elements are given or that needs another
-//! integrator keeps the rule that elements follow from the tolerance alone. Whatever motion or rule ask for, elements are added until the tension at
+//! integrator keeps the rule that elements follow from the tolerance alone. Beyond the elements required by motion or rule, elements are added until the tension at
 //! rest is within the tolerance of the closed-form catenary, where there is one to compare with.
 
 mod expense;
@@ -57,7 +58,7 @@ pub struct Trial {
 /// Mesh of a network of lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// Its lines.
+    /// Lines of the network.
     pub lines: Vec<usize>,
     /// The meshes whose error could be estimated.
     pub trials: Vec<Trial>,
@@ -92,7 +93,7 @@ pub struct Discretisation {
 }
 
 impl Discretisation {
-    /// What was found, in words: one sentence each.
+    /// Sentences that describe the result.
     pub fn in_words(&self) -> Vec<String> {
         let mut kinds: Vec<Vec<&Mesh>> = Vec::new();
         for mesh in &self.meshes {
@@ -189,7 +190,7 @@ impl Discretisation {
     }
 }
 
-/// Selects what a scene leaves open, by trials; none where nothing is open or the rules stand.
+/// Selects the open choices of a scene by trials; none where nothing is open or the rules apply.
 pub fn select(scene: &Scene) -> Option<Discretisation> {
     if !is_open(scene) {
         return None;
@@ -198,7 +199,7 @@ pub fn select(scene: &Scene) -> Option<Discretisation> {
     tried_in_motion(scene, &networks).or_else(|| tried_at_rest(scene, &networks))
 }
 
-/// Selects the mesh for an equilibrium: no motion is tried.
+/// Selects the mesh for an equilibrium, without trials of motion.
 pub fn select_at_rest(scene: &Scene) -> Option<Discretisation> {
     if !is_open(scene) {
         return None;
@@ -226,7 +227,7 @@ fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation>
     })
 }
 
-/// The scene with more elements than the rule gives, where it needs them at rest.
+/// Scene with more elements than the rule gives, where it needs them at rest.
 fn tried_at_rest(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     if scene.solver.integrator == Integrator::QuasiStatic {
         return None;
@@ -250,7 +251,7 @@ fn tried_at_rest(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     })
 }
 
-/// The scene with its discretisation: as [`select`] finds it, or as it is where nothing is left open.
+/// Scene with its discretisation: as [`select`] finds it, or unchanged where nothing is left open.
 pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
     match select(scene) {
         Some(found) => Cow::Owned(found.scene),
@@ -258,8 +259,8 @@ pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
     }
 }
 
-/// The scene with the mesh that it has now, whatever is set of it later: as [`select`] finds it, or by rule. None where all elements are
-/// given.
+/// Scene with its present mesh, regardless of later settings: as [`select`] finds it, or by rule. None where all
+/// elements are given.
 pub fn frozen(scene: &Scene) -> Option<Scene> {
     if let Some(settled) = select(scene) {
         return Some(settled.scene);
@@ -273,7 +274,7 @@ pub fn frozen(scene: &Scene) -> Option<Scene> {
     Some(scene)
 }
 
-/// Whether the number of elements of any line is left open.
+/// Returns whether the number of elements of any line is left open.
 fn is_open(scene: &Scene) -> bool {
     scene.solver.elements.is_none() && scene.lines.iter().any(Line::is_open)
 }
@@ -281,7 +282,7 @@ fn is_open(scene: &Scene) -> bool {
 /// The lines of a scene, by network.
 struct Networks {
     lines: Vec<Vec<usize>>,
-    /// Whether the elements of any line of a network are left open.
+    /// True if the elements of any line of a network are left open.
     open: Vec<bool>,
     /// Elements of every line over those of a line alone [-].
     shares: Vec<f64>,
@@ -299,7 +300,7 @@ impl Networks {
         })
     }
 
-    /// Those of one value a network whose elements are open.
+    /// Values of one number a network for those whose elements are open.
     fn open<'a, T>(&'a self, values: &'a [T]) -> impl Iterator<Item = &'a T> {
         values
             .iter()
@@ -308,7 +309,7 @@ impl Networks {
             .map(|(value, _)| value)
     }
 
-    /// The scene with so many elements of a line alone in every network.
+    /// Scene with `elements` elements of a line alone in every network.
     fn with_elements(&self, scene: &Scene, elements: &[usize]) -> Scene {
         let mut scene = scene.clone();
         let first = self.open(elements).next().copied();

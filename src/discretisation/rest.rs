@@ -1,4 +1,4 @@
-//! Elements that a line needs at rest, where its closed-form catenary tells the tension that is right.
+//! Elements that a line needs at rest, by comparison with the tension of its closed-form catenary.
 
 use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Rest};
 use crate::scene::{InitialShape, Scene};

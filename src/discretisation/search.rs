@@ -8,13 +8,13 @@ use crate::simulation::{Error, Simulation};
 
 /// Elements of a line alone that are tried [-].
 const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320];
-/// Part of the tolerance that an estimated error is to keep where the elements are extrapolated and the steps follow a rule [-].
+/// Part of the tolerance for an estimated error where the elements are extrapolated and the steps follow a rule [-].
 const AIM_UNTRIED: f64 = 0.7;
 /// Explicit steps of an element that all trials may take [-].
 const WORK_MAX: f64 = 1e8;
-/// Tolerance that the steps of the ladder are chosen by, over the scene's [-].
+/// Tolerance by which the steps of the ladder are chosen, over the scene's [-].
 const FINER: f64 = 0.25;
-/// Part of the cost below which another step is worth taking [-].
+/// Part of the cost below which another step is adopted [-].
 const WORTH: f64 = 0.8;
 /// Halvings of the longest axial-implicit step that are tried [-].
 const HALVINGS: u32 = 8;
@@ -29,20 +29,20 @@ const STILL: f64 = 0.01;
 /// Elements below those of the rung that are worth a trial, over them [-].
 const FEWER: f64 = 0.93;
 
-/// The state of the search.
+/// State of the search.
 pub(super) struct Search<'a> {
     networks: &'a Networks,
-    /// The scene, as long and with such samples as is tried.
+    /// Scene with the duration and the samples of the trials.
     scene: Scene,
-    /// First sample that counts.
+    /// First sample that is evaluated.
     from: usize,
-    /// What is known of every network.
+    /// Results of every network.
     ladders: Vec<Ladder>,
     /// Explicit steps of an element so far [-].
     work: f64,
 }
 
-/// The trials of a network.
+/// Trials of a network.
 #[derive(Debug, Clone)]
 struct Ladder {
     lines: Vec<usize>,
@@ -52,7 +52,7 @@ struct Ladder {
     found: Option<usize>,
 }
 
-/// What the lines of a network did in one run.
+/// Result of one run for the lines of a network.
 #[derive(Debug, Clone)]
 struct Run {
     elements: usize,
@@ -60,7 +60,7 @@ struct Run {
     tension: Vec<Vec<f64>>,
 }
 
-/// What all lines did in one run.
+/// Result of one run for all lines.
 struct Record {
     /// Tension at the driven end of every line after the start [N].
     tension: Vec<Vec<f64>>,
@@ -78,7 +78,7 @@ impl Ladder {
         }
     }
 
-    /// This network's part of a run.
+    /// Part of a run that belongs to this network.
     fn part(&self, elements: usize, record: &Record) -> Run {
         let lines = self.lines.iter();
         Run {
@@ -87,7 +87,7 @@ impl Ladder {
         }
     }
 
-    /// Takes a finer run, and judges the mesh of half its elements.
+    /// Adds a finer run, and assesses the mesh of half its elements.
     fn climb(&mut self, run: Run, aim: f64) {
         self.runs.push(run);
         let [.., coarse, middle, fine] = &self.runs[..] else {
@@ -103,7 +103,7 @@ impl Ladder {
         self.trials.push(trial);
     }
 
-    /// Error of a run [-], of the order that the last three runs have, 1 where nothing tells one.
+    /// Error of a run [-], of the order of the last three runs, 1 where it is unknown.
     fn error(&self, run: &Run) -> Option<f64> {
         let [.., coarse, middle, fine] = &self.runs[..] else {
             return None;
@@ -124,7 +124,8 @@ impl Ladder {
         (elements as f64 <= FEWER * found.elements as f64).then_some(elements)
     }
 
-    /// The mesh that the trials tell, with the error where it was tried between rungs; none before the first trial.
+    /// Mesh that follows from the trials, with the error where it was tried between mesh levels; none before the
+    /// first trial.
     fn mesh(&self, between: Option<Trial>, tolerance: f64) -> Option<Mesh> {
         let last = self.trials.last()?;
         let (elements, error) = match (self.found, between) {
@@ -172,12 +173,12 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The scene, as long and with such samples as is tried.
+    /// Scene with the duration and the samples of the trials.
     pub(super) fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The scene with so many elements in every network.
+    /// Scene with `elements` elements in every network.
     fn with(&self, elements: &[usize]) -> Scene {
         self.networks.with_elements(&self.scene, elements)
     }
@@ -189,7 +190,7 @@ impl<'a> Search<'a> {
         scene
     }
 
-    /// The mesh of every network; none where the trials tell nothing.
+    /// Mesh of every network; none where the trials give no result.
     pub(super) fn meshes(&mut self) -> Option<Vec<Mesh>> {
         let tolerance = self.scene.solver.tolerance;
         self.climb(AIM * tolerance);
@@ -289,7 +290,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// What explicit steps cost; none where the axial-implicit leapfrog does not serve.
+    /// Cost of explicit steps; none where the axial-implicit leapfrog is not applicable.
     fn explicit_work(&self, scene: &Scene) -> Option<Explicit> {
         let simulation = Simulation::new(scene).ok()?;
         let model = simulation.model();
@@ -348,7 +349,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What explicit steps of a scene would cost.
+/// Cost of explicit steps of a scene.
 struct Explicit {
     /// Elements of all lines [-].
     segments: usize,
@@ -356,18 +357,18 @@ struct Explicit {
     work: f64,
 }
 
-/// How fast and how long a scene moves.
+/// Speed and duration of a scene's motion.
 struct Pace {
     /// Shortest period [s].
     shortest: f64,
-    /// Time after which all is in swing [s].
+    /// Time after which the motion is fully developed [s].
     ramp: f64,
-    /// Time that tells the errors [s].
+    /// Time over which errors are evaluated [s].
     duration: f64,
 }
 
 impl Pace {
-    /// None for a scene that does not say how it moves.
+    /// None for a scene that gives no motion.
     fn of(scene: &Scene) -> Option<Pace> {
         let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
         let paths: Vec<&MotionPath> = scene.motion.values().chain(own).collect();
@@ -396,7 +397,7 @@ impl Pace {
     }
 }
 
-/// The end of a line that is moved, 0 for A: B where both or none are.
+/// End of a line that is moved, 0 for A; B where both or none are.
 pub(super) fn driven(model: &Model, line: usize) -> usize {
     let moved = |end: usize| {
         let role = &model.points[model.lines[line].ends[end]].role;
@@ -408,7 +409,7 @@ pub(super) fn driven(model: &Model, line: usize) -> usize {
     usize::from(!moved(0) || moved(1))
 }
 
-/// Error of the coarse one of three runs whose elements grow by √2 [-].
+/// Error of the coarsest of three runs whose elements grow by √2 [-].
 fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
     let whole = distance(coarse, fine);
     if whole == 0.0 {
@@ -418,8 +419,9 @@ fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
     (smooth * whole).max(distance(middle, fine))
 }
 
-/// RMS of the difference of two runs over the standard deviation of the tension in the second, or over a hundredth of its mean if that is more
-/// [-], of the line where it is greatest: lines that hardly move need not be right to a part of what little they do.
+/// RMS of the difference of two runs over the standard deviation of the tension in the second, or over a hundredth of
+/// its mean if that is more [-], of the line where it is greatest: lines that hardly move need no relative accuracy
+/// of their small variation.
 fn distance(run: &Run, reference: &Run) -> f64 {
     let lines = run.tension.iter().zip(&reference.tension);
     let of_line = |(own, right): (&Vec<f64>, &Vec<f64>)| {

@@ -30,7 +30,7 @@ pub struct Counters {
     pub solves: usize,
 }
 
-/// What a communication step did.
+/// Result of a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Done {
     /// Work of the integrators.
@@ -43,20 +43,20 @@ pub struct Done {
 #[derive(Debug, Clone)]
 pub struct Integrators {
     networks: Vec<NetworkSolver>,
-    /// Per thread.
+    /// Scratch per thread.
     scratch: Vec<Scratch>,
     sea: SeaWork,
-    /// The state before a step that is made in parts.
+    /// State before a step that is integrated in parts.
     before: State,
-    /// Paths of the winches, by line; empty where there are none.
+    /// Paid-out lengths of the winches, by line; empty where there are none.
     winch_paths: Vec<AxisPath>,
-    /// Whether the leapfrogs still hold the state that they handed back last.
+    /// True if the leapfrogs still hold the state that they handed back last.
     holds: bool,
     threads: ThreadPool,
     estimate: WorkEstimate,
 }
 
-/// A network's integrator.
+/// Integrator of a network.
 #[derive(Debug, Clone)]
 struct NetworkSolver {
     choice: Choice,
@@ -97,12 +97,13 @@ impl Integrators {
         }
     }
 
-    /// Must be told when the state is another than the one that [`Self::advance`] left.
+    /// Discards the leapfrogs' copy of the state. Required when the state is another than the one that
+    /// [`Self::advance`] left.
     pub fn forget(&mut self) {
         self.holds = false;
     }
 
-    /// Sets how the winches pay out in the next step, by line.
+    /// Sets the paid-out lengths of the winches in the next step, by line.
     pub fn set_winch_paths(&mut self, paths: impl Iterator<Item = AxisPath>) {
         self.winch_paths.clear();
         self.winch_paths.extend(paths);
@@ -118,7 +119,7 @@ impl Integrators {
         self.estimate.describe(length)
     }
 
-    /// Energy that the networks hold; none of motion where they are quasi-static.
+    /// Stored energy of the networks; no kinetic energy where they are quasi-static.
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
         for (NetworkSolver { solver, .. }, network) in self.networks.iter().zip(&model.networks) {
@@ -131,7 +132,7 @@ impl Integrators {
         sum
     }
 
-    /// Kinetic energy of the networks that leapfrogs serve, which their flow counts as dissipated [J].
+    /// Kinetic energy of the networks with a leapfrog, whose flow counts it as dissipated [J].
     pub fn kinetic_energy_of_leapfrogs(&self, model: &Model, state: &State) -> f64 {
         let solvers = self.networks.iter().zip(&model.networks);
         let served = solvers.filter(|(network, _)| network.solver.is_leapfrog());
@@ -140,7 +141,7 @@ impl Integrators {
             .sum()
     }
 
-    /// Gives a state at rest the accelerations that the implicit integrators start from.
+    /// Sets the initial accelerations of the implicit integrators in a state at rest.
     pub fn start(&mut self, model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
         let time = state.time;
         drop_anchors(model, state);
@@ -156,10 +157,10 @@ impl Integrators {
         next.clone_from(state);
     }
 
-    /// Advances `state` by `length` [s]; `held` tells the kinematics of held points in that time.
+    /// Advances `state` by `length` [s]; `held` returns the kinematics of held points in that time.
     ///
     /// # Errors
-    /// The state is untouched; the error says where and what to try.
+    /// The state is untouched; the error names the place and a remedy.
     pub fn advance(
         &mut self,
         model: &Model,
@@ -173,7 +174,8 @@ impl Integrators {
         }
     }
 
-    /// [`Self::advance`] in waves: in parts where the step is longer than what waves do can be foretold for.
+    /// [`Self::advance`] in waves: in parts where the step is longer than the span over which the waves can be
+    /// extrapolated.
     fn advance_in(
         &mut self,
         waves: &Waves,
@@ -218,8 +220,8 @@ impl Integrators {
         }
     }
 
-    /// Refuses a communication step of `whole` [s] in parts of `part` [s] that would take too many internal steps: the guard is of the communication
-    /// step, however many parts it has.
+    /// Refuses a communication step of `whole` [s] in parts of `part` [s] that would take too many internal steps:
+    /// the limit applies to the communication step, regardless of the number of its parts.
     #[cold]
     #[inline(never)]
     fn check_length(
@@ -249,7 +251,7 @@ impl Integrators {
         self.sea.renew((model, waves), state, step, threads)
     }
 
-    /// Advances `state` by `length` [s], over which the motion by waves is known.
+    /// Advances `state` by `length` [s], with the wave kinematics of that time in place.
     fn pass(
         &mut self,
         model: &Model,
@@ -285,7 +287,7 @@ impl Integrators {
         let next = &mut self.scratch[0].next;
         next.time = state.time + length;
         place_held(model, next, held);
-        // all but the waves, which stay as they are
+        // all but the waves, which are kept
         state.time = next.time;
         std::mem::swap(&mut state.points, &mut next.points);
         std::mem::swap(&mut state.lines, &mut next.lines);
@@ -293,7 +295,7 @@ impl Integrators {
         Ok(total)
     }
 
-    /// Makes scratch for so many threads ready for a step from `state`.
+    /// Prepares scratch of this number of threads for a step from `state`.
     fn prepare_scratch(&mut self, state: &State, threads: usize) {
         while self.scratch.len() < threads {
             self.scratch.push(self.scratch[0].clone());
@@ -325,14 +327,14 @@ impl Integrators {
 }
 
 impl Done {
-    /// Adds what another network did in the same time.
+    /// Adds the result of another network for the same time.
     fn join(&mut self, other: Done) {
         self.counters.substeps = self.counters.substeps.max(other.counters.substeps);
         self.counters.solves += other.counters.solves;
         self.flow.add(other.flow);
     }
 
-    /// Adds what a later part of the step did.
+    /// Adds the result of a later part of the step.
     fn add(&mut self, other: Done) {
         self.counters.substeps += other.counters.substeps;
         self.counters.solves += other.counters.solves;
@@ -340,7 +342,8 @@ impl Done {
     }
 }
 
-/// Puts held points, and the velocities of the nodes at all lines' ends but quasi-static ones, where they are at the time of `state`.
+/// Puts held points, and the velocities of the nodes at all lines' ends except quasi-static ones, at their values at
+/// the time of `state`.
 fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
     for (index, point) in state.points.iter_mut().enumerate() {
         if !matches!(model.points[index].role, Role::Fixed | Role::Free(_)) {

@@ -6,9 +6,10 @@
 //!   M̄ (v₁ − v)/Δt = f̄,            ½(v + v₁) Δt = φ₁ − φ,
 //!   (Λ₁J W₁ − ΛJ W)/Δt = m̄,       ½(W + W₁) Δt = Λᵀθ = Λ₁ᵀθ,
 //!
-//! where f̄, m̄ gather −L B̄ᵀS̄ of the elements (the gradient B̄ at the mean of both ends of the step, S̄ the mean stress), weight, loads, and
-//! what water and seabed do. The strains are bilinear, so that B̄ is a discrete gradient: without water, bed and damping the energy
-//! ½ vᵀM v + ½ W·J W + Σ U + Σ w z changes by the work of the loads alone, and both momenta by their impulses, to rounding.
+//! where f̄, m̄ gather −L B̄ᵀS̄ of the elements (the gradient B̄ at the mean of both ends of the step, S̄ the mean
+//! stress), weight, loads, and the forces of water and seabed. The strains are bilinear, so that B̄ is a discrete
+//! gradient: without water, bed and damping the energy ½ vᵀM v + ½ W·J W + Σ U + Σ w z changes by the work of the
+//! loads alone, and both momenta by their impulses, to rounding.
 //!
 //! Loads are means over the step, so that an impulse is exact wherever the load jumps. Viscous damping adds D (E₁ − E)/Δt to S̄. Added mass
 //! and drag take the tangent in the middle of the step from the angular velocity before it: second order, and no part of the slopes.
@@ -44,7 +45,7 @@ pub use measures::{BeamView, Momentum};
 
 /// Change of position over the beam's length, and of θ, that ends the iteration [-].
 const TOLERANCE: f64 = 1e-12;
-/// A change below this [-] that no longer shrinks has met rounding.
+/// Change [-] below which a change that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-7;
 /// Iterations of a step [-].
 const SOLVES_MAX: usize = 30;
@@ -56,32 +57,32 @@ const THETA_MAX: f64 = 7.5;
 /// A beam over one step.
 #[derive(Debug, Clone, Copy)]
 pub struct BeamStep<'a> {
-    /// Its elements.
+    /// Elements of the beam.
     pub beam: &'a Beam,
-    /// Its lumped mass, weight, drag and contact.
+    /// Lumped mass, weight, drag and contact of the nodes.
     pub nodes: &'a Nodes,
-    /// What holds its ends, and the mean loads on them over the step.
+    /// Supports of the ends, and the mean loads on them over the step.
     pub ends: [BeamEnd; 2],
-    /// Where held unknowns of the ends are after the step.
+    /// Held unknowns of the ends after the step.
     pub targets: [Section; 2],
-    /// What is at its free ends.
+    /// Bodies at the free ends.
     pub bodies: [Option<Body<'a>>; 2],
     /// Length of the step [s].
     pub length: f64,
-    /// Whether the flow of energy is evaluated.
+    /// True if the flow of energy is evaluated.
     pub energy_balance: bool,
 }
 
-/// Why a step failed, and where.
+/// Failure of a step, with its node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stuck {
-    /// Node where it went wrong.
+    /// Node of the failure.
     pub node: usize,
-    /// What went wrong.
+    /// Reason of the failure.
     pub reason: StuckReason,
 }
 
-/// What keeps a beam from stepping on.
+/// Reasons for which a beam cannot complete a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum StuckReason {
     /// Newton's method found no solution.
@@ -90,13 +91,13 @@ pub enum StuckReason {
     /// A node turns by nearly half a circle in a step.
     #[error("the beam turns by more than 150 degrees in a step")]
     Turned,
-    /// An element is bent or twisted beyond what two sections can tell.
+    /// An element is bent or twisted beyond the angle that two sections resolve.
     #[error("the beam turns by more than 60 degrees from this node to the next")]
     Folded,
 }
 
 impl StuckReason {
-    /// What to try.
+    /// Returns a remedy.
     pub fn advice(self) -> &'static str {
         match self {
             StuckReason::Diverged | StuckReason::Turned => {
@@ -122,7 +123,7 @@ pub struct BeamWork {
 }
 
 impl BeamWork {
-    /// Scratch for a beam of so many nodes.
+    /// Scratch for a beam of `nodes` nodes.
     pub fn new(nodes: usize) -> BeamWork {
         let section = Section {
             position: Vector3::zeros(),
@@ -141,10 +142,10 @@ impl BeamWork {
         }
     }
 
-    /// Moves `shape` by one step; gives linear solves and the energy that crossed the border of the beam.
+    /// Moves `shape` by one step; returns linear solves and the energy that crossed the boundary of the beam.
     ///
     /// # Errors
-    /// The iteration did not converge; the shape is as it was.
+    /// The iteration did not converge; the shape is unchanged.
     pub fn step(&mut self, case: &BeamStep, shape: &mut LineState) -> Result<(usize, Flow), Stuck> {
         self.predict(case, shape);
         let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
@@ -180,7 +181,7 @@ impl BeamWork {
         Err(Stuck { node, reason })
     }
 
-    /// Takes over the state before the step and guesses the one after it.
+    /// Copies the state before the step and guesses the one after it.
     fn predict(&mut self, case: &BeamStep, shape: &LineState) {
         let state = beam_state(shape);
         let dt = case.length;
@@ -215,14 +216,14 @@ impl BeamWork {
         self.turn();
     }
 
-    /// Mass of a node and what is there with their added mass [kg], for a tangent and a height [m].
+    /// Mass of a node and of the body there with their added mass [kg], for a tangent and a height [m].
     fn effective_mass(&self, case: &BeamStep, i: usize, tangent: Vector3<f64>, height: f64) -> Matrix3<f64> {
         let body = self.body(case, i);
         let own = body.map_or(0.0, |body| body.point.at(height).mass);
         Matrix3::from_diagonal_element(own) + node_mass(case.nodes, i, tangent)
     }
 
-    /// What is at a node besides the line.
+    /// Body at a node in addition to the line.
     fn body<'a>(&self, case: &BeamStep<'a>, i: usize) -> Option<Body<'a>> {
         let last = self.before.len() - 1;
         let [a, b] = case.bodies;
@@ -242,7 +243,7 @@ impl BeamWork {
         }
     }
 
-    /// Applies the solution of the linear system; the node that changed most and by how much [-].
+    /// Applies the solution of the linear system; returns the node that changed most and its change [-].
     fn correct(&mut self, length: f64) -> (usize, f64) {
         let largest = self.largest_change(length);
         let turned = self
@@ -331,7 +332,7 @@ impl BeamWork {
         block += slope / dt;
     }
 
-    /// Water and seabed on a node and on what is there.
+    /// Adds the forces of water and seabed on a node and on the body there.
     fn add_surroundings(&mut self, case: &BeamStep, i: usize) {
         let dt = case.length;
         if let Some(k) = drag_of(case.nodes, i) {
@@ -354,7 +355,7 @@ impl BeamWork {
         }
     }
 
-    /// Where a node is before and after the step [m].
+    /// Places of a node before and after the step [m].
     fn places(&self, i: usize) -> [&Vector3<f64>; 2] {
         [&self.before[i].position, &self.now[i].position]
     }
@@ -370,7 +371,7 @@ impl BeamWork {
         Some(contact_step(k, penetration, reach, case.length))
     }
 
-    /// Energy that crossed the border of the beam in the step.
+    /// Energy that crossed the boundary of the beam in the step.
     fn flow(&self, case: &BeamStep, shape: &LineState) -> Flow {
         let mut flow = Flow::default();
         let (dt, last) = (case.length, self.now.len() - 1);
@@ -414,7 +415,7 @@ impl BeamWork {
         element.length * gradient[end].tr_mul(&stress)
     }
 
-    /// Work of the loads on the free unknowns of an end, and of what moves the held ones [J].
+    /// Work of the loads on the free unknowns of an end, and of the prescribed motion of the held ones [J].
     fn end_work(&self, case: &BeamStep, shape: &LineState, end: usize, node: usize) -> f64 {
         let moved = self.now[node].position - self.before[node].position;
         let change = join(moved, self.theta[node]);
@@ -425,7 +426,7 @@ impl BeamWork {
             .sum()
     }
 
-    /// What water, bed and mass damping take from a node [J].
+    /// Energy that water, bed and mass damping dissipate at a node [J].
     fn node_loss(&self, case: &BeamStep, shape: &LineState, i: usize) -> f64 {
         let moved = self.now[i].position - self.before[i].position;
         let mut lost = 0.0;
@@ -438,7 +439,8 @@ impl BeamWork {
         if let Some(damping) = &case.nodes.mass_damping {
             lost += damping[i] / case.length * moved.norm_squared();
         }
-        // An added mass that turns with the line or dips takes or gives what its constant value in the step leaves out.
+        // An added mass that turns with the line or enters the water accounts for the part that its constant value in
+        // the step leaves out.
         let before = shape.velocity[i];
         let after = 2.0 / case.length * moved - before;
         let turned = |section: &Section, v: Vector3<f64>| {
@@ -491,7 +493,7 @@ fn mixture(step: f64) -> Mixture {
     }
 }
 
-/// The beam's part of a line's state.
+/// Part of a line's state that belongs to its beam.
 fn beam_state(shape: &LineState) -> &crate::model::BeamState {
     shape
         .beam

@@ -1,14 +1,16 @@
-//! Which integrator serves a network, and its largest step.
+//! Choice of a network's integrator and its largest step.
 //!
-//! Of the integrators that serve a network, the one whose steps cost least for a second of motion. The explicit leapfrog costs least a step, and
-//! takes those of its axial limit. Its axial-implicit variant costs about three times as much; it takes the steps that accuracy asks for, which follow
-//! the axial waves of single lines and the elastic oscillation of free points, or, where the scene names it, the longest that transverse waves allow
-//! under the tensions as they come: on lindahl_slow 0.7 as many as under three times the static tension throughout, with the same errors.
-//! Generalised-α costs about fifty times as much: it serves networks joined at free points, and single lines whose slowest wave runs through them
-//! within one step of the longest allowed, such as a taut line almost without mass: they are at rest in every step, whatever its length.
+//! Of the integrators that can handle a network, the one that costs least per second of motion is chosen. The
+//! explicit leapfrog costs least per step, and uses steps up to its axial limit. Its axial-implicit variant costs
+//! about three times as much. Its steps follow from accuracy: from the axial waves of single lines and the elastic
+//! oscillation of free points, or, where the scene selects it, the longest that transverse waves allow under the
+//! current tensions: on lindahl_slow 0.7 as many as under three times the static tension throughout, with the same
+//! errors. Generalised-α costs about fifty times as much. It handles networks joined at free points, and single lines
+//! whose slowest wave passes through them within one step of the longest allowed, such as a taut line almost without
+//! mass: they are at rest in every step, at any step size.
 //!
-//! Lines that bend, mix strain measures or have nodes without mass are integrated fully implicitly whatever that costs. Beams have an
-//! integrator of their own.
+//! Lines that bend, mix strain measures or have nodes without mass are integrated fully implicitly at any cost. Beams
+//! have a separate integrator.
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
@@ -18,27 +20,27 @@ use super::limit::{
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 
-/// Part of the transverse limit that no line needs to go below for accuracy: where axial waves are much faster than that,
-/// the line stretches quasi-statically [-].
+/// Ratio to the transverse limit below which steps are not needed for accuracy: where axial waves are much faster
+/// than that, the line stretches quasi-statically [-].
 const AXIAL_RESOLUTION_MIN: f64 = 0.125;
 /// Margin on the static tension for the transverse limit: snaps exceed it [-].
 const SNAP_MARGIN: f64 = 3.0;
 
-/// What was decided for a network, for the log and for `check`.
+/// Choice made for a network, for the log and for `check`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     /// Integrator.
     pub integrator: Integrator,
     /// Largest internal step [s]; at three times the static tension where [`Self::longest`] is more.
     pub step_max: f64,
-    /// What it grows to under lesser tensions [s].
+    /// Longest step, under lesser tensions [s].
     pub longest: f64,
-    /// What bounds explicit steps.
+    /// Limit of explicit steps.
     pub explicit: ExplicitLimit,
 }
 
 impl Choice {
-    /// Integrator and step, and why.
+    /// Integrator and step, with the reason.
     pub fn in_words(&self) -> String {
         let (step, explicit) = (seconds(self.step_max), seconds(self.explicit.step));
         match self.integrator {
@@ -71,7 +73,7 @@ impl Choice {
         }
     }
 
-    /// For a network whose lines carry the static tensions that `tension` [N] tells.
+    /// Choice for a network whose lines carry the static tensions `tension` [N].
     pub fn new(model: &Model, network: &Network, tension: &impl Fn(usize) -> f64) -> Choice {
         let least = |limit: &dyn Fn(&Line) -> f64| {
             let lines = network.lines.iter().map(|&line| limit(&model.lines[line]));
@@ -138,7 +140,7 @@ impl Choice {
     }
 }
 
-/// A time [s] in the multiple of the second that fits, in four digits.
+/// Time [s] in the suitable multiple of the second, with four digits.
 fn seconds(time: f64) -> String {
     let (scale, unit) = match time {
         t if t >= 1.0 => (1.0, "s"),
@@ -157,7 +159,7 @@ struct Steps {
     implicit: f64,
 }
 
-/// Step of generalised-α [s]: one that follows the free points, where it need not be taken.
+/// Step of generalised-α [s]: one that resolves the free points, where generalised-α is a choice.
 fn implicit_step(model: &Model, network: &Network) -> f64 {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
     let choosy = lines.all(Line::serves_leapfrog);

@@ -1,7 +1,8 @@
-//! What steps cost, roughly, for choices that depend on it: which integrator serves a network cheapest, and whether threads pay.
+//! Approximate cost of steps, for the choices that depend on it: the cheapest integrator of a network, and the use of
+//! threads.
 //!
-//! Times at a node, as the bench `step` measures them on whole communication steps of short lines; choices need their ratios, and
-//! orders of magnitude.
+//! Times per node, as the bench `step` measures them on whole communication steps of short lines; choices need their
+//! ratios and orders of magnitude only.
 
 use crate::model::{Model, Network};
 use crate::scene::Integrator;
@@ -23,9 +24,9 @@ const CATENARY: f64 = 100.0;
 /// Cost of an axial-implicit step over that of an explicit one [-].
 pub const AXIAL_IMPLICIT_COST: f64 = AXIAL_IMPLICIT / EXPLICIT;
 /// Cost of a step of generalised-α over that of an explicit one [-].
-pub const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
+pub(super) const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
 /// Time to sum a wave component at a node [ns].
-pub const COMPONENT: f64 = 5.0;
+pub(super) const COMPONENT: f64 = 5.0;
 
 /// Time of a step at a node of a network [ns].
 pub fn node_time(model: &Model, network: &Network, integrator: Integrator) -> f64 {

@@ -1,15 +1,15 @@
 //! Energy balance of the networks: stored energy, external work, dissipation. An observer: it reads the results of a step and changes none of them.
 //!
 //! Stored:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z + Σ C  over free nodes, segments, joints, free points and dry segments, with
-//!        C the energy of the buoyancy that dry segments lack; by kind in [`Energy`].
+//!        C the energy of the buoyancy that dry segments lose; by kind in [`Energy`].
 //! External work: of prescribed ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M of clamps that
 //!        turn; of point loads and end moments; Σ f·u dt of the drag f in water of velocity u; of the Froude-Krylov force, and of the
 //!        difference between the buoyancy under a wave and that in still water.
 //! Dissipation: drag at the velocity relative to the water; axial, bending and mass damping; the seabed, whose springs return some of it. Added mass
 //!        that enters the water, or turns with its line (½ vᵀṀ v), counts as negative dissipation.
 //!
-//! A prescribed end that jumps at a communication point does the work by which the stored energy rises, all other nodes being where they were: no time
-//! passes, and no damper acts.
+//! A prescribed end that jumps at a communication point does the work by which the stored energy rises, with all
+//! other nodes in place: no time passes, and no damper acts.
 //!
 //! The springs of viscoelastic segments store energy, their dampers dissipate it. An end that is released from a prescribed point brings the energy of its
 //! half node, which counts as external work.
@@ -58,17 +58,17 @@ pub struct Flow {
 /// Stored energy, by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
-    /// Of motion [J].
+    /// Kinetic energy [J].
     pub kinetic: f64,
-    /// Of stretch [J].
+    /// Strain energy of stretch [J].
     pub axial: f64,
-    /// Of bending [J].
+    /// Strain energy of bending [J].
     pub bending: f64,
-    /// Of shear [J].
+    /// Strain energy of shear [J].
     pub shear: f64,
-    /// Of torsion [J].
+    /// Strain energy of torsion [J].
     pub torsion: f64,
-    /// Of weight less buoyancy, above z = 0 [J].
+    /// Potential energy of weight less buoyancy, above z = 0 [J].
     pub gravitational: f64,
 }
 
@@ -78,7 +78,7 @@ impl Energy {
         self.kinetic + self.axial + self.bending + self.shear + self.torsion + self.gravitational
     }
 
-    /// The sum of all kinds but motion [J].
+    /// The sum of all kinds except kinetic energy [J].
     pub fn at_rest(&self) -> f64 {
         self.total() - self.kinetic
     }
@@ -120,7 +120,7 @@ impl Flow {
             && self.algorithmic_dissipation.is_finite()
     }
 
-    /// This flow times a factor.
+    /// Returns this flow times a factor.
     pub fn times(self, factor: f64) -> Flow {
         Flow {
             external_work: factor * self.external_work,
@@ -142,7 +142,7 @@ impl EnergyBalance {
     }
 }
 
-/// Energy held by a network, at the time its velocities belong to.
+/// Energy of a network, at the time of its velocities.
 pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
     let mut sum = Energy::default();
     for &line in &network.lines {
@@ -172,13 +172,13 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
     sum
 }
 
-/// Time from the velocities to the positions of a network that a leapfrog serves [s].
+/// Time from the velocities to the positions of a network with a leapfrog [s].
 fn half_step(state: &State, network: &Network) -> Option<f64> {
     let shape = &state.lines[network.lines[0]];
     (!shape.half_step.is_unset()).then(|| shape.velocities_before().1)
 }
 
-/// Energy held by a line of this shape in the sea of a state.
+/// Energy of a line of this shape in the waves of a state.
 fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) -> Energy {
     let line = &model.lines[index];
     if let Some(view) = BeamView::of(line, shape) {
@@ -233,7 +233,7 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
 }
 
 /// Flow of energy into a leapfrog's line whose prescribed ends jump to `ends`, positions [m] and velocities [m/s] at the time of the other
-/// velocities, while its nodes stay where they are. The kinetic energy that the turn of the segments brings counts as dissipation, as in the flow of a
+/// velocities, while its nodes stay where they are. The change of kinetic energy due to the rotation of the segments counts as dissipation, as in the flow of a
 /// leapfrog. `moved` is room for its shape.
 pub fn jump_flow(
     model: &Model,
@@ -273,7 +273,7 @@ pub fn jump_flow(
     }
 }
 
-/// Energy of the buoyancy that a line lacks whose nodes are at `position` [m] [J].
+/// Energy of the buoyancy that is missing from the dry parts of a line whose nodes are at `position` [m] [J].
 fn lacking_energy(surface: &Surface, position: &[Vector3<f64>]) -> f64 {
     let segments = position.windows(2).enumerate();
     let energy =
@@ -281,7 +281,7 @@ fn lacking_energy(surface: &Surface, position: &[Vector3<f64>]) -> f64 {
     segments.map(energy).sum()
 }
 
-/// A line on a winch as it was laid out `lag` [s] ago, when the leapfrog has its velocities.
+/// Line on a winch as laid out `lag` [s] ago, at the time of the leapfrog's velocities.
 fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64) -> Line {
     let mut then = line.clone();
     if lag > 0.0 {
@@ -290,7 +290,8 @@ fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64
     then
 }
 
-/// How far the material at a winch has gone beyond the winch in `lag` [s], by which its velocity misses the winch's own place [m].
+/// Distance that the material at a winch has moved beyond the winch in `lag` [s], by which its velocity misses the
+/// winch's place [m].
 fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     let Some(winch_state) = shape.winch_state else {
         return Vector3::zeros();
@@ -300,7 +301,7 @@ fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     lag * winch_state.half_step[1] / line.segments.length[last - 1] * chord
 }
 
-/// Energy of motion of a node at a velocity [m/s], with what it carries along across and along the line [J].
+/// Kinetic energy of a node at a velocity [m/s], with the masses that it carries across and along the line [J].
 fn node_motion(line: &Line, shape: &LineState, i: usize, velocity: Vector3<f64>, water: WaterAlong) -> f64 {
     let masses = line.nodes.masses(i, dry_part(line, shape, i, water));
     0.5 * Slender::new(masses).square(velocity, tangent(shape, i))
@@ -312,13 +313,13 @@ fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 
     surface.map_or(0.0, |surface| surface.node_in(water, i, &shape.position).part)
 }
 
-/// How many ends of a network's lines are released from their points.
+/// Number of ends of a network's lines that are released from their points.
 pub fn released_ends(network: &Network, state: &State) -> usize {
     let ends = network.lines.iter().flat_map(|&line| state.lines[line].released);
     ends.filter(|released| *released).count()
 }
 
-/// Energy [J] that the half nodes bring to their lines which are released from held points between two states.
+/// Energy [J] of the half nodes that join their lines by release from held points between two states.
 pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State; 2]) -> f64 {
     let mut sum = 0.0;
     for &index in &network.lines {
@@ -335,7 +336,7 @@ pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State;
     sum
 }
 
-/// Energy of motion and of weight of the half node at an end, at the time its velocity belongs to [J].
+/// Kinetic energy and potential energy of weight of the half node at an end, at the time of its velocity [J].
 fn end_energy(model: &Model, state: &State, index: usize, end: End) -> f64 {
     let (line, shape) = (&model.lines[index], &state.lines[index]);
     let water = model.water_along(state, index, state.time);

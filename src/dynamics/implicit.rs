@@ -8,23 +8,26 @@
 //!
 //!   (1 − α_f) M' b' + α_f M a = (1 − α_f) f(r', v', t') + α_f f(r, v, t),   (1 − α_f) b' = (1 − α_m) a' + (α_m − α_f) a.
 //!
-//! With a mass that does not change this is (1 − α_m) M a' + α_m M a on the left, as it is usually written. a is the acceleration at
-//! a time (α_f − α_m) Δt after that of r and v: with M' a' a mass that turns with its line, or that water joins, would be taken at the
-//! wrong time, and the scheme be of first order. b' is the acceleration at t'.
+//! With a constant mass this is (1 − α_m) M a' + α_m M a on the left, as it is usually written. a is the acceleration
+//! at a time (α_f − α_m) Δt after that of r and v. With M' a' a mass that turns with its line, or added mass that
+//! enters the water, would be taken at the wrong time, and the scheme would be of first order. b' is the acceleration
+//! at t'.
 //!
 //! * Generalised-α of spectral radius ρ at infinite frequency: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f,
 //!   β = ¼ (1 − α_m + α_f)².
 //! * Bossak(α, γ): α_m = α ≤ 0, α_f = 0, β = ¼ (1 − α)²; second order for γ = ½ − α.
 //!
-//! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The seabed's
-//! damper fades in over two static penetrations above and below the bed, or over what the node moves in a step if that is
-//! more, instead of switching on at touch, which Newton's method would not survive; what rests on the bed is not affected.
+//! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The
+//! seabed's damper fades in over two static penetrations above and below the bed, or over the displacement of the
+//! node in a step if that is larger. A damper that switches on at touch would prevent the convergence of Newton's
+//! method. Nodes at rest on the bed are not affected.
 //!
-//! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer. Meth. Eng. 15,
-//! 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound where slack cables snap taut without
-//! damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to 10 ms, ρ = 0.5 and more): forces before and after a step are no
-//! measure of what a spring takes in between. The segments therefore pull as [`crate::elements`] has them over a step, by the
-//! discrete gradient of their energy; the same cable then never gains energy at any ρ, and keeps it at ρ = 1.
+//! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer.
+//! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound
+//! where slack cables snap taut without damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to
+//! 10 ms, ρ = 0.5 and more): the forces before and after a step do not determine the energy that a spring takes in
+//! between. The segments therefore pull by the discrete gradient of their energy over a step ([`crate::elements`]).
+//! The same cable then never gains energy at any ρ, and conserves it at ρ = 1.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -43,7 +46,7 @@ pub const BOSSAK_ALPHA: f64 = -0.3;
 const NEWTON_TOLERANCE: f64 = 1e-7;
 /// Newton iterations of a step.
 const ITERATIONS_MAX: usize = 15;
-/// Iterations after which corrections that fall too slowly are taken for ones that go in circles.
+/// Iterations after which corrections that fall too slowly are taken for a cycle.
 const CIRCLING: usize = 5;
 /// Parts that a step may be cut into by halving: twelve halvings.
 const PARTS_MAX: usize = 4096;
@@ -84,7 +87,7 @@ impl Scheme {
         }
     }
 
-    /// What forces weigh before and after a step of `dt` [s], and what v' [1/s] and b' [1/s²] change by with r'.
+    /// Weights of the forces before and after a step of `dt` [s], and derivatives of v' [1/s] and b' [1/s²] with r'.
     fn weights(&self, dt: f64) -> ([Weights; 2], [f64; 2]) {
         let Scheme {
             alpha_m,
@@ -117,7 +120,7 @@ impl Scheme {
         ([before, after], [per_velocity, now])
     }
 
-    /// What a scene's solver table asks for.
+    /// Scheme that a scene's solver table selects.
     pub fn new(solver: &Solver) -> Scheme {
         match (solver.integrator, solver.bossak) {
             (Integrator::Bossak, Some(bossak)) => Scheme::bossak(bossak.alpha, bossak.gamma),
@@ -127,8 +130,8 @@ impl Scheme {
     }
 }
 
-/// Accelerations of a network that satisfy its equation of motion at time `t` [s], as the integrator needs them where a motion
-/// starts. The held points move as `held` says. Nodes without mass keep zero.
+/// Accelerations of a network that satisfy its equation of motion at time `t` [s], for the start of a motion. The
+/// held points move according to `held`. Nodes without mass keep zero.
 pub fn start<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -213,19 +216,19 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
 /// A span of time to pass in equal steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Its start [s].
+    /// Start of the step [s].
     pub start: f64,
-    /// Its end [s].
+    /// End of the step [s].
     pub end: f64,
     /// Longest step [s].
     pub step_max: f64,
 }
 
-/// Advances one network through a span of time, not at all where its end is not after its start; `held` gives position,
-/// velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
+/// Advances one network through a span of time, not at all where its end is not after its start; `held` returns
+/// position, velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
 ///
 /// # Errors
-/// Newton's method failed even in steps 4096 times smaller; the state is then as it was.
+/// Newton's method failed even in steps 4096 times smaller; the state is then unchanged.
 pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -242,7 +245,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     advance_observed(model, number, state, held, span, work, |_| {})
 }
 
-/// What moves a network from outside, and by which scheme it follows.
+/// Prescribed motion and loads of a network, with the scheme that integrates it.
 #[derive(Debug)]
 pub struct Driving<'a, K> {
     /// Position, velocity and acceleration of held points.
@@ -251,7 +254,8 @@ pub struct Driving<'a, K> {
     pub scheme: &'a Scheme,
 }
 
-/// [`advance`], showing every internal step, and once more as one of no length where ends were released after it.
+/// [`advance`], showing every internal step, and once more with a step of no length where ends were released after
+/// it.
 ///
 /// # Errors
 /// As there.
@@ -299,7 +303,7 @@ impl Span {
     }
 }
 
-/// What does not change from step to step.
+/// Data that stay constant from step to step.
 struct Integration<'a, K> {
     model: &'a Model,
     network: &'a Network,
@@ -309,7 +313,7 @@ struct Integration<'a, K> {
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
-    /// Makes the step from `t0` to `t1` [s], in halves where Newton's method fails.
+    /// Takes the step from `t0` to `t1` [s], in halves where Newton's method fails.
     fn pass(
         &self,
         [t0, t1]: [f64; 2],
@@ -391,7 +395,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
     }
 
-    /// One step from the state `before`; whether Newton's method converged. If not, the state is spoilt.
+    /// Takes one step from the state `before`; returns whether Newton's method converged. If not, the state is
+    /// undefined.
     fn step(&self, [t0, t1]: [f64; 2], before: &State, state: &mut State, work: &mut Workspace) -> bool {
         let dt = t1 - t0;
         let ([old, new], rates) = self.scheme.weights(dt);
@@ -415,7 +420,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             if !correction.is_finite() {
                 return false;
             }
-            // A part p of Newton's step leaves 1 − p of it where forces are smooth: corrections midway between that and the last go in circles.
+            // A part p of Newton's step leaves 1 − p of it where forces are smooth; a ratio of corrections midway
+            // between that and the last means a cycle.
             let left_over = (1.0 - 0.5 * part) * last;
             let circles = iteration >= CIRCLING && correction > left_over.max(tolerance);
             part = if circles { 0.5 } else { 1.0 };
@@ -431,8 +437,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         false
     }
 
-    /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments that turn within the step make it
-    /// unsymmetric, and with joints of lines that bend that are not indefinite.
+    /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments
+    /// that turn within the step make it unsymmetric, and with positive semi-definite joints of lines that bend.
     fn solve_indefinite(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         let bends = |&line: &usize| self.model.lines[line].bending.is_some();
         if self.network.lines.iter().any(bends) {
@@ -455,7 +461,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         lines.copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Moves everything on with constant acceleration.
+    /// Predicts the state at constant acceleration.
     fn predict(&self, state: &mut State, dt: f64) {
         for &index in &self.network.lines {
             let nodes = &mut state.lines[index];

@@ -6,26 +6,31 @@
 //!
 //! Δt_max = (2/ω)(√(1 + ζ²) − ζ),
 //!
-//! of which 0.9 is used. That is the limit of springs that pull and push. Those of a line only pull, and change between two maps where it
-//! slackens: with θ from ωΔt = 2 sin(θ/2), the trace of k taut steps and a slack one is 2 cos((k + ½)θ)/cos(θ/2), whose size exceeds 2 about
-//! (k + ½)θ = π, for θ between π/(k + 1) and π/k. One taut step and a slack one, over and over, feed on each other above ωΔt = √2, two and one from
-//! 1 to √2, three and one from 0.77 to 1, and more of them, ever more weakly, below: a slack line without damping gathers energy in its shortest waves.
-//! Lines with little damping use 0.38 of the limit, ωΔt ≤ 0.76: of random scenes whose leapfrog keeps a ledger, 97 % close within 2 %
-//! then in equal steps and 99 % in irregular ones, where 0.5 of the limit left 95 and 96 %.
-//! A line that may part needs more damping to use more of it: a loose end cracks like a whip, slack and taut by turns.
+//! of which 0.9 is used. That is the limit of springs that pull and push. The springs of a line only pull, and change
+//! between two maps where it slackens. With θ from ωΔt = 2 sin(θ/2), the trace of k taut steps and a slack one is 2
+//! cos((k + ½)θ)/cos(θ/2), whose size exceeds 2 about (k + ½)θ = π, for θ between π/(k + 1) and π/k. One taut step
+//! and a slack one in alternation are unstable above ωΔt = √2, two and one from 1 to √2, three and one from 0.77 to
+//! 1, and longer sequences, ever more weakly, below: a slack line without damping gathers energy in its shortest
+//! waves. Lines with little damping use 0.38 of the limit, ωΔt ≤ 0.76: of random scenes whose leapfrog keeps an
+//! energy balance, 97 % close within 2 % in equal steps and 99 % in irregular ones, where 0.5 of the limit left 95
+//! and 96 %. A line that may be released needs more damping to use more of the limit: a loose end cracks like a whip,
+//! alternately slack and taut.
 //!
 //! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c, or 1.2/ω with k = T/l. Lines that may come out of the water are taken with the mass that
 //! they have in air, and with the stiffness of their waterplane.
 //!
-//! Quadratic drag is taken explicitly, at v* = 1.5 v_{n−½} − 0.5 v_{n−3/2}. A velocity that changes its sign in every step has v* = 2v and drag 4K|v|v, which
-//! makes −v of it for K|v|Δt/M = ½; a steady one holds against disturbances, of which drag takes 2K|v|v*, up to the same limit. Beyond it velocities
-//! grow with every step, and the faster the greater they are: a communication step that ends beyond is made anew in shorter steps.
+//! Quadratic drag is taken explicitly, at v* = 1.5 v_{n−½} − 0.5 v_{n−3/2}. A velocity that changes its sign in every
+//! step has v* = 2v and drag 4K|v|v, which turns it into −v for K|v|Δt/M = ½. A steady velocity is stable against
+//! disturbances, of which drag takes 2K|v|v*, up to the same limit. Beyond it velocities grow with every step, and
+//! the faster the greater they are: a communication step that ends beyond is repeated in shorter steps.
 //!
-//! In the shortest wave velocities change their sign in every step for springs, dampers, damping by mass (α) and drag alike, so that these add up:
+//! In the shortest wave velocities change their sign in every step for springs, dampers, damping by mass (α) and drag
+//! alike, so that the terms add up:
 //!
 //! ω²Δt²/4 + (ζω + ½α + 2K|v|/M)Δt ≤ 1,
 //!
-//! which is the first limit where neither α nor drag is, and the last where nothing else is ([`ExplicitLimit`]).
+//! which reduces to the first limit without α and drag, and to the last without springs and dampers
+//! ([`ExplicitLimit`]).
 //!
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
@@ -35,30 +40,32 @@ use std::ops::{Range, RangeInclusive};
 use crate::model::{End, Line, Model, SHORTEST, Segments};
 use crate::physics::stretch::StretchLaw;
 
-/// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast blows up with five times the drag and 20 elements.
+/// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast diverges with five times the drag
+/// and 20 elements.
 const SAFETY: f64 = 0.9;
 /// The same of a line without damping [-].
 const SAFETY_UNDAMPED: f64 = 0.38;
 /// Damping ratio of the shortest waves from which slackening gathers no energy at the full safety [-].
 const DAMPING_RATIO_ENOUGH: f64 = 0.016;
-/// The same of a line that may part [-]. Measured on a folded chain let go at an end, 2 % damped, of 40 to 160 elements: with 0.9, 0.72, 0.63 and 0.54 of
-/// the limit the crack gains up to 3.2, 1.1, 0.5 and 0 % of its energy.
+/// Damping ratio of the same for a line that may be released [-]. Measured on a folded chain released at an end, 2 %
+/// damped, of 40 to 160 elements: with 0.9, 0.72, 0.63 and 0.54 of the limit the crack gains up to 3.2, 1.1, 0.5 and
+/// 0 % of its energy.
 const DAMPING_RATIO_WHIP: f64 = 0.1;
-/// Steps to the first axial period that leave an error of 1 % in a tension with snaps [-]: half of the tolerance they belong to, so that
-/// the mesh has the rest of it. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
+/// Steps to the first axial period that leave an error of 1 % in a tension with snaps [-]: half of the tolerance they
+/// belong to; the other half is left to the mesh. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
 /// Strain up to which a stiffening measure is stable [-]; beyond it the steps shorten as it stiffens.
 const STRAIN_EXPECTED: f64 = 0.05;
 /// Greatest K|v|Δt/M that explicit drag damps at [-].
 const DRAG_COURANT: f64 = 0.5;
-/// Part of it that a communication step starts with, as nodes may speed up in it [-].
+/// Part of the limit that a communication step starts with, as nodes may accelerate in it [-].
 const DRAG_MARGIN: f64 = 0.8;
 /// Halvings of the interval in which the square of a frequency is sought [-].
 const HALVINGS: usize = 30;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
-/// What bounds explicit steps: the node whose shortest wave is the quickest.
+/// Limit of explicit steps, at the node whose shortest wave has the highest frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExplicitLimit {
     /// Longest step without drag, with safety [s].
@@ -70,7 +77,7 @@ pub struct ExplicitLimit {
 }
 
 impl ExplicitLimit {
-    /// Of what no step is too long for.
+    /// Limit that admits any step.
     pub fn none() -> ExplicitLimit {
         ExplicitLimit {
             step: f64::INFINITY,
@@ -79,7 +86,8 @@ impl ExplicitLimit {
         }
     }
 
-    /// For a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; the full safety from the damping ratio `enough` on.
+    /// Limit for a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; the full safety from the damping ratio
+    /// `enough` on.
     fn new(omega: f64, lag: f64, alpha: f64, enough: f64) -> ExplicitLimit {
         let dampers = 0.5 * (omega * omega * lag + alpha);
         let damped = match omega > 0.0 {
@@ -96,12 +104,12 @@ impl ExplicitLimit {
         limit
     }
 
-    /// The one that allows less.
+    /// Returns the limit that allows less.
     pub fn or(self, other: ExplicitLimit) -> ExplicitLimit {
         if other.step < self.step { other } else { self }
     }
 
-    /// The same where springs are so many times stiffer [-] than was expected.
+    /// Limit with springs stiffer than expected by a factor [-].
     pub fn stiffened(self, times: f64) -> ExplicitLimit {
         ExplicitLimit {
             step: self.step / times.sqrt(),
@@ -110,12 +118,12 @@ impl ExplicitLimit {
         }
     }
 
-    /// Step [s] to set out with where the greatest K|v|/M of all nodes is `rate` [1/s].
+    /// First step [s] of a span where the greatest K|v|/M of all nodes is `rate` [1/s].
     pub fn with_drag(&self, rate: f64) -> f64 {
         self.step.min(self.stable(rate / DRAG_MARGIN))
     }
 
-    /// Whether steps [s] at whose end the greatest K|v|/M is `rate` [1/s] were short enough.
+    /// Returns whether steps [s] at whose end the greatest K|v|/M is `rate` [1/s] were short enough.
     pub fn holds(&self, rate: f64, step: f64) -> bool {
         step <= self.stable(rate)
     }
@@ -144,7 +152,7 @@ pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     limit
 }
 
-/// Rate α at which damping by mass takes the velocity of a node [1/s].
+/// Rate α at which damping by mass decelerates a node [1/s].
 fn fading(line: &Line, node: usize) -> f64 {
     let damping = line.nodes.mass_damping.as_ref();
     damping.map_or(0.0, |damping| damping[node] / line.least_mass(node))
@@ -186,12 +194,12 @@ fn share_at(line: &Line, node: usize, shares: EndShares) -> f64 {
     }
 }
 
-/// The segments beside a node: one at an end.
+/// Segments adjacent to a node: one at an end.
 fn beside(line: &Line, node: usize) -> Range<usize> {
     node.saturating_sub(1)..(node + 1).min(line.segment_count())
 }
 
-/// Explicit step limit of the node before the end segment of a line on a winch when that is shortest, wherever it may be.
+/// Explicit step limit of the node before the end segment of a line on a winch at its shortest, at any place.
 fn winch_limit(winch_state: &Line) -> ExplicitLimit {
     let limit = |i: usize| {
         let (left, right) = (
@@ -207,7 +215,7 @@ fn winch_limit(winch_state: &Line) -> ExplicitLimit {
     nodes.map(limit).fold(ExplicitLimit::none(), ExplicitLimit::or)
 }
 
-/// Explicit step limit of a free point with all that is tied to it; none without a line.
+/// Explicit step limit of a free point with its lines; none without a line.
 pub fn free_point_limit(model: &Model, point: usize) -> ExplicitLimit {
     let Some(free) = model.points[point].free() else {
         return ExplicitLimit::none();
@@ -255,7 +263,7 @@ fn stiffness(line: &Line, i: usize) -> f64 {
     segments.in_motion(i).0 * slope / segments.length[i]
 }
 
-/// Slope of a strain measure that the step limits count on [-].
+/// Slope of a strain measure that the step limits assume [-].
 pub(super) fn expected_slope(law: &StretchLaw) -> f64 {
     law.at(STRAIN_EXPECTED).slope.max(1.0)
 }
@@ -274,9 +282,10 @@ fn damping_enough(line: &Line) -> f64 {
     }
 }
 
-/// Square of the greatest frequency of axial waves in a line whose ends are at prescribed points, or have shares of free ones [1/s²], its nodes having
-/// the masses that they have in air and moving along it alone; infinite where its springs may be stiffer than its axial stiffness. By bisection with Sturm's theorem (Golub & Van
-/// Loan 2013, Matrix Computations, section 8.4).
+/// Square of the greatest frequency of axial waves in a line whose ends are at prescribed points, or have shares of
+/// free ones [1/s²]. The nodes have their masses in air and move along the line only. Infinite where the springs may
+/// be stiffer than the axial stiffness. Found by bisection with Sturm's theorem (Golub & Van Loan 2013, Matrix
+/// Computations, section 8.4).
 pub fn axial_frequency_squared(line: &Line, shares: EndShares) -> f64 {
     let law = |law: &StretchLaw| matches!(law, StretchLaw::Engineering | StretchLaw::Tabulated(_));
     if line.segments.viscoelastic.is_some() || !line.segments.law.iter().all(law) {
@@ -361,7 +370,7 @@ fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64
     (0..line.segment_count()).map(time).sum()
 }
 
-/// Greatest stiffness that the water's surface gives a node [N/m].
+/// Greatest stiffness of a node due to the water's surface [N/m].
 fn heave(line: &Line, node: usize) -> f64 {
     let surface = line.surface.as_ref();
     surface.map_or(0.0, |surface| surface.stiffness_max(node))
@@ -374,7 +383,7 @@ pub fn point_heave_step(model: &Model, point: usize) -> f64 {
     SAFETY * 2.0 / (stiffness / least_mass(model, point)).sqrt()
 }
 
-/// Mass of a free point and of the half nodes tied to it, at least [kg].
+/// Least mass of a free point and of the half nodes tied to it [kg].
 pub fn least_mass(model: &Model, point: usize) -> f64 {
     let point = &model.points[point];
     let tied = point.attached.iter().map(|&(line, end)| {
@@ -490,7 +499,8 @@ mod tests {
         );
     }
 
-    /// Speed of a node after 200 steps over what it was, K|v|Δt/M being `courant` at first; it starts in the velocity that flips.
+    /// Ratio of the speed of a node after 200 steps to the initial one, K|v|Δt/M being `courant` at first; the node
+    /// starts in the velocity that changes its sign.
     fn flipping(courant: f64) -> f64 {
         let step = Step::after([1.0; 2], 1.0);
         let mut velocities = [1.0, -1.0];
@@ -502,8 +512,8 @@ mod tests {
         velocities[0].abs()
     }
 
-    /// Size of the shortest wave after 400 steps of a part of what is stable, over that at its start [-]: springs, dampers, damping by mass, and
-    /// drag that a steady velocity makes linear, of a rate K|v|/M.
+    /// Amplitude of the shortest wave after 400 steps of a part of the stable step, over that at its start [-]:
+    /// springs, dampers, damping by mass, and drag that a steady velocity makes linear, of a rate K|v|/M.
     fn shortest_wave([omega, lag, alpha, rate]: [f64; 4], part: f64) -> f64 {
         let limit = ExplicitLimit::new(omega, lag, alpha, DAMPING_RATIO_ENOUGH);
         let size = part * limit.stable(rate);

@@ -1,4 +1,4 @@
-//! Time integration of the discrete lines: which integrator serves which network, and how far it steps.
+//! Time integration of the discrete lines: choice of the integrator of each network, and its steps.
 
 pub mod advance;
 pub mod beam;
@@ -21,7 +21,7 @@ pub use choice::Choice;
 pub use cost::{AXIAL_IMPLICIT_COST, node_time};
 pub use threads::{Aside, as_worker, is_worker, make_threads_aside};
 
-/// A step that could not be made, with its place. The state is as it was before.
+/// Failed step, with its place. The state is unchanged.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("t = {time:.6} s, line \"{line}\", node {node}: {cause}; {}", cause.advice())]
 pub struct StepError {
@@ -35,10 +35,10 @@ pub struct StepError {
     pub cause: StepFailure,
 }
 
-/// Cause of a step that could not be made.
+/// Cause of a failed step.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepFailure {
-    /// An input leads beyond the bounds of the scene.
+    /// An input exceeds the bounds of the scene.
     #[error("{0}")]
     Input(String),
     /// A winch would leave the bounds of its line.
@@ -67,7 +67,7 @@ pub enum StepFailure {
         /// Greatest force out of balance [N].
         residual: f64,
     },
-    /// A step of a beam could not be made.
+    /// A step of a beam failed.
     #[error(transparent)]
     Beam(#[from] beam::StuckReason),
     /// A quasi-static step has no equilibrium.
@@ -76,7 +76,7 @@ pub enum StepFailure {
 }
 
 impl StepFailure {
-    /// Returns what to try.
+    /// Returns a remedy.
     pub fn advice(&self) -> &'static str {
         match self {
             StepFailure::Input(_) => "check the units of the motion, and whether the host is stable",

@@ -1,33 +1,37 @@
 //! The path of a coupled point or a vessel, axis by axis, between communication points.
 //!
-//! A host sets the displacement x_k (perhaps the velocity v_k) at t_k and asks for t_k + h. Stepping to x_k there and then
-//! would jump, which is the commonest noise of coupled simulations. Instead the point follows one C1 curve: on every
-//! communication step a cubic Hermite segment from where the path is to where the point is predicted to be.
+//! A host sets the displacement x_k (and optionally the velocity v_k) at t_k and requests t_k + h. A step to x_k at
+//! that moment would be a jump, the most common noise of coupled simulations. Instead the point follows one C1 curve:
+//! on every communication step a cubic Hermite segment from the end of the path to the predicted position of the
+//! point.
 //!
-//! The prediction extrapolates the polynomial P through the newest samples at their own times, of the degree k = 0 … 3 that can be expected
-//! to miss the end of the step by least: its remainder there is P[t_0 … t_{k+1}] (t − t_0) … (t − t_k), with the divided difference of the
-//! last two sets of samples. Smooth motion gets the third degree (error O(h⁴)), noise and jumps a low one. On equal steps this is by how much each
-//! degree would have missed the last two samples; from rest it is always that, since what jumps within a short step does not go on like
-//! that. A degree is kept until another would be better by more than a factor: two of them often do equally well, where a harmonic motion is
-//! sampled symmetrically, and rounding of the host's times would then choose between them.
+//! The prediction extrapolates the polynomial P through the newest samples at their times, of the degree k = 0 … 3
+//! whose expected error at the end of the step is least: its remainder there is P[t_0 … t_{k+1}] (t − t_0) … (t −
+//! t_k), with the divided difference of the last two sets of samples. Smooth motion gets the third degree (error
+//! O(h⁴)), noise and jumps a low one. On equal steps the remainder is the error that each degree would have had at
+//! the last two samples. From rest it is always that error, since a jump within a short step does not continue at its
+//! rate. A degree is kept until another would be better by more than a factor: two of them often are equally good,
+//! where a harmonic motion is sampled symmetrically, and rounding of the host's times would then choose between them.
 //! With velocities the polynomial is fitted to them and integrated from x_k.
 //!
-//! What a prediction missed by, e = path − P at t_k with its rate ė, is made up within the coming step if that is no shorter than the last. Else
-//! a step of 1 ms after one of 10 s that ended a metre beside the host would leap back by a metre. There e goes to nothing along a cubic over a
-//! time T: as long as the step was that missed, less what has passed since, so that the path converges as on equal steps; but once that
-//! step is out of sight, no longer than it takes with |ë| ≤ a:
+//! The error of a prediction, e = path − P at t_k with its rate ė, is removed within the coming step if that is no
+//! shorter than the last. Otherwise a step of 1 ms after one of 10 s that ended a metre from the host's position
+//! would jump back by a metre. In that case e decays to zero along a cubic over a time T: the length of the step that
+//! caused the error, less the time passed since, so that the path converges as on equal steps; once that step is no
+//! longer among the samples, at most the time that it takes with |ë| ≤ a:
 //!
 //! T = (√(ė² + 6a|e|) − |ė|)/a   where e ė < 0 and ė² ≤ 2a|e|,   else (2|ė| + √(4ė² + 6a|e|))/a
 //!
-//! from ë = −6e/T² − 4ė/T at the start and 6e/T² + 2ė/T at the end. With a = 0.2 m/s² (0.02 rad/s²), and half the mean acceleration of P
-//! over the step besides, the path is five metres further 12 s after a step of minutes.
+//! from ë = −6e/T² − 4ė/T at the start and 6e/T² + 2ė/T at the end. With a = 0.2 m/s² (0.02 rad/s²), plus half the
+//! mean acceleration of P over the step, the path is five metres further 12 s after a step of minutes.
 //!
-//! A host that knows the motion, or that steps what moves the point first, says instead where it will be at t_k + h
-//! ([`Reconstruction::Interpolate`]): cubics through what it says then need no prediction.
+//! A host that has the motion in advance, or that steps the moving body first, sets the position at t_k + h instead
+//! ([`Reconstruction::Interpolate`]): cubics through the samples then need no prediction.
 //!
-//! Source: divided differences and their remainder, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary Differential Equations I, eq. III.1.7;
-//! the choice of degree, and of T, is made here. Valid for any sequence of step sizes: of two samples closer together than a thirtieth of
-//! the longest step in sight the older one is passed over, and all are dropped when the host steps back.
+//! Source: divided differences and their remainder, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary
+//! Differential Equations I, eq. III.1.7; the choice of degree, and of T, is derived here. Valid for any sequence of
+//! step sizes: of two samples closer together than a thirtieth of the longest step in the record the older one is
+//! skipped, and all are dropped when the host steps back.
 
 mod differences;
 mod extrapolation;
@@ -45,34 +49,34 @@ use differences::Differences;
 pub use extrapolation::{Clock, Extrapolation};
 use extrapolation::{Order, SAMPLES_MAX, Samples};
 
-/// Acceleration that what a prediction missed by may be made up with in any case [m/s²]: a fiftieth of g.
+/// Acceleration that the removal of a prediction error may use in any case [m/s²]: a fiftieth of g.
 const EASE: f64 = 0.2;
-/// The same of angles [rad/s²], on levers of some ten metres.
+/// The same for angles [rad/s²], on levers of some ten metres.
 const EASE_OF_ANGLES: f64 = 0.02;
-/// The share of the motion's own acceleration that it may take besides [-].
+/// Additional share of the motion's acceleration for the removal of an error [-].
 const SHARE: f64 = 0.5;
 
-/// What a host says of up to four axes at a time.
+/// Sample from a host of up to four axes.
 #[derive(Debug, Clone, Copy)]
 pub struct InputSample {
-    /// Where it is along them [m, rad].
+    /// Position along the axes [m, rad].
     pub position: Lanes,
-    /// How fast [m/s, rad/s].
+    /// Velocity along the axes [m/s, rad/s].
     pub velocity: Lanes,
-    /// 1 along those of which the host tells the velocity, else 0 [-].
+    /// 1 along the axes with a velocity from the host, else 0 [-].
     pub rated: Lanes,
-    /// Acceleration that hardly anything feels along them [m/s², rad/s²].
+    /// Acceleration that is negligible along the axes [m/s², rad/s²].
     ease: f64,
 }
 
 impl InputSample {
-    /// Of N axes, the last of which stands for those that are not there too.
+    /// Sample of N axes, the last of which stands for missing ones.
     #[inline(always)]
     pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> InputSample {
         InputSample::rated(position, rates(velocity))
     }
 
-    /// [`InputSample::new`] from what [`rates`] makes of the velocities.
+    /// [`InputSample::new`] from the velocities as [`rates`] returns them.
     #[inline(always)]
     pub fn rated<const N: usize>(position: [f64; N], [velocity, rated]: [[f64; N]; 2]) -> InputSample {
         let last = |lane: usize| lane.min(N - 1);
@@ -85,7 +89,7 @@ impl InputSample {
     }
 }
 
-/// Velocities where a host tells them, else 0 [m/s, rad/s]; and 1 where it does, else 0 [-].
+/// Velocities from the host, 0 where it gives none [m/s, rad/s]; and 1 where it gives one, else 0 [-].
 #[inline(always)]
 pub fn rates<const N: usize>(told: [Option<f64>; N]) -> [[f64; N]; 2] {
     [
@@ -94,27 +98,27 @@ pub fn rates<const N: usize>(told: [Option<f64>; N]) -> [[f64; N]; 2] {
     ]
 }
 
-/// The C1 path of something along four axes side by side, and the samples it is predicted from.
+/// C1 path along four axes side by side, with the samples of its prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxesPath {
-    /// What the host sample, newest first, at the times of the clock [m, rad].
+    /// Samples from the host, newest first, at the times of the clock [m, rad].
     positions: Samples,
-    /// The same of the velocities, as far as it did along the same axes [m/s, rad/s].
+    /// Samples of the velocities, as far as they were along the same axes [m/s, rad/s].
     velocities: Samples,
-    /// 1 along the axes of which it told the velocity last, else 0 [-].
+    /// 1 along the axes whose last sample has a velocity, else 0 [-].
     rated: Lanes,
-    /// How often it did along these [-].
+    /// Number of such samples along these axes [-].
     times_rated: usize,
-    /// Degrees that the last prediction was judged to need [-].
+    /// Degrees chosen by the last prediction [-].
     degree: Lanes,
     /// The present segments.
     curve: Hermites,
-    /// Where they end [m, rad], and at which velocities [m/s, rad/s].
+    /// Ends of the axes [m, rad], with their velocities [m/s, rad/s].
     end: [Lanes; 2],
 }
 
 impl AxesPath {
-    /// At rest at a position [m, rad].
+    /// Path at rest at a position [m, rad].
     pub fn at_rest<const N: usize>(position: [f64; N]) -> AxesPath {
         let zero = Lanes::splat(0.0);
         let InputSample { position, .. } = InputSample::new(position, [None; N]);
@@ -129,8 +133,9 @@ impl AxesPath {
         }
     }
 
-    /// Becomes the path `before` continued by a communication step from what the host says at its start; at its end where it is
-    /// [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: read again at once, what was written would hold up the step.
+    /// Becomes the path `before` continued by a communication step from the host's sample at its start; at its end
+    /// with [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: reading the values again at
+    /// once would stall the step on the stores.
     #[inline(always)]
     pub fn extend(
         &mut self,
@@ -167,8 +172,8 @@ impl AxesPath {
         self.ends()
     }
 
-    /// [`AxesPath::extend`] to what the host says of the step's end. A velocity that it does not tell is the slope there of the parabola
-    /// through the last three places.
+    /// [`AxesPath::extend`] to the host's sample at the step's end. A missing velocity is the slope there of the
+    /// parabola through the last three places.
     #[inline(always)]
     fn interpolate(
         &mut self,
@@ -191,8 +196,8 @@ impl AxesPath {
         [start, [sample.position, velocity, curvature]]
     }
 
-    /// [`AxesPath::extend`] where the host goes back in time or leaves samples behind that do not count, or tells the velocity along other axes
-    /// than before, or along some only.
+    /// [`AxesPath::extend`] where the host goes back in time, where samples are dropped, or where the axes with a
+    /// velocity change or are only some.
     #[cold]
     #[inline(never)]
     fn turn(&mut self, before: &AxesPath, extrapolation: &Extrapolation, sample: &InputSample) {
@@ -219,7 +224,7 @@ impl AxesPath {
         self.bridge(before, extrapolation, sample, to);
     }
 
-    /// Lays the segments from the end of the path `before` to what is predicted.
+    /// Appends the segments from the end of the path `before` to the prediction.
     #[inline(always)]
     fn bridge(
         &mut self,
@@ -237,7 +242,8 @@ impl AxesPath {
         self.curve = Hermites::bridge(extrapolation.span, before.end, self.end);
     }
 
-    /// [`AxesPath::bridge`] where the path jumps to what the host says, or what it missed is made up over more than the step.
+    /// [`AxesPath::bridge`] where the path jumps to the host's sample, or where its error is removed over more than
+    /// the step.
     #[cold]
     #[inline(never)]
     fn bridge_over(
@@ -268,7 +274,7 @@ impl AxesPath {
         self.curve = Hermites::bridge(extrapolation.span, from, self.end);
     }
 
-    /// Continues the path over a span of time [s] to positions [m, rad] and velocities [m/s, rad/s] that are known.
+    /// Continues the path over a span of time [s] to given positions [m, rad] and velocities [m/s, rad/s].
     pub fn follow(&mut self, [start, end]: [f64; 2], to: [Lanes; 2]) {
         let length = end - start;
         self.curve = Hermites::bridge([start, length, 1.0 / length], self.end, to);
@@ -295,7 +301,7 @@ impl AxesPath {
         ([last.xyz(), second.xyz()], self.end[0].xyz())
     }
 
-    /// Predicts from what the host said of the position.
+    /// Predicts from the positions of the host.
     #[inline(always)]
     fn predict(&mut self, extrapolation: &Extrapolation, samples: Samples) -> Prediction {
         let differences = Differences::new(extrapolation, samples);
@@ -308,7 +314,7 @@ impl AxesPath {
         ]
     }
 
-    /// Predicts from what it said of the velocity, and the position [m, rad] at the start of a step.
+    /// Predicts from the velocities of the host, and the position [m, rad] at the start of a step.
     #[inline(always)]
     fn rate(&mut self, extrapolation: &Extrapolation, sample: &InputSample, samples: Samples) -> Prediction {
         let differences = Differences::new(extrapolation, samples);
@@ -325,8 +331,9 @@ impl AxesPath {
 /// Position [m, rad] and velocity [m/s, rad/s] at the end of a step, and the velocity at its start.
 type Prediction = [Lanes; 3];
 
-/// What is left after a step [s] of a distance [m, rad] and a velocity [m/s, rad/s] by which a path misses its host, along the cubic from both to none
-/// over the shortest time, of those from `soon` to `late` [s], in which an acceleration [m/s², rad/s²] does it.
+/// Remainder after a step [s] of an error in position [m, rad] and velocity [m/s, rad/s] of a path, along the cubic
+/// from both to zero over the shortest time, of those from `soon` to `late` [s], in which an acceleration [m/s²,
+/// rad/s²] suffices.
 fn left(missed: [f64; 2], step: f64, [soon, late]: [f64; 2], acceleration: f64) -> [f64; 2] {
     let time = time_to_meet(missed, acceleration).max(soon).min(late);
     if time <= step {
@@ -340,35 +347,35 @@ fn left(missed: [f64; 2], step: f64, [soon, late]: [f64; 2], acceleration: f64) 
     ]
 }
 
-/// Time over which a cubic brings a distance and a velocity to nothing and nowhere accelerates by more than `most`.
+/// Time over which a cubic brings a distance and a velocity to zero without accelerating by more than `most`.
 fn time_to_meet([distance, velocity]: [f64; 2], most: f64) -> f64 {
     let (reach, speed) = (6.0 * most * distance.abs(), velocity.abs());
     if distance * velocity < 0.0 && 3.0 * speed * speed <= reach {
-        // on its way, and able to brake: 6d/T² + 2v/T at the end is the most
+        // approaching, and able to brake: 6d/T² + 2v/T at the end is the greatest
         return ((speed * speed + reach).sqrt() - speed) / most;
     }
     // −6d/T² − 4v/T at the start is no more than with both of one sign
     (2.0 * speed + (4.0 * speed * speed + reach).sqrt()) / most
 }
 
-/// The path of something along one axis.
+/// Path along one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxisPath(AxesPath);
 
 impl AxisPath {
-    /// At rest at a position [m].
+    /// Path at rest at a position [m].
     pub fn at_rest(position: f64) -> AxisPath {
         AxisPath(AxesPath::at_rest([position]))
     }
 
-    /// Continues the path by a communication step from a position [m] and perhaps a velocity [m/s] at its start.
+    /// Continues the path by a communication step from a position [m] and optionally a velocity [m/s] at its start.
     pub fn extend(&mut self, extrapolation: &Extrapolation, position: f64, velocity: Option<f64>) {
         let before = self.0;
         self.0
             .extend(&before, extrapolation, &InputSample::new([position], [velocity]));
     }
 
-    /// Continues the path over a span of time [s] to a position [m] and a velocity [m/s] that are known.
+    /// Continues the path over a span of time [s] to a given position [m] and velocity [m/s].
     pub fn follow(&mut self, span: [f64; 2], to: [f64; 2]) {
         self.0.follow(span, to.map(Lanes::splat));
     }
@@ -385,12 +392,12 @@ impl AxisPath {
     }
 }
 
-/// The path of a coupled point along x, y and z.
+/// Path of a coupled point along x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HostPath(pub AxesPath);
 
 impl HostPath {
-    /// At rest at a position [m].
+    /// Path at rest at a position [m].
     pub fn at_rest(position: Vector3<f64>) -> HostPath {
         HostPath(AxesPath::at_rest(position.into()))
     }
@@ -401,7 +408,7 @@ impl HostPath {
         HostPath::kinematics(&self.0.at(t))
     }
 
-    /// Of position [m], velocity [m/s] and acceleration [m/s²] along x, y and z; nothing turns.
+    /// Kinematics of position [m], velocity [m/s] and acceleration [m/s²] along x, y and z, without rotation.
     #[inline(always)]
     pub fn kinematics(motion: &[Lanes; 3]) -> Kinematics {
         let [position, velocity, acceleration] = motion.map(|lanes| lanes.xyz());
@@ -414,12 +421,12 @@ impl HostPath {
     }
 }
 
-/// The paths of a vessel's displacement [m] along x, y and z, and of its roll, pitch and yaw [rad].
+/// Paths of a vessel's displacement [m] along x, y and z, and of its roll, pitch and yaw [rad].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct VesselPath(pub [AxesPath; 2]);
 
 impl VesselPath {
-    /// At rest at a pose [m, rad].
+    /// Path at rest at a pose [m, rad].
     pub fn at_rest([x, y, z, roll, pitch, yaw]: [f64; 6]) -> VesselPath {
         VesselPath([
             AxesPath::at_rest([x, y, z]),
@@ -427,7 +434,8 @@ impl VesselPath {
         ])
     }
 
-    /// Becomes the path `before` continued by a communication step from a pose [m, rad] and perhaps its rates [m/s, rad/s] at its start.
+    /// Becomes the path `before` continued by a communication step from a pose [m, rad] and optionally its rates
+    /// [m/s, rad/s] at its start.
     #[inline(always)]
     pub fn extend(
         &mut self,
@@ -468,7 +476,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// What the host said about one axis of a point at one time.
+    /// Sample from the host of one axis of a point at one time.
     struct Sample {
         time: f64,
         position: f64,
@@ -549,7 +557,7 @@ mod tests {
                 assert_eq!(path.2.even, noise < 1e-9);
                 path.at(10.0).value
             });
-            // the last one is worked out from its times
+            // the last one follows from its times
             assert_relative_eq!(ends[1], ends[0], epsilon = 1e-9);
             assert_relative_eq!(ends[2], ends[0], epsilon = 1e-4);
         }
@@ -607,7 +615,7 @@ mod tests {
         let mut path = Guided::at_rest(0.0, 0.0);
         let mut time = 0.0;
         for step in [10.0, 1e-3, 1e-3, 2.0, 1e-3, 4.0, 4.0, 4.0, 4.0, 4.0] {
-            // at rest for 10 s as far as the path could know, and a metre off
+            // at rest for 10 s in all samples, and a metre off
             let there = if time > 0.0 { 1.0 } else { 0.0 };
             path.extend(sample(time, there), step, Reconstruction::Smooth);
             let fastest = (0..=100)
@@ -673,7 +681,8 @@ mod tests {
         }
     }
 
-    /// Degrees chosen for a motion of amplitude 1 m and a period [s] that grows over 20 s, told every `step` [s] at times rounded by `noise` [-].
+    /// Degrees chosen for a motion of amplitude 1 m and a period [s] that grows over 20 s, sampled every `step` [s]
+    /// at times rounded by `noise` [-].
     fn degrees(period: f64, step: f64, noise: f64) -> Vec<usize> {
         let motion = |t: f64| {
             let grown = 0.5 * (1.0 - (std::f64::consts::PI * t.min(20.0) / 20.0).cos());

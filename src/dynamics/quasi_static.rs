@@ -1,9 +1,10 @@
 //! Quasi-static stepping: at the end of every step the lines are in equilibrium.
 //!
-//! Positions are the equilibrium for the held points and the loads at that time, found from the one before. Nothing moves: nodes have neither
-//! velocity nor acceleration, and so there is no damping, no inertia and no drag but that of a current. Flexible lines of engineering
-//! strain are closed-form catenaries, joined at free points; others, and those that find no rest that way, are chains of elements. Valid where motions
-//! are slow beside the lowest natural period and drag is small beside weight.
+//! Positions are the equilibrium for the held points and the loads at that time, found from the one before. Nodes
+//! have neither velocity nor acceleration, so there is no damping, no inertia and no drag but that of a current.
+//! Flexible lines of engineering strain are closed-form catenaries, joined at free points; others, and those without
+//! a solution that way, are chains of elements. Valid where motions are slow compared with the lowest natural period
+//! and drag is small compared with weight.
 //!
 //! A step is one equilibrium. It is halved where none is found.
 
@@ -20,7 +21,7 @@ use crate::statics::{StaticsError, catenary_network};
 /// Parts that a step may be cut into by halving: six halvings.
 const PARTS_MAX: usize = 64;
 
-/// A network on its way from equilibrium to equilibrium.
+/// Network between two equilibria.
 struct Path<'a, K> {
     model: &'a Model,
     number: usize,
@@ -28,11 +29,12 @@ struct Path<'a, K> {
     held: &'a K,
 }
 
-/// Advances one network from its state at `t0` to the equilibrium at `t1` [s]; `held` gives the positions of the points that forces do
-/// not move. `state.time` is left to the caller. Returns the work of the solver, and the flow of energy.
+/// Advances one network from its state at `t0` to the equilibrium at `t1` [s]; `held` returns the positions of the
+/// points that forces do not move. `state.time` is left to the caller. Returns the work of the solver, and the flow
+/// of energy.
 ///
 /// # Errors
-/// There is no equilibrium at some time of the step; the state is then that of the last one found.
+/// There is no equilibrium at some time of the step; the state is then the last one found.
 pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -85,7 +87,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
-    /// Takes the network from its rest `before`, which `state` has too, to that at the end of a part of the step [s].
+    /// Takes the network from its rest `before`, equal to `state`, to that at the end of a part of the step [s].
     fn rest(
         &self,
         before: &State,
@@ -110,7 +112,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         Ok(())
     }
 
-    /// Puts the network on its catenaries, its free points guessed to have moved on as before; whether that was possible.
+    /// Puts the network on its catenaries, with its free points guessed by extrapolation; returns whether that was
+    /// possible.
     fn hang(&self, state: &mut State, [start, end]: [f64; 2], work: &mut Workspace) -> bool {
         let model = self.model;
         for point in self.network.lines.iter().flat_map(|&line| model.lines[line].ends) {
@@ -125,7 +128,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         solve_network(model, self.number, state, end, work)
     }
 
-    /// Takes the network, which rests on its elements at time `t` [s], to its catenaries, which lie close by, where it has them.
+    /// Takes the network from rest on its elements at time `t` [s] to its nearby catenaries, where it has them.
     fn lay_down(&self, state: &mut State, t: f64, work: &mut Workspace) {
         if !solve_network(self.model, self.number, state, t, work) {
             for &line in &self.network.lines {

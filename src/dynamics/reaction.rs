@@ -1,35 +1,40 @@
 //! Forces that a line applies to the points at its ends, and tensions along it.
 //!
-//! The end's half node belongs to the line, so that what the vessel feels is
+//! The end's half node belongs to the line, so that the force on the vessel is
 //!
 //! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_bed],
 //!
-//! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Leaving the half node out would make the end force first order in
-//! the segment length. A line on its closed-form catenary brings the forces of that.
+//! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Without the
+//! half node the end force would be of first order in the segment length. A line on its closed-form catenary uses the
+//! forces of the catenary.
 //!
-//! The bracket takes what acts per length on the half node, p, to be everywhere as it is at the end, p_e. Over the last element it rather
-//! grows linearly to the p_k of the next node, which its two segments tell: p_k h_k = T₁q₁ − T₂q₂ − (own weight). On the half node
-//! act then h(⅜p_e + ⅛p_k), and T q, which is that of the middle of the chord but for (h²/24)p', gives another (h/24)(p_k − p_e):
+//! The bracket assumes a load per length p on the half node that is constant at its end value, p_e. Over the last
+//! element it is better described as linear to the p_k of the next node, which follows from its two segments: p_k h_k
+//! = T₁q₁ − T₂q₂ − (own weight). The load on the half node is then h(⅜p_e + ⅛p_k), and T q, which is that of the
+//! middle of the chord but for (h²/24)p', adds (h/24)(p_k − p_e):
 //!
 //! h(⅓p_e + ⅙p_k) for (h/2)p_e,
 //!
-//! the reaction of consistent loads. p is without the weight, whose share is exact as it is, and p_e belongs to the tangent at the
-//! end, along 3q₁ − q₂. Drag goes with the square of a velocity that falls off along the line, and is no linear load even where the velocity
-//! is linear: with d_m in the middle of the element, d_e and d_k at its ends, Simpson's rule for the consistent load adds
+//! the reaction of consistent loads. p excludes the weight, whose share is exact, and p_e belongs to the tangent at
+//! the end, along 3q₁ − q₂. Drag is proportional to the square of a velocity that decreases along the line, and is no
+//! linear load even where the velocity is linear: with d_m in the middle of the element, d_e and d_k at its ends,
+//! Simpson's rule for the consistent load adds
 //!
 //! (h/3)(d_m − ½(d_e + d_k)).
 //!
-//! Velocities of d are those relative to the water, that of the middle being the mean of the ends', so that a line in a current has the end forces of one that is towed
-//! in still water. Where the line bends, S adds to T q on both sides of the next node; the push of the bed is known at both nodes and counts as their weight does.
+//! The velocities in d are relative to the water, that of the middle being the mean of the ends', so that a line in a
+//! current has the end forces of one that is towed in still water. Where the line bends, S adds to T q on both sides
+//! of the next node; the contact force of the bed is given at both nodes and is treated as their weight.
 //!
 //! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴), and at the surface by |p_e|²/(|p_e|² + 16 |Δ|²), Δ being the part of the load, buoyancy included,
 //! that p_e would gain or lose were the end as far out of the water as the next node.
 //!
-//! On a taut rope that follows its fairlead (`taut_polyester`) the tension has 0.18 of its error with 3 elements, 0.2 with 4, 0.3 with 6 and 0.5 with 10; with 20 and
-//! more, where it is below 0.2 % either way, 1.1 to 1.4 times, for the plain half node's error then makes up for that of the waves along the
-//! line. A load that changes by more than itself, as to a next node that snaps or lands, is not linear: unscaled
-//! the error of chains that slacken in every turn grows by up to 6 %, scaled by 2 % at most. The law asks for one line on both sides of
-//! the next node: it is left out where sections meet there, and where the line is on a winch.
+//! On a taut rope that follows its fairlead (`taut_polyester`) the tension has 0.18 of its error with 3 elements, 0.2
+//! with 4, 0.3 with 6 and 0.5 with 10; with 20 and more, where it is below 0.2 % either way, 1.1 to 1.4 times, as the
+//! plain half node's error then compensates that of the waves along the line. A load that changes by more than its
+//! value, as to a next node that snaps or lands, is not linear: unscaled, the error of chains that slacken in every
+//! cycle grows by up to 6 %, scaled by 2 % at most. The law requires one line on both sides of the next node: it is
+//! left out where sections meet there, and where the line is on a winch.
 //!
 //! Source: the node's own equation of motion, as for the interior nodes; the loads are derived here from the Taylor series of T q.
 
@@ -43,7 +48,7 @@ use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong, WinchState
 use crate::physics::morison;
 use crate::physics::slender::Slender;
 
-/// Weight of what the load gains or loses at the surface in the scale of the change, over the load itself, both squared [-].
+/// Weight of the load gained or lost at the surface in the scale of the change, over the load, both squared [-].
 const ABRUPT: f64 = 16.0;
 
 /// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
@@ -68,7 +73,7 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     )
 }
 
-/// What the winch feels of the material that it speeds up and that its half node holds, over −λq [N]: m ℓ̇² + M ℓ̈.
+/// Force of the material that the winch accelerates and its half node holds, over −λq [N]: m ℓ̇² + M ℓ̈.
 fn passing(line: &Line, winch_state: WinchState) -> f64 {
     let (node, nodes) = (line.segment_count(), &line.nodes);
     let density = nodes.mass[node] / nodes.length[node]; // [kg/m]
@@ -176,7 +181,8 @@ impl HalfNode<'_> {
         [load, drag]
     }
 
-    /// Load without weight and seabed [N] of a half node whose load is linear to the next node; its segment pulls with `pull` [N] along `inward`.
+    /// Load without weight and seabed [N] of a half node whose load is linear to the next node; the pull of its
+    /// segment is `pull` [N] along `inward`.
     fn linear_load(
         &self,
         state: &LineState,
@@ -238,7 +244,8 @@ impl HalfNode<'_> {
         (2.0 * half_way - end - next) / 3.0
     }
 
-    /// Drag of the half node at a velocity [m/s] relative to the water were a part `dry` of it [-] out of the water [N].
+    /// Drag of the half node at a velocity [m/s] relative to the water with a part `dry` of it [-] out of the water
+    /// [N].
     fn drag(&self, velocity: Vector3<f64>, tangent: Vector3<f64>, dry: f64) -> Vector3<f64> {
         let Some(drag) = &self.line.nodes.drag else {
             return Vector3::zeros();

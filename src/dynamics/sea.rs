@@ -1,9 +1,11 @@
-//! What waves do at the nodes: asked of the waves once for every span of time, at the places where the nodes will be at its end.
+//! Wave kinematics at the nodes: evaluated once for every span of time, at the extrapolated places of the nodes at
+//! its end.
 //!
-//! Every line and every point has its own span: as long as cubics bridge it at its highest node ([`Waves::interval_below`]), rounded down to
-//! whole communication steps. So no line has a part in what waves do to another. A communication step that is longer than cubics bridge it at
-//! still water is cut into parts. Where a node will be is foretold from its velocity at the start of the span, r + τ v. What was found for the end of a span is
-//! the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
+//! Every line and every point has a separate span: as long as cubics bridge it at its highest node
+//! ([`Waves::interval_below`]), rounded down to whole communication steps. Lines therefore do not affect each other's
+//! waves. A communication step that is longer than cubics bridge at still water is cut into parts. The place of a
+//! node is extrapolated from its velocity at the start of the span, r + τ v. The values at the end of a span are the
+//! start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
@@ -17,30 +19,30 @@ const ROUNDING: f64 = 1e-9;
 
 /// Scratch of the spans.
 #[derive(Debug)]
-pub struct SeaWork {
-    /// The widest vectors of this machine; results do not depend on it.
+pub(super) struct SeaWork {
+    /// Widest vectors of this machine; results do not depend on it.
     unit: Arch,
     /// Per thread.
     instants: Vec<Instant>,
-    /// The spans that began last.
+    /// Spans that began last.
     due: Vec<Due>,
-    /// What waves did at the start of the span before, or room for the end of the next, by line and then by point.
+    /// Wave kinematics at the start of the span before, or room for the end of the next, by line and then by point.
     spare: Vec<Vec<Orbit>>,
 }
 
-/// A span that begins.
+/// Span that begins.
 #[derive(Debug)]
 struct Due {
     place: Place,
-    /// Its length [s].
+    /// Length of the span [s].
     length: f64,
-    /// What waves do at its end.
+    /// Wave kinematics at the end of the span.
     nodes: Vec<Orbit>,
     /// Times of the span before [s].
     before: [f64; 2],
 }
 
-/// Where waves act, by its number.
+/// Line or point on which waves act, by its number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
     Line(usize),
@@ -48,7 +50,7 @@ enum Place {
 }
 
 impl Place {
-    /// All places of a model that waves act on.
+    /// Places of a model on which waves act.
     fn of(model: &Model) -> impl Iterator<Item = Place> {
         let lines = model.lines.iter().enumerate();
         let lines = lines.filter(|(_, line)| line.heaves(model));
@@ -59,7 +61,7 @@ impl Place {
             .chain(points.map(|(point, _)| Place::Point(point)))
     }
 
-    /// Its number among the lines and, after them, the points.
+    /// Number of the place among the lines and, after them, the points.
     fn slot(self, model: &Model) -> usize {
         match self {
             Place::Line(line) => line,
@@ -81,7 +83,7 @@ impl Place {
         }
     }
 
-    /// Positions [m] and velocities [m/s] of its nodes.
+    /// Positions [m] and velocities [m/s] of the place's nodes.
     fn nodes(self, state: &State) -> (&[Vector3<f64>], &[Vector3<f64>]) {
         match self {
             Place::Line(line) => (&state.lines[line].position, &state.lines[line].velocity),
@@ -95,7 +97,7 @@ impl Place {
         }
     }
 
-    /// Height of its highest node [m].
+    /// Height of the place's highest node [m].
     fn highest(self, state: &State) -> f64 {
         let heights = self.nodes(state).0.iter().map(|position| position.z);
         heights.fold(f64::NEG_INFINITY, f64::max)
@@ -110,7 +112,7 @@ impl Clone for SeaWork {
 
 impl SeaWork {
     /// Scratch.
-    pub fn new() -> SeaWork {
+    pub(super) fn new() -> SeaWork {
         SeaWork {
             unit: Arch::new(),
             instants: vec![Instant::default()],
@@ -119,8 +121,8 @@ impl SeaWork {
         }
     }
 
-    /// Gives a state the waves of its time, or none.
-    pub fn start(&mut self, model: &Model, state: &mut State) {
+    /// Sets the waves of a state at its time, or none.
+    pub(super) fn start(&mut self, model: &Model, state: &mut State) {
         state.waves = model.waves.as_ref().map(|waves| {
             let mut spans = WaveSpans::default();
             spans.lines.resize_with(model.lines.len(), WaveSpan::default);
@@ -148,9 +150,9 @@ impl SeaWork {
         span.times = [state.time; 2];
     }
 
-    /// How far the next step goes [s] on the way over `length` [s]: not beyond the end of a span. A span that ends with an equal part but for rounding
-    /// does not change that part.
-    pub fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
+    /// Length of the next step [s] within `length` [s]: not beyond the end of a span. A span that ends with an equal
+    /// part but for rounding does not change that part.
+    pub(super) fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
         let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
         let part = length / parts.ceil().max(1.0);
         let left = Place::of(model).map(|place| left(place, state, length));
@@ -158,8 +160,9 @@ impl SeaWork {
         shorter.fold(part, f64::min)
     }
 
-    /// Begins new spans where old ones are over, for steps of `step` [s], on so many threads of a pool; returns whether there were any.
-    pub fn renew(
+    /// Begins new spans where old ones are over, for steps of `step` [s], on a number of threads of a pool; returns
+    /// whether there were any.
+    pub(super) fn renew(
         &mut self,
         (model, waves): (&Model, &Waves),
         state: &mut State,
@@ -203,8 +206,8 @@ impl SeaWork {
         !self.due.is_empty()
     }
 
-    /// Puts back the spans before those that began last.
-    pub fn undo(&mut self, model: &Model, state: &mut State) {
+    /// Restores the spans before those that began last.
+    pub(super) fn undo(&mut self, model: &Model, state: &mut State) {
         let Some(spans) = &mut state.waves else {
             return;
         };
@@ -218,7 +221,7 @@ impl SeaWork {
 
     /// Samples the waves at the ends of the spans that begin.
     fn sample_due(&mut self, waves: &Waves, state: &State, (pool, threads): (&mut ThreadPool, usize)) {
-        // spans that end together follow each other, so that the waves are turned to their time once
+        // spans that end together follow each other, so that the waves are evaluated once for their time
         let by_length = |a: &Due, b: &Due| a.length.total_cmp(&b.length);
         self.due.sort_unstable_by(by_length);
         let unit = self.unit;
@@ -234,7 +237,7 @@ impl SeaWork {
     }
 }
 
-/// Whether waves act on a point.
+/// Returns whether waves act on a point.
 fn heaves(point: &Point) -> bool {
     point.body().is_some_and(|body| body.sphere.is_some())
 }
@@ -260,7 +263,7 @@ fn sample(
     });
 }
 
-/// Time to the end of the span that a place is in [s]; 0 where it is over, or has not begun.
+/// Time to the end of the span of a place [s]; 0 where it is over, or has not begun.
 fn left(place: Place, state: &State, step: f64) -> f64 {
     let rounding = ROUNDING * step;
     let span = state.waves.as_ref().map(|spans| place.span(spans));
@@ -273,7 +276,7 @@ fn left(place: Place, state: &State, step: f64) -> f64 {
     }
 }
 
-/// What waves do along a line, for the vector unit of the machine.
+/// Evaluation of the waves along a line, for the vector unit of the machine.
 struct Sampling<'a> {
     waves: &'a Waves,
     /// [m]

@@ -4,7 +4,8 @@
 //! the number of threads, and sums over networks are formed afterwards in their order. Results are therefore bit-identical on any number
 //! of threads. Each thread gets an equal, contiguous part of the networks.
 //!
-//! A thread is worth waking from [`WORTH`] of work on; the work of a step is estimated from its nodes and internal steps.
+//! Worker threads are used from [`WORTH`] of work on; the work of a step is estimated from its nodes and internal
+//! steps.
 //!
 //! Worker threads are created on first use, sleep between steps and are joined when the pool is dropped, so that a host may unload the
 //! library after it has freed its instances. Where the system grants no threads, all work is done on the calling thread. A forked process
@@ -34,7 +35,7 @@ pub fn make_threads_aside(aside: Aside) {
     let _ = ASIDE.set(aside); // every instance sets the same
 }
 
-/// Name of the worker threads, by which a host tells them from its own.
+/// Name of the worker threads, by which they can be told from those of the host.
 const THREAD_NAME: &str = "moorline";
 /// Work per thread from which `auto` adds a thread [ns].
 const WORTH: f64 = 25e3;
@@ -54,11 +55,11 @@ pub fn as_worker<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Worker threads beside the calling one, created on first use. A clone has none yet.
+/// Worker threads in addition to the calling one, created on first use. A clone has none yet.
 #[derive(Debug, Default)]
-pub struct ThreadPool {
+pub(super) struct ThreadPool {
     workers: Option<Workers>,
-    /// Whether the system refused to create threads.
+    /// True if the system refused to create threads.
     refused: bool,
 }
 
@@ -74,7 +75,7 @@ impl ThreadPool {
     ///
     /// # Panics
     /// A call of `work` panicked.
-    pub fn share<T, S>(
+    pub(super) fn share<T, S>(
         &mut self,
         items: &mut [T],
         scratch: &mut [S],
@@ -182,7 +183,7 @@ impl Drop for Workers {
 
 /// Work of the steps of a model, by which the number of threads is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WorkEstimate {
+pub(super) struct WorkEstimate {
     asked: Threads,
     /// Threads that the machine runs at once [-].
     available: usize,
@@ -200,7 +201,7 @@ pub struct WorkEstimate {
 
 impl WorkEstimate {
     /// Estimates the work of a model whose networks use the integrators chosen.
-    pub fn new<'a>(model: &Model, choices: impl Iterator<Item = &'a Choice>) -> WorkEstimate {
+    pub(super) fn new<'a>(model: &Model, choices: impl Iterator<Item = &'a Choice>) -> WorkEstimate {
         let asked = model.solver.threads;
         let networks = model.networks.len();
         let shareable = networks > 1 || model.waves.is_some();
@@ -230,12 +231,12 @@ impl WorkEstimate {
     }
 
     /// Returns the number of threads for a communication step of a length [s].
-    pub fn threads_for(&self, length: f64) -> usize {
+    pub(super) fn threads_for(&self, length: f64) -> usize {
         self.threads(self.networks, (self.rate * length).max(self.least))
     }
 
     /// Returns the number of threads that sample the waves.
-    pub fn threads_for_waves(&self) -> usize {
+    pub(super) fn threads_for_waves(&self) -> usize {
         self.threads(self.lines_in_waves, self.sampling)
     }
 
@@ -252,7 +253,7 @@ impl WorkEstimate {
     }
 
     /// Describes the number of threads for steps of a length [s], with the reason.
-    pub fn describe(&self, length: f64) -> String {
+    pub(super) fn describe(&self, length: f64) -> String {
         let count = |threads: usize| match threads {
             1 => "one thread".to_string(),
             more => format!("{more} threads"),

@@ -17,7 +17,7 @@ pub(super) struct ViscoelasticSegment {
     slow: f64,
 }
 
-/// Strain of a segment and how it changes.
+/// Strain of a segment with its rate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretching {
     /// l/L − 1 [-].
@@ -27,8 +27,8 @@ pub(super) struct Stretching {
 }
 
 impl Stretching {
-    /// From positions [m] and velocities [m/s] of the ends of segment `i`.
-    pub fn of(
+    /// Strain from positions [m] and velocities [m/s] of the ends of segment `i`.
+    pub(super) fn of(
         line: &Line,
         i: usize,
         [low, high]: [Vector3<f64>; 2],
@@ -45,14 +45,14 @@ impl Stretching {
 
 impl ViscoelasticSegment {
     /// Segment `i` of a line; `None` where the line is not viscoelastic, or at rest.
-    pub fn of(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
+    pub(super) fn of(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let law = line.segments.viscoelastic.as_ref()?[i];
         let slow = *state.viscoelastic.get(i)?;
         Some(ViscoelasticSegment { law, slow })
     }
 
-    /// The same at the time of the velocities: half a step before where a leapfrog serves.
-    pub fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
+    /// The same at the time of the velocities: half a step before with a leapfrog.
+    pub(super) fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let now = ViscoelasticSegment::of(line, state, i)?;
         let before = state.half_step.viscoelastic.get(i);
         let slow = before.copied().unwrap_or(now.slow);
@@ -60,18 +60,18 @@ impl ViscoelasticSegment {
     }
 
     /// Energy per unstretched length [N] at a strain [-].
-    pub fn energy(&self, strain: f64) -> f64 {
+    pub(super) fn energy(&self, strain: f64) -> f64 {
         self.law.energy(strain, self.slow)
     }
 
     /// Elastic and damping force [N].
-    pub fn forces(&self, now: Stretching) -> (f64, f64) {
+    pub(super) fn forces(&self, now: Stretching) -> (f64, f64) {
         let elastic = self.law.elastic(now.strain, self.slow);
         (elastic, self.law.damping * now.rate)
     }
 
-    /// Tension [N] of a segment that pushes with `push` [N] at most.
-    pub fn tension(&self, now: Stretching, push: f64, negative_tension: bool) -> f64 {
+    /// Tension [N] of a segment that carries at most `push` [N] in compression.
+    pub(super) fn tension(&self, now: Stretching, push: f64, negative_tension: bool) -> f64 {
         let (elastic, damping) = self.forces(now);
         total_tension(elastic, damping, 0.0 - push, negative_tension)
     }
@@ -91,7 +91,7 @@ pub struct ViscoelasticArrays {
     /// BA_s and BA_d [N s].
     slow_damping: Column,
     fast_damping: Column,
-    /// How the memory goes on over a step, and that step [s].
+    /// Evolution of the memory over a step, and that step [s].
     relaxation: Relaxing,
     step: f64,
     /// Strain at t_n [-].
@@ -111,17 +111,17 @@ struct Relaxing {
     slack: Column,
 }
 
-/// What viscoelastic segments do from t_{n−½} to t_{n+½}.
+/// State of viscoelastic segments from t_{n−½} to t_{n+½}.
 #[derive(Debug, Clone, Copy)]
 pub struct Relaxed {
     /// Tension by the discrete gradient of the springs' energy [N].
     pub tension: Lanes,
-    /// Energy that dampers take [J], or per unstretched length [N].
+    /// Dissipation of the dampers [J], or per unstretched length [N].
     pub taken: Lanes,
 }
 
 impl ViscoelasticArrays {
-    /// For a line; `None` where it is not viscoelastic.
+    /// Memory of a line; `None` where it is not viscoelastic.
     pub fn new(line: &Line, striping: Striping) -> Option<ViscoelasticArrays> {
         let laws = line.segments.viscoelastic.as_deref()?;
         Some(ViscoelasticArrays::of(laws, striping))
@@ -222,8 +222,8 @@ impl ViscoelasticArrays {
         (stiffness * strain + memory * relaxed, stiffness + memory * last)
     }
 
-    /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and a whole one; what both halves around
-    /// t_n come to.
+    /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and
+    /// a whole one; returns the values of both halves around t_n.
     #[inline(always)]
     pub fn advance(&mut self, at: usize, strains: [Lanes; 2], step: Step) -> Relaxed {
         let load = |values: &Column| values.load(at);
@@ -238,8 +238,8 @@ impl ViscoelasticArrays {
         self.pass_half(at, [strains[0], half * (slow + after)], step.kick)
     }
 
-    /// Goes on by a step of `kick` [s] to a strain and a slow strain of half a step later: the fast part pulls with the discrete gradient of its energy
-    /// and with its damper, as in [`Viscoelastic::step`].
+    /// Advances by a step of `kick` [s] to a strain and a slow strain of half a step later: the fast part pulls with
+    /// the discrete gradient of its energy and with its damper, as in [`Viscoelastic::step`].
     #[inline(always)]
     fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Relaxed {
         let load = |values: &Column| values.load(at);

@@ -7,8 +7,8 @@
 //!
 //! The elements of a step in time are the same with the gradient at the mean of both of its ends (`Span`).
 //!
-//! A beam that neither end keeps from turning about itself does so without resistance: its first node then resists a turn about d₃, which
-//! changes the way to the equilibrium and not the equilibrium.
+//! A beam whose ends do not prevent its rotation about its axis has no resistance to it: its first node then resists
+//! a turn about d₃, which changes the iteration but not the equilibrium.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -53,7 +53,7 @@ impl BeamEnd {
     }
 }
 
-/// Constraints of an end that lies at a point: the axes that the point is not free on, and the clamp.
+/// Constraints of an end at a point: the axes on which the point is not free, and the clamp.
 pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
     let axes = point.free().map_or([false; 3], |free| free.axes);
     let mut held = [clamped; 6];
@@ -95,9 +95,9 @@ pub struct NodeSpring {
 /// Parts of the loads that act [-].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LoadShare {
-    /// Of weight, buoyancy and forces.
+    /// Part of weight, buoyancy and forces.
     pub force: f64,
-    /// Of the moments on the ends.
+    /// Part of the moments on the ends.
     pub moment: f64,
 }
 

@@ -22,7 +22,8 @@ impl LineWork {
         }
     }
 
-    /// Dampers fade over what a node moves in a step of `dt` [s], at least over the range of a resting node.
+    /// Fades the dampers over the displacement of a node in a step of `dt` [s], at least over the range of a resting
+    /// node.
     pub(super) fn fade_dampers(&mut self, line: &Line, state: &LineState, dt: f64) {
         let Some(contact) = &line.nodes.contact else {
             return;

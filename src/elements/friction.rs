@@ -21,10 +21,10 @@ use crate::physics::friction::{Axes, Friction, node_friction};
 use crate::physics::ground::Touch;
 use crate::physics::seabed::ContactCoefficients;
 
-/// Part of the limit that statics lets friction go to: nodes that slid to where they rest then stick in motion, and rounding does not free
-/// them one by one [-].
+/// Part of the limit of friction that statics uses: nodes that slid to their places of rest then stick in motion, and
+/// rounding does not free them one by one [-].
 pub(crate) const AT_REST: f64 = 1.0 - 1e-5;
-/// Part of the limit that holds where nodes at [`AT_REST`] must be found to slide whatever the rounding [-].
+/// Part of the limit at which nodes at [`AT_REST`] slide regardless of rounding [-].
 pub(crate) const SLIDING: f64 = 1.0 - 1e-3;
 
 /// Stiffness along the seabed of a point that sticks, over its stiffness across it [-].
@@ -58,9 +58,10 @@ pub struct Rub<'a> {
     pub anchor: Vector3<f64>,
     /// k_t [N/m].
     pub stick: f64,
-    /// Part of the limit of friction that holds [-].
+    /// Part of the limit of friction in use [-].
     pub limit: f64,
-    /// Normal force that the limit is taken from in place of the present one [N]: friction then has a potential, which is convex.
+    /// Constant normal force of the limit in place of the present one [N]: friction then has a potential, which is
+    /// convex.
     pub normal_force: Option<f64>,
 }
 
@@ -69,7 +70,7 @@ pub struct Rub<'a> {
 pub struct Push {
     /// Force [N].
     pub force: Vector3<f64>,
-    /// Part of it due to friction [N].
+    /// Part of the force due to friction [N].
     pub friction: Vector3<f64>,
     /// Normal force [N].
     normal_force: f64,
@@ -80,7 +81,8 @@ pub struct Push {
 }
 
 impl<'a> Resting<'a> {
-    /// Without velocity, with the part of the limit of friction that a case holds, and the normal force `pressed` [N] where the case keeps it.
+    /// Contact without velocity, with a case's part of the limit of friction, and the normal force `pressed` [N]
+    /// where the case keeps it constant.
     fn at_rest(self, case: &StaticCase, pressed: f64) -> Resting<'a> {
         Resting {
             velocity: Vector3::zeros(),
@@ -290,7 +292,7 @@ impl PointWork {
     }
 }
 
-/// Moves the anchors of a network after the nodes that slid, as the last assembly found them.
+/// Moves the anchors of the nodes of a network that slid, as found by the last assembly.
 pub(super) fn move_anchors(model: &Model, network: &Network, state: &mut State, work: &super::Workspace) {
     for &index in &network.lines {
         let (line, shape, work) = (&model.lines[index], &mut state.lines[index], &work.lines[index]);
@@ -313,7 +315,8 @@ pub(super) fn move_anchors(model: &Model, network: &Network, state: &mut State, 
     });
 }
 
-/// Moves the anchors of a network at rest at time `t` [s] to where motion finds every node within its limit.
+/// Moves the anchors of a network at rest at time `t` [s] to places at which every node in motion is within its
+/// limit.
 pub(crate) fn hold_at_rest(
     model: &Model,
     network: &Network,
@@ -338,7 +341,7 @@ fn stretch(force: Vector3<f64>, stiffness: f64) -> Vector3<f64> {
     }
 }
 
-/// Gives every node and point that friction may hold an anchor where it lies, unless it has one.
+/// Gives every node and point that friction may hold an anchor in its place, unless it has one.
 pub fn drop_anchors(model: &Model, state: &mut State) {
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         if line.friction().is_some() && shape.anchor.len() != shape.position.len() {

@@ -1,4 +1,4 @@
-//! Bending in the assembled system: joints that couple three nodes, and the chain that they make.
+//! Bending in the assembled system: joints that couple three nodes, and the chain that they form.
 //!
 //! A joint at node i has the slopes g₁ and g₂ of its energy with the vectors e₁ and e₂ of its two segments, and so
 //! R_{i−1} −= g₁, R_i += g₁ − g₂, R_{i+1} += g₂; J likewise from the second derivatives. A clamp takes the place of a segment
@@ -11,10 +11,10 @@ use crate::math::block_banded::{Blocks, Chain, Ends, Pivots};
 use crate::model::{Bending, End, Line, LineState, PointState, joint};
 use crate::physics::bending::{Couple, Hessian};
 
-/// Scratch of a line that bends.
+/// Scratch of a line with bending stiffness.
 #[derive(Debug, Clone)]
 pub(crate) struct BendingWork {
-    /// True where the last assembly had bending in it.
+    /// True where the last assembly included bending.
     pub active: bool,
     /// J of the joints in the rows of nodes and the columns of the next ones, transposed the other way.
     pub near: Vec<Matrix3<f64>>,
@@ -31,20 +31,20 @@ pub(crate) struct BendingWork {
 /// Parts of residual and tangent to add.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parts {
-    /// Of the joints' forces in R [-].
+    /// Weight of the joints' forces in R [-].
     pub force: f64,
-    /// c_k: of ∂R/∂r [-].
+    /// c_k: weight of ∂R/∂r [-].
     pub position: f64,
-    /// c_c: of ∂R/∂v [1/s].
+    /// c_c: weight of ∂R/∂v [1/s].
     pub velocity: f64,
-    /// True where the tangent is needed.
+    /// True where the tangent is required.
     pub tangent: bool,
-    /// True where it must not be indefinite, rather than exact.
+    /// True where the tangent must be positive semi-definite, rather than exact.
     pub convex: bool,
 }
 
 impl Parts {
-    /// Those of statics.
+    /// Weights of statics.
     pub(super) const AT_REST: Parts = Parts {
         force: 1.0,
         position: 1.0,
@@ -53,7 +53,7 @@ impl Parts {
         convex: false,
     };
 
-    /// Those of a time step.
+    /// Weights of a time step.
     pub(super) fn of_step(weights: &Weights, tangent: bool) -> Parts {
         Parts {
             force: weights.force,
@@ -88,7 +88,7 @@ impl BendingWork {
 }
 
 impl LineWork {
-    /// Adds the joints of a line to residual and tangent; without velocities nothing damps.
+    /// Adds the joints of a line to residual and tangent, without damping where no velocities are given.
     pub(super) fn add_bending(
         &mut self,
         bending: &Bending,
@@ -135,7 +135,8 @@ impl LineWork {
         }
     }
 
-    /// Adds the moments [N m] on the ends of a line that bends; with no slope where the tangent must not be indefinite.
+    /// Adds the moments [N m] on the ends of a line that bends; with no slope where the tangent must be positive
+    /// semi-definite.
     pub(super) fn add_end_moments(
         &mut self,
         position: &[Vector3<f64>],
@@ -178,7 +179,7 @@ impl LineWork {
         work.chain.eliminate(blocks, &self.residual, first_free, pivots)
     }
 
-    /// The whole solution from that of the ends.
+    /// Full solution from that of the ends.
     pub(super) fn substitute(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
         match self.bending.as_mut().filter(|work| work.active) {
             Some(work) => work.chain.substitute(a, b),
@@ -214,7 +215,7 @@ impl BendingWork {
     }
 }
 
-/// The dampers of the joints [N m s], where there are velocities that they may resist.
+/// Dampers of the joints [N m s], where velocities are given.
 fn moving<'a>(bending: &'a Bending, velocity: &[Vector3<f64>]) -> Option<&'a [f64]> {
     let damping = bending.damping.as_deref();
     damping.filter(|_| !velocity.is_empty())
@@ -229,7 +230,7 @@ fn couples(position: &[Vector3<f64>], moments: [Vector3<f64>; 2]) -> impl Iterat
         .map(|(moment, i)| (Couple::new(moment, position[i + 1] - position[i]), i))
 }
 
-/// Power [W], or work [J], of moments [N m] on the ends of a line whose nodes pass at velocities [m/s], or by ways [m].
+/// Power [W], or work [J], of moments [N m] on the ends of a line whose nodes pass at velocities [m/s], or by displacements [m].
 pub fn end_moment_power(
     position: &[Vector3<f64>],
     moments: [Vector3<f64>; 2],
@@ -253,7 +254,8 @@ pub(crate) fn rates(node: usize, last: usize, velocity: impl Fn(usize) -> Vector
     ]
 }
 
-/// Power that the dampers of a line's joints take [W] from nodes that pass at velocities [m/s] while they resist the velocities of a state.
+/// Power dissipated by the dampers of a line's joints [W] at nodes with these velocities [m/s], the dampers resisting
+/// the velocities of a state.
 pub fn joint_damping_power(
     line: &Line,
     state: &LineState,
@@ -340,7 +342,7 @@ pub fn shear(
     }
 }
 
-/// Moment [N m] of a line on what it is clamped to at an end.
+/// Moment [N m] of a line on its clamp at an end.
 pub fn end_moment(line: &Line, position: &[Vector3<f64>], end: End, point: &PointState) -> Vector3<f64> {
     let (Some(bending), Some(clamp)) = (&line.bending, line.clamp(end, point)) else {
         return Vector3::zeros();

@@ -14,7 +14,8 @@ use crate::physics::slender::Slender;
 use crate::physics::stretch::total_tension;
 use crate::physics::stretch_step::Stretched;
 
-/// Least length that a segment is stiff across by, over its unstretched length: one that is folded to nothing has no direction [-].
+/// Least length for the lateral stiffness of a segment, over its unstretched length: a segment folded to nothing has
+/// no direction [-].
 const FOLDED: f64 = 0.1;
 
 /// Scratch of a line.
@@ -26,7 +27,7 @@ pub(crate) struct LineWork {
     pub diagonal: Vec<Matrix3<f64>>,
     /// J of neighbouring nodes on each other, per segment: −A.
     pub coupling: Vec<Matrix3<f64>>,
-    /// Tension that the geometric stiffness is taken from, per segment [N]; statics predicts it.
+    /// Tension of the geometric stiffness, per segment [N]; predicted by statics.
     pub tension: Vec<f64>,
     /// Elastic and damping force of the segment at the last assembly [N], unclipped.
     pub elastic: Vec<f64>,
@@ -42,15 +43,15 @@ pub(crate) struct LineWork {
     pub reach: Vec<f64>,
     /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
     pub push: Vec<f64>,
-    /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
+    /// Drag of the current that statics keeps constant, per node [N]; empty where none acts.
     pub load: Vec<Vector3<f64>>,
-    /// Effect of the water's surface on every node; empty where the line does not meet it.
+    /// Effect of the water's surface on every node; empty where the line does not reach it.
     pub dry: Vec<Dry>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
     /// Friction of the seabed at the last assembly, per node [N]; empty over a level seabed without friction.
     pub rubbed: Vec<Vector3<f64>>,
-    /// Normal force that friction at rest may go by, per node [N]; empty like `rubbed`.
+    /// Normal force that limits friction at rest, per node [N]; empty like `rubbed`.
     pub pressed: Vec<f64>,
     /// Memory of viscoelastic segments, where the line has any.
     pub(super) viscoelastic: Option<ViscoelasticWork>,
@@ -62,7 +63,7 @@ pub(crate) struct LineWork {
     pub(super) chain: Chain<false>,
 }
 
-/// A segment as it lies.
+/// Geometry of a segment.
 pub(super) struct Geometry {
     /// Length [m].
     pub(super) length: f64,
@@ -208,12 +209,13 @@ impl LineWork {
         self.add_segment(i, tension * g.direction, stiffness);
     }
 
-    /// A segment whose tension T and what the elastic force N lacks to it are complementary but for m = `case.slack`: T (T − N) = m EA. Newton's
-    /// method on T and the nodes together, from the tension t that was predicted, leaves
+    /// Segment whose tension T is complementary to the excess of T over the elastic force N except for m =
+    /// `case.slack`: T (T − N) = m EA. Newton's method on T and the nodes together, from the predicted tension t,
+    /// gives
     ///
     ///   T ← (t² + m EA)/(2t − N) + t/(2t − N) dN.
     ///
-    /// Where t is less than N it is that which N has by itself.
+    /// Where t is less than N, t is replaced by the solution for N alone.
     fn add_taut_segment(&mut self, g: &Geometry, case: &StaticCase, [ea, unstretched]: [f64; 2], i: usize) {
         let (elastic, product) = (self.elastic[i], case.slack * ea);
         let root = elastic.hypot(2.0 * product.sqrt());
@@ -364,7 +366,7 @@ impl LineWork {
         }
     }
 
-    /// Force of water that waves accelerate; it does not depend on the state but by the tangent, which is frozen.
+    /// Force of water that waves accelerate; it depends on the state only by the tangent, which is frozen.
     fn add_froude_krylov(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
         let (Some(pressed), Some(waves)) = (&line.nodes.froude_krylov, &water.waves) else {
             return;

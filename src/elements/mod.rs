@@ -5,19 +5,20 @@
 //!
 //!   R_i = M_i(t) a_i − f_i,   f_i = T_i q_i − T_{i−1} q_{i−1} − w_i ẑ + drag + contact − (αm)_i v_i,
 //!
-//! with the segment's direction q, its total tension T = max(0, N(ε) + BA·ε̇) and M_i = M_n I + (M_t − M_n) t tᵀ. A line's
-//! end nodes contribute the same to their points; free points add their own mass, weight, drag, contact and load, their buoyancy and added
-//! mass as far as they are in the water.
+//! with the segment's direction q, its total tension T = max(0, N(ε) + BA·ε̇) and M_i = M_n I + (M_t − M_n) t tᵀ. A
+//! line's end nodes contribute the same to their points. Free points add their mass, weight, drag, contact and load,
+//! and the buoyancy and added mass of their submerged part.
 //!
 //! The tangent J = c_k ∂R/∂r + c_c ∂R/∂v + c_m ∂R/∂a is exact except that the tangent t of mass and drag is frozen. Per segment,
 //! with P = I − q qᵀ and ġ the rate of its end-to-end vector, J = [[A, −A], [−A, A]] with
 //!
 //!   A = c_k [EA·N'/l₀ q qᵀ + T/l P + BA/(l l₀) q (P ġ)ᵀ] + c_c BA/l₀ q qᵀ.
 //!
-//! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
-//! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
-//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are kept while the
-//! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
+//! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the
+//! joints of `bending` at its nodes and carries compression up to the limit of its segments, T ≥ −P; its tangent is
+//! exact, or positive semi-definite with `convex`. Statics keeps springs, weight and the drag of a current, whose
+//! forces are constant while the shape is sought. A line that may pierce the water's surface loses there the buoyancy
+//! given by `surface`.
 
 pub mod beam;
 mod contact;
@@ -59,13 +60,13 @@ pub struct Workspace {
     pub(crate) systems: Vec<PointSystem>,
     /// Per line of the model: its closed form at the last evaluation of a network of catenaries.
     pub(crate) catenaries: Vec<Option<Catenary>>,
-    /// The state before a step of the caller's.
+    /// State before a step of the caller.
     pub(crate) start: State,
-    /// The state before a step.
+    /// State before a step.
     pub(crate) before: State,
-    /// The first guess of an equilibrium.
+    /// First guess of an equilibrium.
     pub(crate) saved: State,
-    /// The last equilibrium on the way to another.
+    /// Last equilibrium between two others.
     pub(crate) trial: State,
     /// Counts since they were last cleared.
     pub(crate) counters: Counters,
@@ -126,7 +127,7 @@ impl Workspace {
         std::mem::take(&mut self.counters)
     }
 }
-/// Problem that statics solves: the full one, or an easier one on the way to it.
+/// Problem solved by statics: the full one, or an easier intermediate one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StaticCase {
     /// Time of the loads [s].
@@ -141,24 +142,26 @@ pub(crate) struct StaticCase {
     pub anchoring: f64,
     /// True where the geometric stiffness comes from the predicted tension instead of the elastic one.
     pub predicted: bool,
-    /// True where lines with bending stiffness have it, and push.
+    /// True if lines with bending stiffness have it, and push.
     pub bends: bool,
-    /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
+    /// Part of the stiffness of sticking friction, on nodes that have anchors [-].
     pub stick: f64,
-    /// Part of the limit of friction that holds: [`friction::AT_REST`], or [`friction::SLIDING`] where nodes at rest at that limit are to slide on [-].
+    /// Part of the limit of friction in use: [`friction::AT_REST`], or [`friction::SLIDING`] where nodes at rest at
+    /// that limit are to slide [-].
     pub limit: f64,
-    /// True where friction takes the normal forces of the last assembly that did not keep them.
+    /// True where friction uses the normal forces of the last assembly that did not keep them.
     pub keeps_pressure: bool,
     /// Least radius with which lines pierce the water's surface [m].
     pub breadth: f64,
-    /// True where no correction turns a segment by more than is sensible, however many corrections that takes.
+    /// True where every correction is limited to a moderate rotation of each segment, at the cost of more
+    /// corrections.
     pub cautious: bool,
-    /// Tension of a segment that is shortened to nothing; none where slack segments are to pull at nothing [N].
+    /// Tension of a segment that is shortened to nothing; none where slack segments carry no tension [N].
     pub slack: f64,
 }
 
 impl StaticCase {
-    /// The whole problem with the loads of time `t` [s].
+    /// Full problem with the loads of time `t` [s].
     pub(crate) fn whole(t: f64) -> StaticCase {
         StaticCase {
             time: t,
@@ -181,37 +184,37 @@ impl StaticCase {
 /// Weights of the parts of residual and tangent in a time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Weights {
-    /// Of all forces but inertia in R [-].
+    /// Weight of all forces except inertia in R [-].
     pub force: f64,
-    /// Of the seabed's friction in R [-], which is taken whole at the end of a step: forces that jump feed vibrations where a mean of old and
-    /// new ones is taken.
+    /// Weight of the seabed's friction in R [-], which acts in full at the end of a step: forces that jump excite
+    /// vibrations where a mean of old and new ones is taken.
     pub friction: f64,
-    /// Of inertia in R [-].
+    /// Weight of inertia in R [-].
     pub inertia: f64,
-    /// c_k: of ∂R/∂r [-].
+    /// c_k: weight of ∂R/∂r [-].
     pub position: f64,
-    /// c_c: of ∂R/∂v [1/s].
+    /// c_c: weight of ∂R/∂v [1/s].
     pub velocity: f64,
-    /// c_m: of ∂R/∂a [1/s²].
+    /// c_m: weight of ∂R/∂a [1/s²].
     pub acceleration: f64,
-    /// When the segments pull.
+    /// Times at which the segments pull.
     pub stretch: Stretch,
-    /// True where the tangent must not be indefinite, rather than exact.
+    /// True where the tangent must be positive semi-definite, rather than exact.
     pub convex: bool,
 }
 
-/// When the segments of a moving line pull.
+/// Times at which the segments of a moving line pull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stretch {
-    /// Now.
+    /// At the present state.
     Now,
-    /// Before a step, for what it carries over.
+    /// Terms carried over to a step from before it.
     Before,
-    /// Over the step to where the nodes now are: whether they are taut, and their geometric stiffness, come from the tension that was predicted.
+    /// Over the step to the present nodes: their tautness and geometric stiffness follow from the predicted tension.
     OverStep,
 }
 
-/// Compression that is taken for rounding [-], as a strain.
+/// Compression that is treated as rounding [-], as a strain.
 const PUSH_STRAIN: f64 = 1e-12;
 impl Workspace {
     /// Residual and tangent of a network at rest.
@@ -285,7 +288,7 @@ impl Workspace {
         self.gather(model, network);
     }
 
-    /// Adds what lines contribute to the residual of the free points.
+    /// Adds the contributions of lines to the residual of the free points.
     pub(crate) fn gather(&mut self, model: &Model, network: &Network) {
         for_free_points(model, network, |index, free| {
             let mut total = self.points[index].residual;
@@ -366,8 +369,8 @@ impl Workspace {
         true
     }
 
-    /// Tensions after a `part` of the correction, by the linear system. False if a segment that was taken as taut pushes by more
-    /// than rounding.
+    /// Tensions after a `part` of the correction, by the linear system. False if a segment taken as taut is in
+    /// compression beyond rounding.
     pub(crate) fn predict_tensions(&mut self, model: &Model, network: &Network, part: f64) -> bool {
         let mut consistent = true;
         for &index in &network.lines {
@@ -388,7 +391,7 @@ impl Workspace {
         consistent
     }
 
-    /// Sets how far the seabed dampers of a network fade for a step of `dt` [s] from `state`.
+    /// Sets the range over which the seabed dampers of a network fade for a step of `dt` [s] from `state`.
     pub(crate) fn fade_dampers(&mut self, model: &Model, network: &Network, state: &State, dt: f64) {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
@@ -431,7 +434,7 @@ impl Workspace {
         }
     }
 
-    /// Takes the memory of viscoelastic lines to the end of a step, where the nodes now are.
+    /// Advances the memory of viscoelastic lines to the end of a step, at the present nodes.
     pub(crate) fn relax_segments(&self, model: &Model, network: &Network, state: &mut State) {
         for &index in &network.lines {
             if let Some(viscoelastic) = &self.lines[index].viscoelastic {
@@ -440,7 +443,7 @@ impl Workspace {
         }
     }
 
-    /// Keeps the residual of the last assembly for the next step.
+    /// Stores the residual of the last assembly for the next step.
     pub(crate) fn remember(&mut self, network: &Network) {
         for &index in &network.lines {
             let line = &mut self.lines[index];
@@ -451,7 +454,7 @@ impl Workspace {
         }
     }
 
-    /// Adds what was remembered to the residual.
+    /// Adds the stored terms to the residual.
     pub(crate) fn add_remembered(&mut self, model: &Model, network: &Network) {
         for &index in &network.lines {
             let line = &mut self.lines[index];
@@ -471,14 +474,14 @@ impl Workspace {
         point.slot.map_or(Vector3::zeros(), |_| point.solution)
     }
 
-    /// Longest entry of the last solution [m]; not a number if one of them is not.
+    /// Longest entry of the last solution [m]; NaN if one of them is.
     pub(crate) fn greatest_solution(&self, network: &Network) -> f64 {
         let longer = |a: f64, b: f64| if a.is_nan() || a >= b { a } else { b };
         let lines = network.lines.iter().flat_map(|&line| self.lines[line].solution());
         lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
     }
 
-    /// Greatest force out of balance [N] and where it is.
+    /// Greatest force out of balance [N], with its place.
     pub(crate) fn greatest_residual(&self, network: &Network) -> (f64, Place) {
         let mut greatest = (
             0.0,

@@ -38,7 +38,7 @@ impl Place {
         }
     }
 }
-/// Puts the end nodes of a network's lines where their points are, and moves them alike.
+/// Puts the end nodes of a network's lines at their points, with the same motion.
 pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     for &index in &network.lines {
         let line = &model.lines[index];

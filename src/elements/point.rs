@@ -23,11 +23,11 @@ pub(crate) struct PointWork {
     pub solution: Vector3<f64>,
     /// Terms that the time integrator carries over from the last step [N].
     pub history: Vector3<f64>,
-    /// Half the range of penetrations over which its seabed damper fades in [m].
+    /// Half the range of penetrations over which the point's seabed damper fades in [m].
     pub reach: f64,
     /// Friction of the seabed at the last assembly [N].
     pub rubbed: Vector3<f64>,
-    /// Normal force that friction at rest may go by [N].
+    /// Normal force of the limit of friction at rest [N].
     pub pressed: f64,
 }
 impl PointWork {
@@ -135,7 +135,8 @@ mod tests {
     use crate::draft::draft;
     use approx::assert_relative_eq;
 
-    /// A buoy on a line, over a seabed of its own and in a sheared current, which may pierce the surface and touch the seabed at once.
+    /// Buoy on a line, over a seabed and in a sheared current, which may pierce the surface and touch the seabed at
+    /// once.
     fn model() -> Model {
         draft(
             "water = { density = 1025.0, current = { profile = [[1.0, 0.9, -0.4], [-3.0, 0.1, 0.3]], factor = 1.3 } }
@@ -230,7 +231,7 @@ mod tests {
                     work.assemble_dynamic::<true>(free, None, state, load, (stream, None), &weights);
                     (work.residual, work.diagonal)
                 };
-                // where only the velocity moves, what depends on height stays in J and so must not be asked for
+                // where only the velocity changes, the terms that depend on height stay in J and must not be included
                 let mut state = at(z);
                 if moves[0] == 0.0 {
                     state.acceleration = Vector3::zeros();

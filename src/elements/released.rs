@@ -1,4 +1,4 @@
-//! Ends that are released from their points: unknowns of their own line, solved with it.
+//! Ends that are released from their points: unknowns of their line, solved with it.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -9,7 +9,7 @@ use crate::math::block_banded::Ends;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Released {
     ends: Ends,
-    /// (aa)⁻¹ and (bb)⁻¹ of the ends as they are eliminated.
+    /// (aa)⁻¹ and (bb)⁻¹ of the ends at their elimination.
     inverse: [Matrix3<f64>; 2],
 }
 
@@ -36,7 +36,7 @@ impl LineWork {
         Some(ends)
     }
 
-    /// The whole solution from that of the points at the ends.
+    /// Full solution from that of the points at the ends.
     pub(super) fn substitute_all(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
         let (mut a, mut b) = (a, b);
         if let (Some(Released { ends, inverse }), true) = (self.loose, self.released != [false; 2]) {

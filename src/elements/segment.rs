@@ -2,13 +2,15 @@
 //!
 //!   F = T̄ q̄ + (½ − α_f) (N' q' − N q) + (1 − α_f) C' q' + α_f C q
 //!
-//! with its spring's force N and its damper's C before and after: what the spring takes and gives back over the step ([`crate::physics::stretch_step`],
-//! [`crate::physics::viscoelastic`]), what the integrator's weights do beyond the mean of N, which is its dissipation, and what they make of C.
+//! with its spring's force N and its damper's C before and after. T̄ q̄ conserves the energy of the spring over the
+//! step ([`crate::physics::stretch_step`], [`crate::physics::viscoelastic`]); the second term is the effect of the
+//! integrator's weights beyond the mean of N, which is its dissipation; the others are the weighted damper.
 //!
-//! The mean itself would not do: generalised-α overshoots where springs are not linear, and may gain energy without bound.
+//! The mean itself is not sufficient: generalised-α overshoots where springs are not linear, and may gain energy
+//! without bound.
 //!
-//! Source: Erlicher, Bonaventura & Bursi (2002), Comput. Mech. 28, 83-104, on generalised-α in nonlinear problems; to put the discrete gradient for the mean
-//! is derived here. Valid as the laws are.
+//! Source: Erlicher, Bonaventura & Bursi (2002), Comput. Mech. 28, 83-104, on generalised-α in nonlinear problems;
+//! the discrete gradient in place of the mean is derived here. Valid as the laws are.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,7 +19,7 @@ use super::line::{Geometry, LineWork};
 use crate::model::{Line, LineState};
 use crate::physics::stretch_step::{Mean, StretchStep, Stretched};
 
-/// Segment `i` of a line as a state has it.
+/// Segment `i` of a line in a state.
 pub(crate) fn stretched(line: &Line, state: &LineState, i: usize) -> Stretched {
     let [low, high] = [i, i + 1].map(|node| state.position[node]);
     let g = Geometry::new(low, high, line.segments.length[i]);
@@ -57,18 +59,18 @@ pub(crate) fn stretch_step(
 /// Response of a segment to its strain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Response {
-    /// Elastic force, uncut [N].
+    /// Elastic force, before any limit [N].
     pub elastic: f64,
     /// Slope with the strain [N].
     pub tangent: f64,
-    /// Damping of the strain rate [N s]; none of a memory in a step, which has it in its mean.
+    /// Damping of the strain rate [N s]; none for a viscoelastic law in a step, which includes it in its mean.
     pub damping: f64,
 }
 
 /// Tension of a segment at the end of a step, from the last solution.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepEnd {
-    /// True where it pulls by the last solution, though its present nodes leave it slack.
+    /// True where the segment is taut in the last solution, though its present nodes leave it slack.
     pub keeps: bool,
     /// Tension by the last solution beyond that of its present nodes [N].
     pub excess: f64,

@@ -1,7 +1,8 @@
-//! The water's surface in the residual and tangent of a line: what its nodes lack where they are dry.
+//! The water's surface in the residual and tangent of a line: the buoyancy that its dry nodes lose.
 //!
-//! The buoyancy that is lacking has an exact tangent, symmetric and never negative. Drag and added mass go with the wet part of a node;
-//! their slope with the node's own height is in the tangent, that with its neighbours' heights is not.
+//! The missing buoyancy has an exact tangent, symmetric and never negative. Drag and added mass are proportional to
+//! the wet part of a node; their slope with the node's height is in the tangent, that with its neighbours' heights is
+//! not.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -9,8 +10,8 @@ use super::LineWork;
 use crate::model::{Dry, Line, WaterAlong};
 
 impl LineWork {
-    /// Finds what of a line that lies in the `water` as `position` [m] says is dry, and adds the weight of that, times `force`, and its tangent,
-    /// times `stiffness`. Segments of a radius below `breadth` [m] are taken as that thick.
+    /// Finds the dry parts of a line at `position` [m] in the `water`, and adds their weight, times `force`, and its
+    /// tangent, times `stiffness`. Segments of a radius below `breadth` [m] are taken as that thick.
     pub(super) fn add_surface(
         &mut self,
         line: &Line,

@@ -21,7 +21,7 @@ pub(super) struct ViscoelasticWork {
 
 impl ViscoelasticWork {
     /// Scratch for a line; `None` where it is not viscoelastic.
-    pub fn new(line: &Line) -> Option<ViscoelasticWork> {
+    pub(super) fn new(line: &Line) -> Option<ViscoelasticWork> {
         let laws = line.segments.viscoelastic.clone()?;
         Some(ViscoelasticWork {
             start: vec![[0.0; 2]; laws.len()],
@@ -32,7 +32,7 @@ impl ViscoelasticWork {
     }
 
     /// Begins a step of `dt` [s] from a state.
-    pub fn begin(&mut self, line: &Line, state: &LineState, dt: f64) {
+    pub(super) fn begin(&mut self, line: &Line, state: &LineState, dt: f64) {
         self.dt = dt;
         self.moves = !state.viscoelastic.is_empty();
         for (i, start) in self.start.iter_mut().enumerate() {
@@ -42,7 +42,14 @@ impl ViscoelasticWork {
 
     /// Force and slope of segment `i` at a strain [-]: at the end of the step, or of the state as it is.
     #[inline(always)]
-    pub fn respond(&self, line: &Line, state: &LineState, i: usize, strain: f64, when: Stretch) -> Response {
+    pub(super) fn respond(
+        &self,
+        line: &Line,
+        state: &LineState,
+        i: usize,
+        strain: f64,
+        when: Stretch,
+    ) -> Response {
         if state.viscoelastic.is_empty() {
             let ea = line.segments.axial_stiffness[i];
             return Response {
@@ -66,9 +73,10 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling by the last solution.
+    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling by the last
+    /// solution.
     #[inline(always)]
-    pub fn mean(&self, i: usize, strain: f64, keeps: bool) -> Mean {
+    pub(super) fn mean(&self, i: usize, strain: f64, keeps: bool) -> Mean {
         let ([before, slow], law) = (self.start[i], &self.laws[i]);
         let strains = [before, strain];
         match keeps {
@@ -77,8 +85,8 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Puts the memory at the end of the step into the state, whose nodes are there.
-    pub fn finish(&self, line: &Line, state: &mut LineState) {
+    /// Stores the memory at the end of the step in the state, whose nodes are there.
+    pub(super) fn finish(&self, line: &Line, state: &mut LineState) {
         if state.viscoelastic.is_empty() {
             return;
         }

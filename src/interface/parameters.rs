@@ -37,7 +37,7 @@ pub enum Place {
 }
 
 impl Parameter {
-    /// Its value in a scene that has it, in the unit of the key; `None` in a scene that has not.
+    /// Value in a scene that has the key, in its unit; `None` in a scene that has not.
     pub fn value(&self, scene: &Scene) -> Option<f64> {
         let key = self.key;
         let value = match &self.place {

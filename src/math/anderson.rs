@@ -6,7 +6,7 @@
 //!
 //! by modified Gram-Schmidt from the newest difference to the oldest; differences that add no direction are left out.
 //!
-//! Source: Walker & Ni (2011), SIAM J. Numer. Anal. 49(4), 1715-1735, section 2. On a linear problem it is as good as GMRES, so that the
+//! Source: Walker & Ni (2011), SIAM J. Numer. Anal. 49(4), 1715-1735, section 2. On a linear problem it is equivalent to GMRES, so that the
 //! plain iteration need not converge.
 
 /// A difference whose part across the newer ones is smaller than this share of it adds no direction [-].
@@ -19,12 +19,12 @@ pub struct Anderson {
     last: Option<[Vec<f64>; 2]>,
     /// ΔX and ΔF, the newest last.
     differences: Vec<[Vec<f64>; 2]>,
-    /// Differences kept, at most [-].
+    /// Greatest number of differences kept [-].
     depth: usize,
 }
 
 impl Anderson {
-    /// Remembers at most `depth` differences [-].
+    /// Keeps at most `depth` differences [-].
     pub fn new(depth: usize) -> Anderson {
         Anderson {
             depth,

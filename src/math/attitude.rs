@@ -1,4 +1,4 @@
-//! Attitude of a rigid body by roll, pitch and yaw, and how it turns.
+//! Attitude of a rigid body by roll, pitch and yaw, with its angular velocity and acceleration.
 //!
 //! R = R_z(ψ) R_y(θ) R_x(φ) (Z-Y'-X'') takes body axes to global ones; in the other order R = R_x(φ) R_y(θ) R_z(ψ) (X-Y'-Z''). With the axes that
 //! the angles turn about, in the first order u_ψ = ẑ, u_θ = R_z ŷ and u_φ = R_z R_y x̂, the angular velocity in global axes is
@@ -27,7 +27,7 @@ pub enum Order {
 }
 
 impl Order {
-    /// Whether it is the order of the FMU's variables.
+    /// Returns whether it is the order of the FMU's variables.
     pub fn is_zyx(&self) -> bool {
         *self == Order::Zyx
     }
@@ -70,7 +70,7 @@ impl Order {
     }
 }
 
-/// A body's attitude and how it changes.
+/// Attitude of a body with its rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attitude {
     /// From body axes to global axes.
@@ -82,7 +82,7 @@ pub struct Attitude {
 }
 
 impl Attitude {
-    /// From roll, pitch and yaw [rad] in an order, their rates [rad/s] and second derivatives [rad/s²].
+    /// Attitude from roll, pitch and yaw [rad] in an order, their rates [rad/s] and second derivatives [rad/s²].
     pub fn new(order: Order, angles: Vector3<f64>, rates: Vector3<f64>, seconds: Vector3<f64>) -> Attitude {
         let axes = axes(order, angles);
         let sequence = order.sequence();
@@ -107,7 +107,7 @@ pub fn angle_rates(angles: Vector3<f64>, spin: Vector3<f64>) -> Option<Vector3<f
         .flatten()
 }
 
-/// Axes that roll, pitch and yaw turn about, as columns.
+/// Axes of rotation of roll, pitch and yaw, as columns.
 fn axes(order: Order, angles: Vector3<f64>) -> Matrix3<f64> {
     let [(sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y)] = [angles.x, angles.y, angles.z].map(f64::sin_cos);
     match order {

@@ -1,10 +1,10 @@
-//! Direct solution of a chain of 3×3 blocks whose two ends hang on a system of points.
+//! Direct solution of a chain of 3×3 blocks whose two ends couple to a system of points.
 //!
 //! B_{i−1} x_{i−1} + D_i x_i + A_i x_{i+1} + F_{i−2}ᵀ x_{i−2} + F_i x_{i+2} = b_i: segments couple a node to the next one, by the blocks above and
 //! below the diagonal; joints, which bend three nodes, to the second next too, by one block, transposed on the way back. [`Chain::eliminate`]
 //! removes the nodes between the ends in order and leaves the ends' own 2 × 2 blocks, which add up over all chains that meet in a point;
-//! [`super::sparse_blocks`] solves these points; [`Chain::substitute`] gives the nodes between. The first end is a border that every node comes to
-//! couple with, the last end is the last node.
+//! [`super::sparse_blocks`] solves these points; [`Chain::substitute`] gives the nodes between. The first end is a border to which every node becomes
+//! coupled, the last end is the last node.
 //!
 //! Source: Golub & Van Loan (2013), Matrix Computations, 4th ed., sections 4.3.5 (band Gaussian elimination), 4.5.1 (block tridiagonal) and 3.2 (LU).
 //! Matrices that are positive definite, or close to it where damping makes them unsymmetric, need no row exchanges, and a pivot that is not
@@ -12,10 +12,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Which pivots an elimination takes.
+/// Pivots that an elimination accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pivots {
-    /// Positive ones, as they come; any other is reported.
+    /// Positive ones in the given order; any other is reported.
     Positive,
     /// Of either sign, the greatest of the rows of a block; only one that is zero is reported.
     Any,
@@ -46,7 +46,7 @@ pub struct Chain<const FAR: bool> {
     bordered: bool,
 }
 
-/// What remains of a chain on its two ends: [[aa, ab], [ba, bb]] (x_a, x_b) = (a, b).
+/// Condensed system of a chain on its two ends: [[aa, ab], [ba, bb]] (x_a, x_b) = (a, b).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ends {
     /// First end on itself.
@@ -63,25 +63,25 @@ pub struct Ends {
     pub b: Vector3<f64>,
 }
 
-/// A row that is not eliminated yet, as far as earlier nodes have changed it.
+/// Row that is not eliminated yet, including the changes by earlier nodes.
 #[derive(Clone, Copy)]
 struct Row {
-    /// On itself.
+    /// Block on itself.
     own: Matrix3<f64>,
-    /// On the next node.
+    /// Block on the next node.
     next: Matrix3<f64>,
-    /// On the node before.
+    /// Block on the node before.
     last: Matrix3<f64>,
-    /// On the first end.
+    /// Block on the first end.
     first: Matrix3<f64>,
-    /// Of the first end on this node.
+    /// Block of the first end on this node.
     border: Matrix3<f64>,
     /// Right-hand side.
     right: Vector3<f64>,
 }
 
 impl Row {
-    /// Row `i`, from 1, as it is given; nothing beyond the last.
+    /// Row `i`, from 1, as given; empty beyond the last.
     #[inline(always)]
     fn new<const FAR: bool>(blocks: &Blocks, right: &[Vector3<f64>], i: usize) -> Row {
         let zero = Matrix3::zeros();
@@ -202,7 +202,7 @@ impl<const FAR: bool> Chain<FAR> {
 
 /// LU factors of a 3×3 matrix; the pivots are stored inverted.
 pub(super) struct Lu3 {
-    /// Which rows of the matrix its rows are.
+    /// Rows of the original matrix in the order of the factors.
     rows: [usize; 3],
     pivots: [f64; 3],
     inverse: [f64; 3],

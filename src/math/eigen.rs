@@ -1,9 +1,10 @@
 //! Eigenvalues of sparse symmetric matrices: all of them, or the lowest by inverse subspace iteration.
 //!
-//! A y = λ y. With a block Q of orthonormal vectors, more than are asked for, and B = (A + σI)⁻¹ by sparse Cholesky factors, every iteration
-//! takes Y = B Q, solves the small problem QᵀY v = μ v, and goes on from the orthonormalised Y V; λ = 1/μ − σ. The error of the k-th of p
-//! vectors falls by (λ_k + σ)/(λ_{p+1} + σ) in each. A block finds equal eigenvalues, of which systems with symmetries have many, where one
-//! Krylov sequence finds one.
+//! A y = λ y. With a block Q of orthonormal vectors, more than are requested, and B = (A + σI)⁻¹ by sparse Cholesky
+//! factors, every iteration takes Y = B Q, solves the small problem QᵀY v = μ v, and continues from the
+//! orthonormalised Y V; λ = 1/μ − σ. The error of the k-th of p vectors falls by (λ_k + σ)/(λ_{p+1} + σ) in each. A
+//! block finds equal eigenvalues, of which systems with symmetries have many; a single Krylov sequence finds only one
+//! of them.
 //!
 //! The shift σ lifts eigenvalues of 0 above rounding. Valid for matrices without negative eigenvalues beyond the greatest shift.
 //!

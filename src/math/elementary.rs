@@ -2,7 +2,7 @@
 //!
 //! sin x = (−1)ⁿ sin r,  cos x = (−1)ⁿ cos r,  x = nπ + r;     exp x = 2ⁿ exp r,  x = n ln 2 + r
 //!
-//! with the series of Taylor in r and n rounded by adding and taking away 1.5·2⁵². Absolute error of sine and cosine below 1e-15 for
+//! with the series of Taylor in r and n rounded by adding and subtracting 1.5·2⁵². Absolute error of sine and cosine below 1e-15 for
 //! |x| ≤ 100 and 2e-15 for |x| ≤ 1e5; relative error of the exponential below 5e-16 for −708 ≤ x ≤ 708. Results are the same on every
 //! machine, bit for bit.
 //!
@@ -90,7 +90,7 @@ pub fn sin_cos(x: Lanes) -> (Lanes, Lanes) {
     (sine.flip_signs(odd), cosine.flip_signs(odd))
 }
 
-/// exp x for |x| ≤ 708; beyond, as there.
+/// exp x for |x| ≤ 708; beyond, the value at that limit.
 #[inline(always)]
 pub fn exp(x: Lanes) -> Lanes {
     let (least, most) = (Lanes::splat(-EXPONENT_MAX), Lanes::splat(EXPONENT_MAX));

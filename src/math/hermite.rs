@@ -14,17 +14,17 @@ use super::lanes::Lanes;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hermite {
     start: f64,
-    /// 1/h.
+    /// Inverse span 1/h.
     rate: f64,
     /// Coefficients of powers of u = (t − t0)/h.
     powers: [f64; 4],
 }
 
-/// Four of them side by side.
+/// Four cubics side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hermites {
     start: f64,
-    /// 1/h, 0 where the curves stand still.
+    /// Inverse span 1/h, 0 where the curves are constant.
     rate: f64,
     powers: [Lanes; 4],
 }
@@ -43,7 +43,7 @@ pub struct Sample {
 type Knot = (f64, f64, f64);
 
 impl Hermite {
-    /// Through (time, value, slope) at both ends; the second time must be the later one.
+    /// Cubic through (time, value, slope) at both ends; the second time must be the later one.
     pub fn new((t0, p0, m0): Knot, (t1, p1, m1): Knot) -> Hermite {
         let span = t1 - t0;
         let (m0, m1) = (span * m0, span * m1);
@@ -74,7 +74,7 @@ impl Hermite {
 }
 
 impl Hermites {
-    /// From a start over a span, whose inverse is at hand, through values and slopes at both ends.
+    /// Segment from a start over a span, with its inverse, through values and slopes at both ends.
     #[inline(always)]
     pub fn bridge([start, span, rate]: [f64; 3], [p0, m0]: [Lanes; 2], [p1, m1]: [Lanes; 2]) -> Hermites {
         let (two, three) = (Lanes::splat(2.0), Lanes::splat(3.0));
@@ -88,7 +88,7 @@ impl Hermites {
         }
     }
 
-    /// Mean slopes over the span, and its inverse; 0 where the curves stand still.
+    /// Mean slopes over the span, and its inverse; 0 where the curves are constant.
     #[inline(always)]
     pub fn secant(&self) -> (Lanes, f64) {
         let [_, b, c, d] = self.powers;
@@ -148,7 +148,7 @@ pub type Motion = [Vector3<f64>; 3];
 pub struct Quintic([Vector3<f64>; 6]);
 
 impl Quintic {
-    /// Between two ends that lie `span` apart in time.
+    /// Quintic between two ends that lie `span` apart in time.
     pub fn new([r0, v0, a0]: Motion, [r1, v1, a1]: Motion, span: f64) -> Quintic {
         let (slope, half_curvature) = (span * v0, 0.5 * span * span * a0);
         let rise = r1 - r0 - slope - half_curvature;

@@ -1,6 +1,6 @@
 //! Four numbers side by side, so that the compiler emits vector instructions for the kernels.
 //!
-//! A plain array with inlined element-wise operations: portable, without intrinsics, and compiled for whatever vector
+//! A plain array with inlined element-wise operations: portable, without intrinsics, and compiled for any vector
 //! unit the surrounding function may use.
 
 use std::array::from_fn;
@@ -61,7 +61,7 @@ impl Lanes {
         Lanes(from_fn(|i| self.0[i].abs()))
     }
 
-    /// max(x, 0), and 0 where x is not a number.
+    /// max(x, 0), and 0 where x is NaN.
     #[inline(always)]
     pub fn positive(self) -> Lanes {
         Lanes(from_fn(|i| if self.0[i] > 0.0 { self.0[i] } else { 0.0 }))
@@ -118,19 +118,19 @@ impl Lanes {
         pairs.max(pairs.moved_up().moved_up())
     }
 
-    /// Whether any lane is > 0.
+    /// Returns whether any lane is > 0.
     #[inline(always)]
     pub fn any_positive(self) -> bool {
         self.positive_bits(0) != 0
     }
 
-    /// Whether all lanes are > 0.
+    /// Returns whether all lanes are > 0.
     #[inline(always)]
     pub fn all_positive(self) -> bool {
         self.positive_bits(1) == 0
     }
 
-    /// A bit for every lane that is > 0, each turned over by `flip`: compilers ask in one instruction whether all are 0.
+    /// Bits of the lanes that are > 0, each inverted by `flip`: compilers test in one instruction whether all are 0.
     #[inline(always)]
     fn positive_bits(self, flip: u8) -> u8 {
         let [a, b, c, d] = self.0.map(|value| u8::from(value > 0.0) ^ flip);

@@ -4,15 +4,15 @@
 //!
 //!   b = K²/(1 + √2 K + K²) · [1, 2, 1],   a₁ = 2(K² − 1)/(1 + √2 K + K²),   a₂ = (1 − √2 K + K²)/(1 + √2 K + K²)
 //!
-//! Both passes together have no phase, gain ½ at f_c and fourth order beyond it. Each pass starts as if its first value had
-//! always been there.
+//! Both passes together have no phase, gain ½ at f_c and fourth order beyond it. Each pass starts from the steady
+//! state of its first value.
 //!
 //! Source: Butterworth (1930), Experimental Wireless 7, 536-541; the transform as in Oppenheim & Schafer (2010), Discrete-Time
 //! Signal Processing, section 7.2. Valid for f_c < 1/(2Δt); above, the signal is returned as it is.
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// The signal, sampled every `interval` [s], without what is faster than `cut_off` [Hz].
+/// Returns the signal, sampled every `interval` [s], without frequencies above `cut_off` [Hz].
 pub fn low_pass(signal: &[f64], interval: f64, cut_off: f64) -> Vec<f64> {
     if cut_off * interval >= 0.5 {
         return signal.to_vec();

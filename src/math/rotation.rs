@@ -37,13 +37,13 @@ pub fn cayley_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     2.0 * axial(rotation) / twice_cosine_half_squared.max(f64::MIN_POSITIVE)
 }
 
-/// T(θ): the spin that a change of the Cayley vector makes.
+/// T(θ): the spin that results from a change of the Cayley vector.
 #[inline(always)]
 pub fn spin_of_cayley(theta: Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() + 0.5 * skew(theta)) / (1.0 + 0.25 * theta.norm_squared())
 }
 
-/// A frame whose third column is the unit vector `direction` [-]; its first lies as near to `reference` as that allows.
+/// Frame whose third column is the unit vector `direction` [-]; its first is as close to `reference` as possible.
 pub fn frame_along(direction: Vector3<f64>, reference: Vector3<f64>) -> Matrix3<f64> {
     let across = |v: Vector3<f64>| {
         let rest = v - v.dot(&direction) * direction;

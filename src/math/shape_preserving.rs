@@ -1,43 +1,45 @@
 //! Slopes of piecewise cubics through the rows of a table, which leave the range of neighbouring rows at smooth extrema only.
 //!
-//! [`slopes`] serves values that may rise and fall: displacements in time, soundings in x and in y. The slope at a row is that of the quartic
-//! through the row and its two neighbours on either side, one order less for each of them that there is not; its error is of the order h⁴,
-//! that of the cubics likewise. The first and the last slope are given by [`End`]. Where a cubic then turns between two rows i and i + 1,
-//! its excursion beyond both is that of a smooth extremum if, with the divided second differences d_k = (s_k − s_{k−1})/(h_k + h_{k−1}) of the
-//! secants s and spans h,
+//! [`slopes`] applies to values that may rise and fall: displacements in time, soundings in x and in y. The slope at
+//! a row is that of the quartic through the row and its two neighbours on either side, one order less for each
+//! missing neighbour; its error is of the order h⁴, that of the cubics likewise. The first and the last slope are
+//! given by [`End`]. Where a cubic then turns between two rows i and i + 1, its excursion beyond both is that of a
+//! smooth extremum if, with the divided second differences d_k = (s_k − s_{k−1})/(h_k + h_{k−1}) of the secants s and
+//! spans h,
 //!
 //!   excursion ≤ ¾ min|d_k| min(h_i, 2h_{i−1}, 2h_{i+1})²,   k = i − 1 … i + 2, all d_k of one sign,
 //!
-//! three times the excursion of a parabola with the curvature 2d between equal rows; at the ends of the table three d_k suffice, and less never do.
+//! three times the excursion of a parabola with the curvature 2d between equal rows; at the ends of the table three
+//! d_k suffice, and fewer never do.
 //! Any other extremum has no support in the rows: both slopes are then limited to 0 … 3 minmod(s_{k−1}, s_k), with which the cubics at a
 //! row are monotone from row to row. A harmonic of unit amplitude with 20 rows a period is met within 3·10⁻⁵ (8 rows: 2·10⁻³) away from the ends, and
 //! within 2·10⁻⁴ where the rows are shifted at random by up to 0.3 of their distance.
 //!
-//! [`rising_slopes`] serves values that rise from row to row, such as tension over strain, and keeps them rising: the weighted harmonic mean
+//! [`rising_slopes`] applies to values that rise from row to row, such as tension over strain, and keeps them rising: the weighted harmonic mean
 //!
 //!   m_k = (w₁ + w₂)/(w₁/s_{k−1} + w₂/s_k),  w₁ = 2h_k + h_{k−1},  w₂ = h_k + 2h_{k−1},
 //!
 //! and at the ends the slope of the parabola through three rows, kept between s/10 and 3s.
 //!
 //! Source: condition 0 ≤ m ≤ 3s for a monotone cubic by Fritsch & Carlson (1980), SIAM J. Numer. Anal. 17, 238-246; quartic slopes, limited to
-//! it, by Hyman (1983), SIAM J. Sci. Stat. Comput. 4, 645-654; that smooth extrema have to be told apart, by second differences of one sign,
-//! by Huynh (1993), SIAM J. Numer. Anal. 30, 57-100; the test above is moorline's own. Harmonic mean by Fritsch & Butland (1984), SIAM J. Sci.
-//! Stat. Comput. 5, 300-304. Valid for ascending rows.
+//! it, by Hyman (1983), SIAM J. Sci. Stat. Comput. 4, 645-654; distinction of smooth extrema, by second differences
+//! of one sign, by Huynh (1993), SIAM J. Numer. Anal. 30, 57-100; the test above is derived here. Harmonic mean by
+//! Fritsch & Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304. Valid for ascending rows.
 
 /// Slope of a curve at its first or last row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// 0: the curve is constant outside, with a continuous slope.
     Flat,
-    /// That of the chord to the next row.
+    /// Slope of the chord to the next row.
     Chord,
-    /// That of the parabola through three rows, kept between 0 and three times the chord's: the curve ends there.
+    /// Slope of the parabola through three rows, kept between 0 and three times the chord's: the curve ends there.
     Open,
 }
 
-/// Greatest excursion of an extremum over that of a parabola with the least curvature of the rows beside it [-].
+/// Greatest excursion of an extremum over that of a parabola with the least curvature of the adjacent rows [-].
 const EXCURSION_MAX: f64 = 3.0;
-/// Greatest span that counts in this, over the spans beside it [-].
+/// Greatest ratio of the span to the adjacent spans that counts in this test [-].
 const SPAN_MAX: f64 = 2.0;
 /// Greatest slope of a monotone cubic at its ends, over its secant [-].
 const MONOTONE_MAX: f64 = 3.0;
@@ -100,7 +102,7 @@ fn secant(at: &[f64], values: &[f64], k: usize) -> f64 {
     (values[k + 1] - values[k]) / (at[k + 1] - at[k])
 }
 
-/// Slope at row i of the polynomial through it and up to two neighbours on either side; 0 where it is no number.
+/// Slope at row i of the polynomial through it and up to two neighbours on either side; 0 where it is NaN.
 fn quartic_slope(at: &[f64], values: &[f64], i: usize) -> f64 {
     let mut rows = [i; 5];
     let mut count = 0;
@@ -130,7 +132,7 @@ fn quartic_slope(at: &[f64], values: &[f64], i: usize) -> f64 {
     if slope.is_finite() { slope } else { 0.0 }
 }
 
-/// A table whose cubics are to turn at smooth extrema only.
+/// Table whose cubics may turn at smooth extrema only.
 struct Limiter<'a> {
     values: &'a [f64],
     spans: Vec<f64>,
@@ -152,7 +154,8 @@ impl<'a> Limiter<'a> {
         }
     }
 
-    /// Limits both slopes of every cubic that turns without support. A row is limited once at most, and may make the cubic before it turn.
+    /// Limits both slopes of every cubic that turns without support. A row is limited at most once, which may cause
+    /// the cubic before it to turn.
     fn limit(&self, slopes: &mut [f64]) {
         let mut limited = vec![false; slopes.len()];
         let mut k = 0;
@@ -180,7 +183,8 @@ impl<'a> Limiter<'a> {
         slope.clamp(bound.min(0.0), bound.max(0.0))
     }
 
-    /// Whether the cubic from row k to the next, with the slopes at both, turns nowhere or at a smooth extremum.
+    /// Returns whether the cubic from row k to the next, with the slopes at both, turns nowhere or at a smooth
+    /// extremum.
     fn is_supported(&self, k: usize, slopes: [f64; 2]) -> bool {
         let (span, secant) = (self.spans[k], self.secants[k]);
         if is_monotone(secant, slopes) {
@@ -216,7 +220,7 @@ fn minmod(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Whether a cubic with these slopes at its ends is monotone: necessary and sufficient, Fritsch & Carlson's lemmas 1 and 2.
+/// Returns whether a cubic with these slopes at its ends is monotone: necessary and sufficient, Fritsch & Carlson's lemmas 1 and 2.
 fn is_monotone(secant: f64, [start, end]: [f64; 2]) -> bool {
     if secant == 0.0 {
         return start == 0.0 && end == 0.0;
@@ -230,7 +234,7 @@ fn is_monotone(secant: f64, [start, end]: [f64; 2]) -> bool {
     steep <= 0.0 || 2.0 * a + b <= 3.0 || a + 2.0 * b <= 3.0 || least >= 0.0
 }
 
-/// By how much a cubic leaves the range of the values at its ends, with its slopes there times its span.
+/// Excursion of a cubic beyond the range of the values at its ends, with its slopes there times its span.
 fn excursion([low, high]: [f64; 2], [start, end]: [f64; 2]) -> f64 {
     let rise = high - low;
     let [b, c, d] = [start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise];

@@ -1,17 +1,18 @@
-//! Direct solution of a sparse system of 3×3 blocks with a symmetric pattern: the points that chains meet in, three unknowns each.
+//! Direct solution of a sparse system of 3×3 blocks with a symmetric pattern: the points at which chains meet, three
+//! unknowns each.
 //!
-//! The points are eliminated in an order of approximate minimum degree. Order and pattern of the factors are found once (`Order`); a
-//! solve then computes numbers only and allocates nothing. With point k next in the order, U its blocks on the later points and L those of
-//! these on it,
+//! The points are eliminated in an order of approximate minimum degree. Order and pattern of the factors are found
+//! once (`Order`); a solve then computes numbers only and allocates nothing. With point k next in the order, U its
+//! blocks on the later points and L those of these on k,
 //!
 //!   W_j = D_k⁻¹ U_kj,   y_k = D_k⁻¹ b_k,   A_ij ← A_ij − L_ik W_j,   b_i ← b_i − L_ik y_k,   at last x_k = y_k − Σ W_j x_j.
 //!
 //! Pivots stay in their blocks, so that signs of pivots keep their meaning: a matrix is positive definite where all of them are positive, see
-//! [`Pivots`]. Values need not be symmetric. The arithmetic is the same on every machine, whatever its vectors.
+//! [`Pivots`]. Values need not be symmetric. The arithmetic is the same on every machine, for any width of its vectors.
 //!
 //! Source: Davis (2006), Direct Methods for Sparse Linear Systems, chapters 4 (symbolic analysis) and 6 (LU with a symmetric pattern);
 //! Amestoy, Davis & Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886-905 (order). Order and pattern are by the crate faer, whose numeric
-//! factors do not serve here: its Cholesky factors need symmetric values, its LU factors exchange rows between points, and both round differently on
+//! factors are not suitable here: its Cholesky factors need symmetric values, its LU factors exchange rows between points, and both round differently on
 //! machines with other vectors.
 
 use std::sync::Arc;
@@ -30,7 +31,7 @@ use super::block_banded::{Lu3, Pivots};
 struct Order {
     /// Place of every point in the order.
     place: Vec<usize>,
-    /// Where the blocks below the diagonal begin in each column, and their number.
+    /// Start of the blocks below the diagonal in each column, and their number.
     start: Vec<usize>,
     /// Rows of the blocks below the diagonal, ascending in each column.
     rows: Vec<usize>,

@@ -1,8 +1,9 @@
-//! Direct solution of a tridiagonal system that is folded into lanes: every lane eliminates its piece while the others do theirs.
+//! Direct solution of a tridiagonal system that is striped over lanes: every lane eliminates its piece at the same
+//! time as the others.
 //!
-//! l_i x_{i−1} + d_i x_i + u_i x_{i+1} = b_i for i = 0 … 4m − 1; equation i stands in row i mod m, lane i / m, so that a lane holds m
-//! equations in a row and its neighbours go on where it ends. Going down the rows, with p the last unknown of the piece before, every
-//! equation becomes
+//! l_i x_{i−1} + d_i x_i + u_i x_{i+1} = b_i for i = 0 … 4m − 1; equation i is in row i mod m, lane i / m, so that a
+//! lane holds m consecutive equations and the next lane continues at its end. In the downward pass, with p the last
+//! unknown of the piece before, every equation becomes
 //!
 //! x_r = g_r − s_r p − c_r x_{r+1},  c_r = u_r/δ,  s_r = −l_r s_{r−1}/δ,  g_r = (b_r − l_r g_{r−1})/δ,  δ = d_r − l_r c_{r−1},
 //!
@@ -10,9 +11,9 @@
 //! two, couples the last unknowns of three pieces: a system of four, which one step of cyclic reduction splits into pairs for Cramer's rule. Then
 //! x_r follows from the last row up. Systems of other sizes are filled up with rows x = 0.
 //!
-//! Nothing is pivoted. A = 1 + K S with a diagonal K ≥ 0 and S positive semidefinite is similar to 1 + √K S √K, whose pivots are ≥ 1 in
-//! whatever order its unknowns are eliminated, and a diagonal similarity leaves pivots as they are. Diagonally dominant matrices,
-//! the other kind this is made for, keep |δ| ≥ |d| − |l|.
+//! The elimination has no pivoting. A = 1 + K S with a diagonal K ≥ 0 and S positive semidefinite is similar to 1 +
+//! √K S √K, whose pivots are ≥ 1 in any order of elimination, and a diagonal similarity does not change pivots.
+//! Diagonally dominant matrices, the other intended kind, keep |δ| ≥ |d| − |l|.
 //!
 //! Source: Wang (1981), A parallel method for tridiagonal equations, ACM Trans. Math. Softw. 7, 170-183 (partition); Polizzi & Sameh
 //! (2006), A parallel hybrid banded system solver: the SPIKE algorithm, Parallel Computing 32, 177-194 (spikes, reduced system).
@@ -46,9 +47,11 @@ impl Equations {
     }
 }
 
-/// What elimination makes of four equations: x_r = g − s p − c x_{r+1}; and of the first unknowns of their pieces, x_0 = G − F p + E x_r.
+/// Result of the elimination for four equations: x_r = g − s p − c x_{r+1}; and of the first unknowns of their
+/// pieces, x_0 = G − F p + E x_r.
 ///
-/// A row goes on from the one above where that is kept: what is carried from row to row in registers is not compiled to whole vectors.
+/// A row continues from the stored row above: values carried from row to row in registers are not compiled to whole
+/// vectors.
 #[derive(Debug, Clone, Copy)]
 pub struct Eliminated {
     /// g, in the unit of x.
@@ -74,7 +77,7 @@ impl Eliminated {
         }
     }
 
-    /// Goes on to the row below, which is not the last.
+    /// Advances to the row below, which is not the last.
     #[inline(always)]
     pub fn eliminate(&self, row: &Equations) -> Eliminated {
         let zero = Lanes::splat(0.0);
@@ -97,7 +100,7 @@ impl Eliminated {
         }
     }
 
-    /// Goes on to the last row. Returns the last unknowns of the pieces before, and of the pieces themselves.
+    /// Advances to the last row. Returns the last unknowns of the pieces before, and of the pieces themselves.
     #[inline(always)]
     pub fn close(&self, row: &Equations) -> (Lanes, Lanes) {
         let zero = Lanes::splat(0.0);

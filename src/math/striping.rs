@@ -1,6 +1,7 @@
-//! A chain of nodes folded into the lanes of vectors, so that the neighbours of a vector of nodes are whole vectors too.
+//! Striped layout of a chain of nodes over the lanes of vectors, in which the neighbours of a vector of nodes are
+//! whole vectors too.
 //!
-//! With m = ⌈count/4⌉ rows, node i stands in row i mod m of lane ⌊i/m⌋:
+//! With m = ⌈count/4⌉ rows, node i is in row i mod m of lane ⌊i/m⌋:
 //!
 //! ```text
 //! row 0, halo        ·    m−1   2m−1   3m−1
@@ -11,25 +12,27 @@
 //! row m+1, halo      m    2m     3m     ·
 //! ```
 //!
-//! The nodes before and after those of a row are those of the rows before and after it: no lane is shifted, and no vector is read that
-//! overlaps two that were written. The halo rows repeat the rows m and 1, moved on by a lane, and are renewed by `wrap` when these
-//! have changed. Nodes beyond the last one are padding. Segment i, which lies between the nodes i and i + 1, stands where node i does.
+//! The nodes before and after those of a row are those of the rows before and after it: no lane is shifted, and no
+//! vector is read that overlaps two written ones. The halo rows repeat the rows m and 1, shifted by a lane, and are
+//! renewed by `wrap` when these have changed. Nodes beyond the last one are padding. Segment i, between the nodes i
+//! and i + 1, is in the place of node i.
 //!
-//! The last lane of the last halo row repeats nothing: node 4m stands there, and `wrap` leaves it alone. A chain whose last node needs no row, since
-//! nothing is worked out for it, has one row less where its segments fill their rows ([`Striping::without_last`]).
+//! The last lane of the last halo row repeats nothing: it is the place of node 4m, which `wrap` does not change. A
+//! chain whose last node needs no row, since no value is computed for it, has one row less where its segments fill
+//! their rows ([`Striping::without_last`]).
 
 use nalgebra::Vector3;
 use std::ops::{Index, IndexMut};
 
 use super::lanes::{LANES, Lanes, Vectors};
 
-/// How many rows a chain is folded into.
+/// Number of rows of the striped layout of a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Striping {
     rows: usize,
 }
 
-/// Where a node stands.
+/// Place of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
     /// Row, of which the first is number 1.
@@ -61,9 +64,9 @@ impl Striping {
         LANES * self.rows
     }
 
-    /// Where node `i` stands.
+    /// Place of node `i`.
     pub fn slot(self, i: usize) -> Slot {
-        // quicker than a division, and steps ask for their ends
+        // quicker than a division, and steps look up their ends
         let lane = (1..LANES).map(|k| usize::from(i >= k * self.rows)).sum();
         Slot {
             row: i - lane * self.rows + 1,
@@ -71,7 +74,7 @@ impl Striping {
         }
     }
 
-    /// Where the nodes stand, from the first to the last that there is room for, and to the one behind these.
+    /// Places of the nodes, from the first to the last that there is room for, and to the one behind these.
     pub fn slots(self) -> impl Iterator<Item = Slot> {
         let rows = 1..=self.rows;
         let inner = (0..LANES).flat_map(move |lane| rows.clone().map(move |row| Slot { row, lane }));
@@ -87,7 +90,7 @@ impl Striping {
 }
 
 impl Slot {
-    /// Where the node before stands: in a halo row, if need be.
+    /// Place of the node before: in a halo row, if need be.
     pub fn before(self) -> Slot {
         Slot {
             row: self.row - 1,
@@ -95,7 +98,7 @@ impl Slot {
         }
     }
 
-    /// Where the node after stands: in a halo row, if need be.
+    /// Place of the node after: in a halo row, if need be.
     pub fn after(self) -> Slot {
         Slot {
             row: self.row + 1,
@@ -168,7 +171,7 @@ impl Column {
         self.rows[last] = self.rows[1].moved_down_before(self.rows[last]) + Lanes::splat(0.0);
     }
 
-    /// How it is folded.
+    /// Layout of the chain.
     pub fn striping(&self) -> Striping {
         Striping {
             rows: self.rows.len() - 2,

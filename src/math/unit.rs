@@ -1,12 +1,12 @@
-//! Which vectors of the machine a kernel is run with; results do not depend on it.
+//! Vector unit of the machine on which a kernel runs; results do not depend on it.
 //!
-//! The widest are not the best for everything. Where a machine has vectors of eight numbers, compilers put two of four together in them, which
-//! pays over many rows. What has only just been written as two and is read again as one is held up until both are in the cache, though, and
-//! over few rows there is nothing else to do meanwhile.
+//! The widest vectors are not the best for every kernel. On a machine with vectors of eight numbers, compilers
+//! combine two of four, which is faster over many rows. Values that were just written as two vectors and are read
+//! again as one stall until both are in the cache, and over few rows no other work hides that time.
 
 use pulp::Arch;
 
-/// The best unit for so many rows, where vectors of eight numbers pay over more than `few`.
+/// Best unit for this number of rows, where vectors of eight numbers are faster over more than `few`.
 pub fn over_rows(rows: usize, few: usize) -> Arch {
     if rows > few { Arch::new() } else { of_four() }
 }

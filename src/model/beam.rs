@@ -1,4 +1,4 @@
-//! What a line is made of where it is a geometrically exact beam, and what of it changes.
+//! Properties of a line that is a geometrically exact beam, and its state.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -13,9 +13,9 @@ pub struct Beam {
     pub elements: Vec<BeamElement>,
     /// Rotary inertia of the nodes about their three directors [kg m²].
     pub rotary_inertia: Vec<Vector3<f64>>,
-    /// Direction of the line at ends A and B where they are clamped, with the point as it stands in the scene [-].
+    /// Direction of the line at ends A and B where they are clamped, with the point in its scene attitude [-].
     pub clamped: [Option<Vector3<f64>>; 2],
-    /// Whether the shape the line starts from is free of stress; else the straight line is.
+    /// True if the initial shape is free of stress; else the straight line is.
     pub rests_as_it_starts: bool,
 }
 
@@ -30,7 +30,7 @@ pub struct BeamElement {
     pub damping: SectionLaw,
 }
 
-/// State of a beam: what its nodes have beside positions and velocities.
+/// State of a beam: the frames and rates of its nodes in addition to positions and velocities.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeamState {
     /// Orthonormal frames of the nodes, d₁ d₂ d₃ as columns [-].
@@ -39,12 +39,13 @@ pub struct BeamState {
     pub spins: Vec<Vector3<f64>>,
     /// Starred strains of the elements without stress [-], [1/m].
     pub rest: Vec<Sextuple>,
-    /// Frames of ends A and B as their points, in reference attitude, carry them where they are clamped [-].
+    /// Frames of ends A and B in their points' reference attitude where they are clamped [-].
     pub carried: [Matrix3<f64>; 2],
 }
 
 impl BeamState {
-    /// At rest on node positions [m], without twist; the points that the ends are clamped to have the given attitudes [-].
+    /// Beam at rest on node positions [m], without twist; the points that the ends are clamped to have the given
+    /// attitudes [-].
     pub fn at_rest(beam: &Beam, position: &[Vector3<f64>], attitude: [Matrix3<f64>; 2]) -> BeamState {
         let last = position.len() - 1;
         let clamp = |end: usize| beam.clamped[end].map(|direction| attitude[end] * direction);

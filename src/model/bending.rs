@@ -13,7 +13,7 @@ pub struct Bending {
     pub stiffness: Vec<f64>,
     /// B = EI/l̄ per node [N m]; 0 at hinges and pinned ends.
     pub joint: Vec<f64>,
-    /// Unstretched length l̄ that a joint's turn belongs to [m].
+    /// Unstretched length l̄ of a joint [m].
     pub length: Vec<f64>,
     /// |κb| of the unstressed shape per node [-].
     pub rest: Vec<f64>,
@@ -21,12 +21,13 @@ pub struct Bending {
     pub compression_max: Vec<f64>,
     /// Damping of the joints [N m s], where a line type has it.
     pub damping: Option<Vec<f64>>,
-    /// Direction from end A to end B that the line is held to at each end [-]; pinned where there is none.
+    /// Direction from end A to end B of the clamp at each end [-]; pinned where there is none.
     clamps: [Option<Vector3<f64>>; 2],
 }
 
 impl Bending {
-    /// From the length [m], EI [N m²] and stiffness-proportional damping β [s] of every segment, straight where unstressed.
+    /// Joints from the length [m], EI [N m²] and stiffness-proportional damping β [s] of every segment, straight
+    /// where unstressed.
     pub fn new(
         length: &[f64],
         stiffness: Vec<f64>,
@@ -75,8 +76,8 @@ impl Bending {
 }
 
 impl Line {
-    /// Direction from end A to end B that the line is held to at an end whose point is `point` [-]; pinned where there is none. The
-    /// one place where a clamp follows what it is fixed to.
+    /// Direction from end A to end B of the clamp at an end whose point is `point` [-]; pinned where there is none.
+    /// No other function relates a clamp to its support.
     pub fn clamp(&self, end: End, point: &PointState) -> Option<Vector3<f64>> {
         let [a, b] = self.bending.as_ref()?.clamps;
         let reference = match end {
@@ -120,7 +121,7 @@ impl Model {
 /// Keeps coincident nodes from dividing by zero [m].
 const LENGTH_MIN: f64 = 1e-9;
 
-/// The turn at a node between its segments, or between a clamp and a segment; `None` at a pinned end.
+/// Turn at a node between its segments, or between a clamp and a segment; `None` at a pinned end.
 #[inline(always)]
 pub fn joint(clamps: [Option<Vector3<f64>>; 2], position: &[Vector3<f64>], node: usize) -> Option<Turn> {
     let segment = |i: usize| {

@@ -10,16 +10,17 @@ use crate::physics::seabed::{self, ContactCoefficients};
 /// Shape and friction of a seabed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bottom {
-    /// Its shape.
+    /// Shape of the seabed.
     pub ground: Ground,
-    /// Whether that is a level plane.
+    /// True if the shape is a level plane.
     pub level: bool,
-    /// Its friction, where it has any.
+    /// Friction, where there is any.
     pub friction: Option<Friction>,
 }
 
 impl Bottom {
-    /// How a node at a place [m] stands to the level from which the bed pushes it, `lift` [m] above the bed along its normal.
+    /// Position of a node at a place [m] relative to the level from which the bed pushes it, `lift` [m] above the bed
+    /// along its normal.
     pub fn touch(&self, place: Vector3<f64>, lift: f64) -> Touch {
         let touch = self.ground.touch(place);
         Touch {
@@ -28,14 +29,14 @@ impl Bottom {
         }
     }
 
-    /// How fast a node leaves the bed, along its normal [m/s].
+    /// Velocity at which a node leaves the bed, along its normal [m/s].
     pub fn rise(&self, place: Vector3<f64>, velocity: Vector3<f64>) -> f64 {
         self.ground.normal(place.x, place.y).dot(&velocity)
     }
 }
 
 impl Contact {
-    /// How far above the bed it begins to push a node, along the normal [m].
+    /// Height above the bed at which contact with a node begins, along the normal [m].
     pub fn lift(&self, node: usize) -> f64 {
         self.level[node] - self.bed
     }
@@ -71,7 +72,7 @@ impl Contact {
 }
 
 impl PointContact {
-    /// How far above the bed it begins to push the point, along the normal [m].
+    /// Height above the bed at which contact with the point begins, along the normal [m].
     pub fn lift(&self) -> f64 {
         self.level - self.bed
     }
@@ -97,7 +98,7 @@ impl Line {
 }
 
 impl Model {
-    /// Whether the seabed, if there is one, is a level plane.
+    /// Returns whether the seabed, if there is one, is a level plane.
     pub fn bed_is_level(&self) -> bool {
         self.bottom.as_ref().is_none_or(|bottom| bottom.level)
     }

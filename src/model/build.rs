@@ -1,4 +1,4 @@
-//! Scene -> Model.
+//! Conversion of a scene into the discrete model.
 
 mod beam;
 mod reach;
@@ -34,7 +34,7 @@ use crate::scene::{
     SceneError, Strain,
 };
 
-/// Segments that a winch pays out, at most.
+/// Greatest number of segments that a winch pays out.
 const REEL_SEGMENTS_MAX: f64 = 1e5;
 
 /// Elements of every line over those of a line alone [-]: its length over that of the longest line that it meets at free points.
@@ -43,7 +43,7 @@ pub fn line_shares(scene: &Scene) -> Vec<f64> {
 }
 
 impl Model {
-    /// Makes a scene discrete.
+    /// Discretises a scene.
     ///
     /// # Errors
     /// The mistakes that [`Scene::check`] finds, and names that do not exist.
@@ -90,13 +90,14 @@ impl Model {
         })
     }
 
-    /// How many elements of which lengths [m] the lines have, and why, where this is the model of that scene: one sentence a line.
+    /// Number and lengths [m] of the lines' elements with the reasons, where this is the model of that scene: one
+    /// sentence a line.
     pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
         spacing::in_words(scene, self)
     }
 }
 
-/// What the bed is beside a level plane without friction.
+/// Properties of the bed other than a level plane without friction.
 fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
     let ground = match (&bed.grid, bed.slope) {
         (Some(grid), _) => {
@@ -120,11 +121,11 @@ fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
     })
 }
 
-/// Stiffness along the bed of a node that sticks, over the greatest axial stiffness of its segments [-]: what friction gives way before it
-/// slides is then a small part of what the line stretches by between two nodes.
+/// Stiffness along the bed of a node that sticks, over the greatest axial stiffness of its segments [-]: the
+/// displacement before a node slides is then a small part of the stretch between two nodes.
 const STICK: f64 = 10.0;
 
-/// Gives a line the bed's surface.
+/// Sets the bed's surface of a line.
 fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
     if let Some(winch) = &mut line.winch {
         lay_on(winch.longest_mut(), bottom);
@@ -216,7 +217,7 @@ fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point
     }
 }
 
-/// Whether a point has anything that forces act on.
+/// Returns whether a point has mass, or forces from the water.
 fn has_mass_or_water(point: &scene::Point) -> bool {
     let sizes = [point.mass, point.volume, point.drag_area];
     sizes.iter().flatten().any(|size| *size > 0.0)
@@ -244,7 +245,8 @@ fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {
     }
 }
 
-/// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its lines' ends.
+/// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its
+/// lines' ends.
 fn point_contact(scene: &Scene, point: &scene::Point, axes: [bool; 3], dry: f64) -> Option<PointContact> {
     let bed = scene.seabed.as_ref()?;
     let in_reach = scene.lines.iter().any(|line| {
@@ -291,7 +293,7 @@ fn damping_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     line_type.damping_ratio.unwrap_or(open)
 }
 
-/// ζ of every segment, at least: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
+/// Least ζ of every segment: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
 fn numerical_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     let beam = line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam;
     if line_type.leaves_damping_open() && !beam {
@@ -396,8 +398,8 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
     }
 }
 
-/// A line of the scene that is to have so many elements [-] where the scene leaves them open; damping ratios refer to segments of the
-/// lengths `damped` [m], one per section.
+/// Line of the scene with this number of elements [-] where the scene leaves them open; damping ratios refer to
+/// segments of the lengths `damped` [m], one per section.
 fn build_line(
     scene: &Scene,
     index: usize,
@@ -462,7 +464,7 @@ fn build_line(
 }
 
 /// Lengthens the mesh of a line on a winch by all that can be paid out, and a segment more for paths that overshoot. Returns the first
-/// segment of the last section, and how many segments the line has at no change.
+/// segment of the last section, and the number of segments at no change.
 fn reel(
     index: usize,
     line: &scene::Line,
@@ -487,7 +489,7 @@ fn reel(
     Ok(Some([before, before + within]))
 }
 
-/// A line on a winch as it is at no change of its length, out of the line with all that can be paid out.
+/// Line on a winch at no change of its length, from the line with all that can be paid out.
 fn on_winch(
     index: usize,
     longest: Line,
@@ -521,7 +523,7 @@ fn segment_parts<'a>(laws: &'a [LineLaw], lengths: &[Vec<f64>]) -> Vec<SegmentPa
     laws.iter().zip(lengths).flat_map(of_section).collect()
 }
 
-/// When the ends of a line part from their points.
+/// Conditions for the release of a line's ends.
 fn releases(line: &scene::Line) -> Option<[Release; 2]> {
     let mut releases = [Release::default(); 2];
     let side = |end: LineEnd| usize::from(end == LineEnd::B);
@@ -535,7 +537,7 @@ fn releases(line: &scene::Line) -> Option<[Release; 2]> {
     (line.release.is_some() || line.failure.is_some()).then_some(releases)
 }
 
-/// Refuses a viscoelastic section beside one of another strain measure.
+/// Refuses a viscoelastic section next to one of another strain measure.
 fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
     let viscoelastic = laws.iter().any(|law| law.viscoelastic.is_some());
     if viscoelastic && laws.iter().any(|law| law.law != StretchLaw::Engineering) {
@@ -547,7 +549,7 @@ fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Sections as the mesher sees them.
+/// Sections as used by the mesher.
 fn pieces(line: &scene::Line) -> Vec<mesh::Piece> {
     let piece = |section: &scene::Section| mesh::Piece {
         length: section.length,
@@ -584,7 +586,7 @@ fn line_bending(
     )))
 }
 
-/// Takes the shape at the start as the one that bends nothing, where the scene says so and gives one.
+/// Takes the initial shape as the one without bending moments, where the scene selects it and gives one.
 fn rest_as_it_lies(line: &mut Line, points: &[Point], rest_shape: RestShape) {
     let [a, b] = line.ends.map(|point| points[point].reference);
     let nodes = line.given_shape(a, b);
@@ -663,7 +665,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
     }
 }
 
-/// Half of each neighbouring segment's share at every node.
+/// Sum of half of each neighbouring segment's share at every node.
 fn lumped(parts: &[SegmentPart], density: &dyn Fn(&LineLaw) -> f64) -> Vec<f64> {
     let mut nodes = vec![0.0; parts.len() + 1];
     for (i, part) in parts.iter().enumerate() {
@@ -736,7 +738,7 @@ fn check_beam(points: &[Point], lines: &[Line], network: &Network) -> Result<(),
     }
 }
 
-/// Refuses a leapfrog for lines that it cannot take.
+/// Refuses a leapfrog for lines that it cannot integrate.
 fn check_integrator(scene: &Scene, lines: &[Line], network: &Network) -> Result<(), SceneError> {
     let integrator = scene.solver.integrator;
     let refuse = |what: String| {

@@ -1,4 +1,4 @@
-//! Shapes a line may be given at the start; equilibria and catenaries are for `statics` to find.
+//! Initial shapes of a line that are given in closed form; equilibria and catenaries are found by `statics`.
 
 use nalgebra::Vector3;
 
@@ -6,8 +6,8 @@ use super::Line;
 use crate::scene::InitialShape;
 
 impl Line {
-    /// Node positions [m] of the start shape the user gave, between ends at `a` and `b` [m]; `None` for the static one and for
-    /// the catenary.
+    /// Node positions [m] of the user's initial shape, between ends at `a` and `b` [m]; `None` for the static one and
+    /// for the catenary.
     pub fn given_shape(&self, a: Vector3<f64>, b: Vector3<f64>) -> Option<Vec<Vector3<f64>>> {
         let length = self.unstretched_length();
         let on_chord = |sag: f64| {

@@ -1,21 +1,22 @@
-//! The elements that a line gets where the scene leaves them open.
+//! Elements of a line whose number the scene leaves open.
 //!
-//! The lumped two-node line carries about 0.8/n of relative error in the RMS of a fairlead tension (4 % at n = 20, 1.8 % at
-//! n = 40 on a 900 m catenary), so n = 0.8/tolerance over the line where the scene does not say how it moves; where it does,
-//! [`crate::discretisation`] finds n. Of lines that meet at free points the longest gets n, and the others their
-//! share by length, at least one.
+//! The lumped two-node line has a relative error of about 0.8/n in the RMS of a fairlead tension (4 % at n = 20, 1.8
+//! % at n = 40 on a 900 m catenary), so n = 0.8/tolerance over the line where the scene gives no motion; where it
+//! does, [`crate::discretisation`] finds n. Of lines that meet at free points the longest gets n, and the others
+//! their share by length, at least one.
 //!
-//! Sections share a line's elements by length. Where that would put a long element beside one that is more than [`RATIO_MAX`] times
-//! shorter, the elements of the section with the long ones grow from the border on, as lengths h(s) with |dh/ds| ≤ [`GROWTH`]:
+//! Sections share a line's elements by length. Where that would put a long element next to one that is more than
+//! [`RATIO_MAX`] times shorter, the elements of the section with the long ones grow from the border on, as lengths
+//! h(s) with |dh/ds| ≤ [`GROWTH`]:
 //!
-//!   h(s) = min(h_section, h_other + G·distance to it, h_fine + G·distance to where it is wanted).
+//! h(s) = min(h_section, h_other + G·distance to it, h_fine + G·distance to its place).
 //!
 //! A cable that bends follows a clamp, and lifts off the bed, over √(EI/T): half of that is h_fine near both.
 //!
-//! Sections with a given number of elements have them of equal length, whatever lies beside them; what is open beside them adapts if it has
-//! the longer ones.
+//! Sections with a given number of elements have elements of equal length, regardless of their neighbours; an open
+//! neighbour with longer elements adapts.
 //!
-//! Tried and left, on the public scenes and ten variants with n = 14 to 40:
+//! Alternatives that were measured and rejected, on the public scenes and ten variants with n = 14 to 40:
 //! * elements of three times the length on the part that always lies on the bed: 12 % less work on average, 26 % at most, and 8 % more
 //!   RMS error, 24 to 36 % on the lines that lie most: worse than fewer elements all along;
 //! * unstretched lengths shortened by (hκ)²/24 of the static curvature κ, chords for arcs: with 14 elements the position half-way along has 0.45
@@ -23,68 +24,69 @@
 //!   the discrete equilibrium, which is held to published values. With the give of that sag in the stiffness too, 1/EA' = 1/EA +
 //!   (qh)²/(12T³) as Ernst (1965) has it for a whole cable, q the weight across and T the tension at rest, the tension has 1.3 to 1.4 times its
 //!   error on both (14 to 28 elements): a weight is too slow to follow waves along the line. On taut_polyester neither does
-//!   anything, (hκ)²/24 being 5e-8 with 10 elements: what curves that rope is the sea's drag. Its tension was wrong at
+//!   anything, (hκ)²/24 being 5e-8 with 10 elements: the curvature of that rope comes from drag. Its tension was wrong at
 //!   the end, see `dynamics/reaction.rs`.
 //!
-//! Elements of half the length where a line without bending stiffness touches down were tried with the same number of elements in all
-//! (oc3 and oc4 scenes, n = 20 to 120, regularised contact): the error of the tension did not fall, and the explicit step halved. So it is
-//! not done.
+//! Elements of half the length at the touchdown of a line without bending stiffness were measured with the same total
+//! number of elements (oc3 and oc4 scenes, n = 20 to 120, regularised contact): the error of the tension did not
+//! fall, and the explicit step halved. They are not used.
 
 /// RMS tension error times the number of elements of a line [-].
 const ERROR_TIMES_ELEMENTS: f64 = 0.8;
 const LINE_ELEMENTS_MIN: f64 = 10.0;
 const LINE_ELEMENTS_MAX: f64 = 400.0;
 /// Length of an element over that of a shorter neighbour, from which it is graded [-].
-pub const RATIO_MAX: f64 = 1.5;
+pub(crate) const RATIO_MAX: f64 = 1.5;
 /// Growth of the length of elements along the line [-]: e^0.25 from one to the next.
 const GROWTH: f64 = 0.25;
 /// Elements of a section that is too short to be graded well [-].
 const FEW: usize = 3;
 /// Points of the quadrature of 1/h in every element [-].
 const QUADRATURE: f64 = 40.0;
-/// Lengthening of fine elements, again and again, until the line has no more than it may have [-].
+/// Factor by which fine elements are lengthened repeatedly, until the line has no more than its greatest number [-].
 const COARSENING: f64 = 1.25;
 
-/// A section as the mesher sees it.
+/// Section as used by the mesher.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub(crate) struct Piece {
     /// Unstretched length [m].
     pub length: f64,
     /// Number of elements, where the scene gives one.
     pub elements: Option<usize>,
 }
 
-/// Where short elements are wanted.
+/// Place with short elements.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Refinement {
+pub(crate) struct Refinement {
     /// From this arc length on [m].
     pub from: f64,
     /// Up to this one [m].
     pub to: f64,
     /// Length of elements there [m].
     pub size: f64,
-    /// What for.
+    /// Reason for the refinement.
     pub place: Place,
 }
 
-/// What asks for short elements.
+/// Places that need short elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub(crate) enum Place {
     /// The clamp at end A.
     ClampA,
     /// The clamp at end B.
     ClampB,
-    /// Where the line lifts off the bed.
+    /// Lift-off of the line from the bed.
     Touchdown,
 }
 
 /// Elements of a line for a target error of fairlead tension [-], if it were alone.
-pub fn line_elements(tolerance: f64) -> f64 {
+pub(crate) fn line_elements(tolerance: f64) -> f64 {
     (ERROR_TIMES_ELEMENTS / tolerance).clamp(LINE_ELEMENTS_MIN, LINE_ELEMENTS_MAX)
 }
 
-/// Unstretched lengths of the elements of every section of a line that is to have about so many elements [-], more where it is refined.
-pub fn lengths(pieces: &[Piece], elements: f64, refinements: &[Refinement]) -> Vec<Vec<f64>> {
+/// Unstretched lengths of the elements of every section of a line with about `elements` elements [-], more where it
+/// is refined.
+pub(crate) fn lengths(pieces: &[Piece], elements: f64, refinements: &[Refinement]) -> Vec<Vec<f64>> {
     let total: f64 = pieces.iter().map(|piece| piece.length).sum();
     let share = |piece: &Piece| (elements * piece.length / total).round().max(1.0) as usize;
     let counts = || pieces.iter().map(|piece| piece.elements.unwrap_or(share(piece)));
@@ -163,7 +165,7 @@ impl Field<'_> {
         }
     }
 
-    /// Lengths of the elements of a section: equal where its number is given or nothing asks for shorter ones.
+    /// Lengths of the elements of a section: equal where its number is given or no refinement applies.
     fn piece(&self, index: usize, given: bool) -> Vec<f64> {
         let piece = &self.pieces[index];
         let length = piece.to - piece.from;
@@ -185,7 +187,7 @@ impl Field<'_> {
         ends.windows(2).map(|pair| pair[1] - pair[0]).collect()
     }
 
-    /// Whether anything asks for elements in a section that are shorter than its own by more than [`RATIO_MAX`].
+    /// Returns whether a section needs elements that are shorter than its regular ones by more than [`RATIO_MAX`].
     fn disturbed(&self, index: usize) -> bool {
         let piece = &self.pieces[index];
         let bound = piece.size / RATIO_MAX;
@@ -226,7 +228,7 @@ impl Field<'_> {
     }
 }
 
-/// Arc length [m] before which so many elements lie.
+/// Arc length [m] before which `count` elements lie.
 fn inverse(arc: &[(f64, f64)], count: f64) -> f64 {
     let next = arc
         .partition_point(|(_, before)| *before < count)

@@ -1,7 +1,7 @@
 //! The immutable discrete model: every line a chain of two-node segments with lumped nodes, every end at a point.
 //!
-//! [`Model::new`] is the one gate from the user's [`Scene`]: below it nothing asks what the user wrote. Physics that the
-//! scene does not contain is `None` here, not zero.
+//! [`Model::new`] is the only conversion from the user's [`Scene`]; the modules below do not read the scene. Physics
+//! that the scene does not contain is `None` here, not zero.
 
 mod beam;
 mod bending;
@@ -47,7 +47,7 @@ pub use winch::{LONGEST, Passage, SHORTEST, Winch};
 /// Part of a property below which two are one [-].
 const ROUNDING: f64 = 1e-9;
 
-/// A scene made discrete. Immutable; shared by reference.
+/// Discretised scene. Immutable; shared by reference.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// Gravitational acceleration [m/s²].
@@ -56,7 +56,7 @@ pub struct Model {
     pub bed: Option<f64>,
     /// Coulomb friction of the seabed along a line [-].
     pub bed_friction: f64,
-    /// What the seabed is beside a level plane without friction.
+    /// Properties of the seabed other than a level plane without friction.
     pub bottom: Option<Arc<Bottom>>,
     /// The current, where the water flows.
     pub current: Option<Current>,
@@ -72,16 +72,16 @@ pub struct Model {
     pub networks: Vec<Network>,
     /// Settings of the solver, as the scene gives them.
     pub solver: Solver,
-    /// Whether the scene asks for the energy balance.
+    /// True if the scene requests the energy balance.
     pub energy_balance: bool,
 }
 
 /// A current.
 #[derive(Debug, Clone)]
 pub struct Current {
-    /// Its velocity over the height.
+    /// Velocity of the current over the height.
     pub profile: Profile,
-    /// What multiplies it in time.
+    /// Factor on the velocity in time.
     pub factor: Option<TimeFunction>,
 }
 
@@ -102,19 +102,19 @@ pub struct Point {
     pub name: String,
     /// Reference position [m].
     pub reference: Vector3<f64>,
-    /// Who moves it.
+    /// Origin of its motion.
     pub role: Role,
     /// Load in time.
     pub load: Option<PointForce>,
     /// Moment in time, on the end of a line that bends.
     pub moment: Option<PointMoment>,
-    /// Mass, and what the water does to it, of a point that forces do not move; along no axis, and without contact.
+    /// Mass and submergence properties of a point that forces do not move; along no axis, and without contact.
     pub own: Option<FreePoint>,
     /// (line, end) pairs that meet here.
     pub attached: Vec<(usize, End)>,
 }
 
-/// What a host moves: a coupled point along three axes, a vessel along and about all six.
+/// Body moved by a host: a coupled point along three axes, a vessel along and about all six.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Body {
     /// A coupled point, by its index.
@@ -123,24 +123,24 @@ pub enum Body {
     Vessel(usize),
 }
 
-/// Who moves a point.
+/// Origin of a point's motion.
 #[derive(Debug, Clone)]
 pub enum Role {
     /// Never moves.
     Fixed,
     /// The host moves it; the motion of the scene drives it in `moorline run`.
     Coupled {
-        /// The scene's motion for it.
+        /// Motion of the scene for it.
         motion: Option<Motion>,
     },
-    /// It rides on a vessel, which the host moves.
+    /// Point fixed to a vessel, which the host moves.
     Carried {
         /// Index of the vessel.
         vessel: usize,
-        /// Its place in the vessel's axes [m].
+        /// Place in the vessel's axes [m].
         arm: Vector3<f64>,
     },
-    /// Its own path moves it.
+    /// Point moved by its path.
     Prescribed(Motion),
     /// Forces move it.
     Free(FreePoint),
@@ -149,7 +149,7 @@ pub enum Role {
 /// Forces on a point with mass in moving water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointForces {
-    /// What the point is at its height over the surface.
+    /// Properties of the point at its height over the surface.
     pub at: PointAtHeight,
     /// Velocity relative to the water [m/s].
     pub past: Vector3<f64>,
@@ -162,11 +162,11 @@ pub struct PointForces {
 pub struct FreePoint {
     /// Axes along which it moves.
     pub axes: [bool; 3],
-    /// Own mass [kg].
+    /// Mass of the point [kg].
     pub mass: f64,
-    /// Own weight less buoyancy, all of it under water [N].
+    /// Weight less buoyancy of the point, fully submerged [N].
     pub weight: f64,
-    /// What the water does to it, where there is water and it has a volume or a drag area.
+    /// Sphere of buoyancy, drag and added mass, where there is water and the point has a volume or a drag area.
     pub sphere: Option<Sphere>,
     /// Contact, where there is a seabed in reach and it has a weight.
     pub contact: Option<PointContact>,
@@ -177,24 +177,24 @@ pub struct FreePoint {
 pub struct PointContact {
     /// z of the bed [m].
     pub bed: f64,
-    /// z below which the spring pushes [m]: such that the point lies on the bed where it rests with all of its weight.
+    /// z below which the spring pushes [m]: such that the point lies on the bed when it rests with all of its weight.
     pub level: f64,
     /// Spring and damper.
     pub coefficients: ContactCoefficients,
 }
 
-/// What a free point is at a height: its weight changes where it pierces the surface, and so does its mass.
+/// Properties of a free point at a height: its weight and its mass change where it pierces the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointAtHeight {
-    /// How much of it is in the water.
+    /// Submergence of the point.
     pub wetted: Wetted,
-    /// Own weight less buoyancy [N].
+    /// Weight less buoyancy [N].
     pub weight: f64,
-    /// Its slope with height [N/m], not negative.
+    /// Slope of the weight with height [N/m], not negative.
     pub weight_slope: f64,
-    /// Own and added mass [kg].
+    /// Mass and added mass [kg].
     pub mass: f64,
-    /// Its slope with height [kg/m], not positive.
+    /// Slope of the mass with height [kg/m], not positive.
     pub mass_slope: f64,
 }
 
@@ -222,45 +222,45 @@ pub struct Line {
     pub bending: Option<Bending>,
     /// The water's surface, where the line may pierce it.
     pub surface: Option<Surface>,
-    /// Sections as the closed-form catenary takes them.
+    /// Sections for the closed-form catenary.
     pub sections: Vec<Section>,
     /// Shape at the start.
     pub initial: InitialShape,
-    /// What makes it a beam, where it is one.
+    /// Beam properties, where the line is a beam.
     pub beam: Option<Beam>,
-    /// When ends A and B part from their points, where one of them may.
+    /// Conditions for the release of ends A and B, where one of them may be released.
     pub release: Option<[Release; 2]>,
-    /// The winch at end B, where it is on one; the line is then laid out as it is at present.
+    /// Winch at end B, where the line is on one; the line then has its present elements.
     pub winch: Option<Winch>,
     /// True for ends whose load is taken as linear to the next node: the nodes are alike, and neither a winch nor a clamp at the other end
     /// acts on the next one.
     pub linear_load: [bool; 2],
 }
 
-/// When an end of a line parts from its point.
+/// Conditions for the release of an end from its point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Release {
-    /// Tension of the end's segment that parts it [N].
+    /// Tension of the end's segment at which it is released [N].
     pub tension: Option<f64>,
-    /// Time from which on it is released [s].
+    /// Time of its release [s].
     pub time: Option<f64>,
-    /// Whether the host's input parts it.
+    /// True if the host's input releases the end.
     pub on_release: bool,
 }
 
 impl Release {
-    /// Whether anything may part the end.
+    /// Returns whether the end can be released.
     pub fn may_release(&self) -> bool {
         self.tension.is_some() || self.time.is_some() || self.on_release
     }
 
-    /// Whether an end under a tension [N] at time `t` [s] parts by itself.
+    /// Returns whether an end under a tension [N] at time `t` [s] is released by its limit of tension or its time.
     pub fn is_due(&self, tension: f64, t: f64) -> bool {
         self.tension.is_some_and(|most| tension >= most) || self.time.is_some_and(|time| t >= time)
     }
 }
 
-/// A section as the closed-form catenary takes it.
+/// Section for the closed-form catenary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Unstretched length [m].
@@ -284,7 +284,8 @@ pub struct Segments {
     pub axial_damping: Vec<f64>,
     /// Strain measure.
     pub law: Vec<StretchLaw>,
-    /// What replaces stiffness and damping in motion, where the line has a viscoelastic section; EA is then the static one.
+    /// Viscoelastic law in place of stiffness and damping in motion, where the line has a viscoelastic section; EA is
+    /// then the static one.
     pub viscoelastic: Option<Vec<Viscoelastic>>,
 }
 
@@ -305,7 +306,7 @@ pub struct Nodes {
     pub weight: Vec<f64>,
     /// Drag, where there is water and a coefficient.
     pub drag: Option<Drag>,
-    /// What the water presses with where waves accelerate it.
+    /// Froude-Krylov force of accelerated water.
     pub froude_krylov: Option<FroudeKrylov>,
     /// Contact, where there is a seabed in reach.
     pub contact: Option<Contact>,
@@ -322,9 +323,9 @@ pub struct Drag {
     pub tangent: Vec<f64>,
 }
 
-/// Mass of the water whose acceleration a node feels: that of the displaced water, by the pressure of the undisturbed wave (Froude and
-/// Krylov), and the added mass. Across the line ρA(1 + C_an)l, along it ρA(1 + C_at)l, since the pressure that the effective tension leaves
-/// out acts along the line too.
+/// Mass of the water whose acceleration acts on a node: that of the displaced water, by the pressure of the
+/// undisturbed wave (Froude and Krylov), and the added mass. Across the line ρA(1 + C_an)l, along it ρA(1 + C_at)l,
+/// since the pressure that the effective tension leaves out acts along the line too.
 #[derive(Debug, Clone)]
 pub struct FroudeKrylov {
     /// Across the line [kg].
@@ -351,7 +352,7 @@ impl FroudeKrylov {
         Slender::new(self.masses(node, 0.0)).times(acceleration, tangent)
     }
 
-    /// This node as it is where a `dry` part of it [-] is out of the water: mass across and along the line [kg].
+    /// Mass across and along the line of this node with a `dry` part of it [-] out of the water [kg].
     #[inline]
     pub fn masses(&self, node: usize, dry: f64) -> [f64; 2] {
         [&self.normal, &self.tangent].map(|masses| (1.0 - dry) * masses[node])
@@ -363,13 +364,14 @@ impl FroudeKrylov {
 pub struct Contact {
     /// z of the bed [m].
     pub bed: f64,
-    /// z below which the springs push [m]: the bed, or where regularised contact begins so that a node at rest lies on it.
+    /// z below which the springs push [m]: the bed, or the level of regularised contact at which a node at rest lies
+    /// on it.
     pub level: Vec<f64>,
     /// Stiffness [N/m].
     pub stiffness: Vec<f64>,
     /// Damping [N s/m].
     pub damping: Vec<f64>,
-    /// What the bed is beside a level plane without friction.
+    /// Properties of the bed other than a level plane without friction.
     pub bottom: Option<Arc<Bottom>>,
     /// Stiffness along the bed of a node that sticks [N/m]; empty without friction.
     pub stick: Vec<f64>,
@@ -378,14 +380,14 @@ pub struct Contact {
 /// Lines that share free points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Network {
-    /// Its lines.
+    /// Lines of the network.
     pub lines: Vec<usize>,
-    /// Its free points.
+    /// Free points of the network.
     pub free_points: Vec<usize>,
 }
 
 impl Segments {
-    /// Stiffness [N] and damping [N s] that a segment has in fast motion.
+    /// Stiffness [N] and damping [N s] of a segment in fast motion.
     pub fn in_motion(&self, i: usize) -> (f64, f64) {
         match &self.viscoelastic {
             Some(laws) => (laws[i].fast, laws[i].damping),
@@ -432,12 +434,12 @@ impl Line {
         self.sections.iter().map(|section| section.length).sum()
     }
 
-    /// Whether it resists bending, as a cable or as a beam.
+    /// Returns whether the line resists bending, as a cable or as a beam.
     pub fn bends(&self) -> bool {
         self.bending.is_some() || self.beam.is_some()
     }
 
-    /// Whether a current acts on it.
+    /// Returns whether a current acts on the line.
     pub fn drifts(&self, model: &Model) -> bool {
         self.nodes.drag.is_some() && model.current.is_some()
     }
@@ -455,7 +457,7 @@ impl Line {
         }
     }
 
-    /// Segment `segment` at a strain [-]: its law while it pulls, and no more than it can push.
+    /// Segment `segment` at a strain [-]: its law in tension, and its limit in compression.
     #[inline(always)]
     pub fn spring(&self, segment: usize, strain: f64) -> Spring {
         let push = self.compression_max(segment);
@@ -473,13 +475,13 @@ impl Line {
         }
     }
 
-    /// Whether an end is held: by a point that forces do not move, and that it is not released from.
+    /// Returns whether an end is held: by a point that forces do not move, and from which it is not released.
     pub fn is_held(&self, model: &Model, state: &LineState, end: End) -> bool {
         let side = usize::from(end == End::B);
         model.points[self.ends[side]].free().is_none() && !state.released[side]
     }
 
-    /// Whether waves act on it.
+    /// Returns whether waves act on the line.
     pub fn heaves(&self, model: &Model) -> bool {
         model.waves.is_some() && (self.nodes.drag.is_some() || self.nodes.froude_krylov.is_some())
     }
@@ -492,7 +494,8 @@ impl Line {
         }
     }
 
-    /// Whether the leapfrogs can take it: one strain measure, mass on every node, and no bending stiffness.
+    /// Returns whether the leapfrogs can integrate the network: one strain measure, mass on every node, and no
+    /// bending stiffness.
     pub fn serves_leapfrog(&self) -> bool {
         self.uniform_law().is_some()
             && self.bending.is_none()
@@ -521,7 +524,7 @@ impl Line {
 }
 
 impl FreePoint {
-    /// What it is at a height z [m].
+    /// Properties of the point at a height z [m].
     #[inline]
     pub fn at(&self, z: f64) -> PointAtHeight {
         let Some(sphere) = &self.sphere else {
@@ -554,7 +557,7 @@ impl FreePoint {
         sphere.map_or(Vector3::zeros(), |sphere| sphere.drag(wetted, velocity))
     }
 
-    /// Force [N] of the water that waves accelerate, where it is wet.
+    /// Force [N] of the accelerated water of waves, where the point is wet.
     #[inline]
     pub fn froude_krylov(&self, wetted: Wetted, orbit: &Orbit) -> Vector3<f64> {
         let sphere = self.sphere.as_ref();
@@ -591,7 +594,7 @@ impl FreePoint {
         }
     }
 
-    /// Greatest of its weight, its buoyancy and the difference of the two [N].
+    /// Greatest of the weight, the buoyancy and the difference of the two [N].
     pub fn weight_max(&self) -> f64 {
         let buoyancy = self.sphere.map_or(0.0, |sphere| sphere.buoyancy);
         (self.weight + buoyancy)
@@ -622,13 +625,13 @@ impl Point {
         }
     }
 
-    /// What has mass or is in the water at the point, whether forces move it or not.
+    /// Mass and submergence properties at the point, whether forces move it or not.
     pub fn body(&self) -> Option<&FreePoint> {
         self.free().or(self.own.as_ref())
     }
 
-    /// Force [N] of the point itself, without its lines, on what holds it: its load, weight and buoyancy, drag, the force of waves and
-    /// inertia. Zero of a free point.
+    /// Force [N] of the point, without its lines, on its support: its load, weight and buoyancy, drag, the force of
+    /// waves and inertia. Zero for a free point.
     pub fn own_force(
         &self,
         state: &PointState,
@@ -677,13 +680,13 @@ impl Point {
 }
 
 impl Model {
-    /// The beam that makes up a network, if one does.
+    /// Beam of a network, if it consists of one.
     pub fn beam_of(&self, network: usize) -> Option<usize> {
         let line = self.networks[network].lines[0];
         self.lines[line].beam.is_some().then_some(line)
     }
 
-    /// Whether a network starts in static equilibrium: where any of its own lines does.
+    /// Returns whether a network starts in static equilibrium, which holds where any of its lines does.
     pub fn starts_at_rest(&self, network: usize) -> bool {
         let mut lines = self.networks[network].lines.iter();
         lines.any(|&line| self.lines[line].initial == InitialShape::Static)
@@ -712,7 +715,7 @@ impl Model {
         }
     }
 
-    /// Whether a point is the body or rides on it.
+    /// Returns whether a point is the body or is fixed to it.
     pub fn moves_with(&self, point: usize, body: Body) -> bool {
         match (body, &self.points[point].role) {
             (Body::Point(driven), _) => point == driven,

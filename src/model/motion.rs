@@ -8,7 +8,7 @@ use crate::math::hermite::Hermite;
 use crate::math::shape_preserving::{End, slopes};
 use crate::scene::{MotionPath, MotionRow};
 
-/// Where a driven point is, and how it moves.
+/// Position and motion of a driven point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kinematics {
     /// Position, or displacement from the reference position [m].
@@ -17,9 +17,9 @@ pub struct Kinematics {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
-    /// Rotation from the reference attitude of what the point is fixed to [-], a unit quaternion.
+    /// Rotation from the reference attitude of the point's support [-], a unit quaternion.
     pub orientation: UnitQuaternion<f64>,
-    /// Angular velocity of what the point is fixed to, in global axes [rad/s].
+    /// Angular velocity of the point's support, in global axes [rad/s].
     pub spin: Vector3<f64>,
 }
 
@@ -35,7 +35,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The translation alone.
+    /// Translation alone.
     pub fn kinematics(&self) -> Kinematics {
         let first = |six: &Vector6<f64>| Vector3::new(six[0], six[1], six[2]);
         Kinematics {
@@ -64,9 +64,9 @@ pub enum Motion {
 /// Bounds of the first six derivatives of a motion, over their circular frequencies: Σ A ω^k.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derivatives {
-    /// Of displacement, of the sixth order [m/s⁶].
+    /// Bound of displacement, of the sixth order [m/s⁶].
     sixth: f64,
-    /// Of the sum of the angles, from the first order on [rad/s^k].
+    /// Bounds of the sum of the angles, from the first order on [rad/s^k].
     angles: [f64; 6],
 }
 
@@ -109,12 +109,12 @@ pub struct TableRow {
 }
 
 impl Motion {
-    /// The motion that a checked scene describes. A table starts from rest and comes to rest at its last row.
+    /// Motion of a checked scene. A table starts from rest and ends at rest at its last row.
     pub fn new(path: &MotionPath) -> Motion {
         Motion::until(path, f64::INFINITY)
     }
 
-    /// The motion of a run that ends at a time [s]: a table that ends no earlier does not come to rest at its last row.
+    /// Motion of a run that ends at a time [s]: a table that ends no earlier does not end at rest at its last row.
     pub fn until(path: &MotionPath, end: f64) -> Motion {
         match path {
             MotionPath::Harmonic(motion) => Motion::Harmonic {
@@ -147,7 +147,8 @@ impl Motion {
         })
     }
 
-    /// Whether it has no kink after the start of a span of time [s] and up to its end, where [`Self::pose`] tells how it goes on.
+    /// Returns whether the path has no kink after the start of a span of time [s] and up to its end, beyond which
+    /// [`Self::pose`] continues.
     pub fn is_smooth(&self, [start, end]: [f64; 2]) -> bool {
         let within = |kink: f64| kink > start && kink <= end;
         match self {
@@ -215,7 +216,7 @@ fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
     }
 }
 
-/// Part of the time of a table by which a run may end later and still end with it [-].
+/// Part of the time of a table by which a run may end later and still count as ending with it [-].
 const ROUNDING: f64 = 1e-9;
 
 fn table(rows: &[MotionRow], end: f64) -> Vec<TableRow> {

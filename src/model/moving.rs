@@ -1,15 +1,15 @@
-//! What the scene moves, as a host would say it at a communication point.
+//! Motions in the scene, in the form of a host's input at a communication point.
 
 use super::{Body, Model, Role};
 
 /// A moving coupled point or vessel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moving {
-    /// What moves.
+    /// Body that moves.
     pub body: Body,
-    /// Its displacement [m] and angles [rad] from its reference, those of a vessel in the order Z-Y-X.
+    /// Displacement [m] and angles [rad] from the reference, those of a vessel in the order Z-Y-X.
     pub pose: [f64; 6],
-    /// Its velocity [m/s] and angular velocity [rad/s].
+    /// Velocity [m/s] and angular velocity [rad/s].
     pub velocity: [f64; 6],
 }
 

@@ -1,7 +1,9 @@
-//! The water around lines and points at a time: the current by its profile, the waves by what they do at the nodes.
+//! The water around lines and points at a time: the current by its profile, the waves by their kinematics at the
+//! nodes.
 //!
-//! What waves do at the nodes is known at both ends of a span of time, at the places where the nodes were then foretold to be, and follows
-//! cubics in between ([`Orbit::between`]). Every line and every point has a span of its own. It is part of the state: a state that is put back goes on to the last bit.
+//! Wave kinematics at the nodes are evaluated at both ends of a span of time, at the extrapolated places of the
+//! nodes, and follow cubics in between ([`Orbit::between`]). Every line and every point has a separate span. The
+//! spans are part of the state: a restored state continues to the last bit.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -24,7 +26,7 @@ pub struct WaveSpans {
 pub struct WaveSpan {
     /// Start and end [s].
     pub times: [f64; 2],
-    /// At both times, by node; empty where waves do nothing.
+    /// Kinematics at both times, by node; empty where no waves act.
     pub ends: [Vec<Orbit>; 2],
 }
 
@@ -57,7 +59,7 @@ impl Clone for WaveSpan {
 }
 
 impl WaveSpan {
-    /// Motion at the nodes at time `t` [s]; `None` where waves do nothing.
+    /// Motion at the nodes at time `t` [s]; `None` where no waves act.
     pub fn at(&self, t: f64) -> Option<WavesAlong<'_>> {
         let [before, after] = &self.ends;
         (!before.is_empty()).then_some(WavesAlong {
@@ -74,7 +76,7 @@ impl WaveSpan {
     }
 }
 
-/// What waves do along a line at one time.
+/// Wave kinematics along a line at one time.
 #[derive(Debug, Clone, Copy)]
 pub struct WavesAlong<'a> {
     ends: [&'a [Orbit]; 2],
@@ -96,12 +98,12 @@ impl WavesAlong<'_> {
 pub struct WaterAlong<'a> {
     /// The current, where the water flows.
     pub stream: Option<Stream<'a>>,
-    /// What waves do, where they do something to the line.
+    /// Waves along the line, where they act on it.
     pub waves: Option<WavesAlong<'a>>,
 }
 
 impl WaterAlong<'_> {
-    /// Whether the water rests.
+    /// Returns whether the water is at rest.
     pub fn is_still(&self) -> bool {
         self.stream.is_none() && self.waves.is_none()
     }
@@ -112,7 +114,7 @@ impl WaterAlong<'_> {
         self.waves.as_ref().map_or(0.0, |waves| waves.at(node).elevation)
     }
 
-    /// How fast the surface rises over a node [m/s].
+    /// Vertical velocity of the surface over a node [m/s].
     #[inline]
     pub fn rise(&self, node: usize) -> f64 {
         self.waves.as_ref().map_or(0.0, |waves| waves.at(node).rise)

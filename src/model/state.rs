@@ -1,4 +1,4 @@
-//! All that changes: positions, velocities and the memory of the integrators. Cloning it saves a simulation.
+//! Changing state: positions, velocities and the memory of the integrators. A clone of it saves a simulation.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Lines, in the order of the model.
     pub lines: Vec<LineState>,
-    /// What waves do at the nodes around this time, where there are waves.
+    /// Wave kinematics at the nodes around this time, where there are waves.
     pub waves: Option<WaveSpans>,
 }
 
@@ -27,13 +27,13 @@ pub struct PointState {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
-    /// Rotation from the reference attitude of what the point is fixed to, which its clamped lines follow [-].
+    /// Rotation from the reference attitude of the point's support, which its clamped lines follow [-].
     pub orientation: UnitQuaternion<f64>,
-    /// Angular velocity of what the point is fixed to [rad/s].
+    /// Angular velocity of the point's support [rad/s].
     pub spin: Vector3<f64>,
     /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
     pub half_step: [Vector3<f64>; 2],
-    /// Where it would lie if friction let go of it [m], where there is friction.
+    /// Place at which friction on the point would vanish [m], where there is friction.
     pub anchor: Option<Vector3<f64>>,
 }
 
@@ -46,37 +46,37 @@ pub struct LineState {
     pub velocity: Vec<Vector3<f64>>,
     /// Accelerations [m/s²]; kept by the implicit integrators only.
     pub acceleration: Vec<Vector3<f64>>,
-    /// What the leapfrogs remember of the steps before.
+    /// Memory of the leapfrogs from the steps before.
     pub half_step: HalfStep,
-    /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
+    /// Remaining data of the closed-form catenary of the nodes; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
     /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
     pub viscoelastic: Vec<f64>,
-    /// Whether ends A and B are released from their points.
+    /// True if ends A and B are released from their points.
     pub released: [bool; 2],
-    /// What the nodes of a beam have beside positions and velocities.
+    /// Frames and rates of the nodes of a beam.
     pub beam: Option<BeamState>,
-    /// Where the nodes would lie if the friction of the bed let go of them [m]; empty without friction.
+    /// Places of the nodes at which the friction of the bed would vanish [m]; empty without friction.
     pub anchor: Vec<Vector3<f64>>,
-    /// How far its winch is, where it is on one.
+    /// Position of the line's winch, where it is on one.
     pub winch_state: Option<WinchState>,
 }
 
-/// How far the winch of a line is.
+/// Position of the winch of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WinchState {
     /// Length paid out beyond that at no change [m].
     pub change: f64,
-    /// Its rate [m/s].
+    /// Rate of the length change [m/s].
     pub rate: f64,
-    /// Its acceleration [m/s²].
+    /// Second derivative of the length change [m/s²].
     pub acceleration: f64,
     /// Length change [m] and rate [m/s] half a step before, for the leapfrog.
     pub half_step: [f64; 2],
 }
 
 impl WinchState {
-    /// At rest at a length change [m].
+    /// Winch at rest at a length change [m].
     pub fn at_rest(change: f64) -> WinchState {
         WinchState {
             change,
@@ -87,13 +87,13 @@ impl WinchState {
     }
 }
 
-/// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
-/// hides all of the strain.
+/// Tensions of a closed-form catenary, which do not follow from its nodes: their chords are shorter than the arcs
+/// between them, which on a stiff line hides all of the strain.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClosedForm {
     /// Effective tension at every node [N].
     pub tension: Vec<f64>,
-    /// Horizontal part of it [N]: grows towards end B on a bed with friction, and nowhere else.
+    /// Horizontal part of the tension [N]: grows towards end B on a bed with friction, and nowhere else.
     pub horizontal: Vec<f64>,
     /// Forces of the line on the points at ends A and B [N].
     pub end_force: [Vector3<f64>; 2],
@@ -103,9 +103,9 @@ pub struct ClosedForm {
     pub stretched_length: f64,
     /// Greatest vertical distance below the chord between the ends [m].
     pub sag: f64,
-    /// Energy of the stretch of the whole line, held ends included [J].
+    /// Strain energy of the whole line, held ends included [J].
     pub axial_energy: f64,
-    /// Energy of its weight above z = 0, held ends included [J].
+    /// Potential energy of its weight above z = 0, held ends included [J].
     pub gravitational_energy: f64,
 }
 
@@ -116,23 +116,24 @@ pub struct HalfStep {
     pub velocity: Vec<Vector3<f64>>,
     /// Velocities one step before those [m/s].
     pub velocity_before: Vec<Vector3<f64>>,
-    /// The last step and the one before [s]; 0 before the first step, where `velocity` is that of t itself.
+    /// The last step and the one before [s]; 0 before the first step, where `velocity` is at t.
     pub steps: [f64; 2],
-    /// Tensions of the segments' springs at t − Δt and t − 2Δt as if they pushed too [N]; kept by the axial-implicit leapfrog only.
+    /// Tensions of the segments' springs at t − Δt and t − 2Δt, negative in compression [N]; kept by the
+    /// axial-implicit leapfrog only.
     pub tension: [Vec<f64>; 2],
     /// Slow strains of viscoelastic segments at t − Δt/2 [-]; none before the first step.
     pub viscoelastic: Vec<f64>,
 }
 
 impl HalfStep {
-    /// Whether no leapfrog has made a step from this state yet.
+    /// Returns whether no leapfrog has made a step from this state yet.
     pub fn is_unset(&self) -> bool {
         self.velocity.is_empty()
     }
 }
 
 impl PointState {
-    /// At rest at a position [m].
+    /// Point at rest at a position [m].
     pub fn at_rest(position: Vector3<f64>) -> PointState {
         let zero = Vector3::zeros();
         PointState {
@@ -159,7 +160,7 @@ impl PointState {
 }
 
 impl PointState {
-    /// At rest where a held point is.
+    /// Point at rest at the place of a held point.
     pub fn held(kinematics: &Kinematics) -> PointState {
         PointState {
             orientation: kinematics.orientation,
@@ -169,7 +170,7 @@ impl PointState {
 }
 
 impl LineState {
-    /// The velocities that a leapfrog goes on from [m/s], and the time from then to the positions [s].
+    /// Velocities from which a leapfrog continues [m/s], and the time from then to the positions [s].
     pub fn velocities_before(&self) -> (&[Vector3<f64>], f64) {
         let memory = &self.half_step;
         match memory.is_unset() {
@@ -185,7 +186,8 @@ impl LineState {
         nodes.map(move |(r, v)| r[1] - r[0] - lag * (v[1] - v[0]))
     }
 
-    /// Gives a line that is a beam, and rests on its positions, what beams have besides; its points have turned by `attitude` [-].
+    /// Adds the state of a beam, at rest at its positions, to a line that is a beam; its points have turned by
+    /// `attitude` [-].
     pub fn become_beam(&mut self, line: &Line, attitude: [Matrix3<f64>; 2]) {
         self.beam = line
             .beam
@@ -193,7 +195,7 @@ impl LineState {
             .map(|beam| BeamState::at_rest(beam, &self.position, attitude));
     }
 
-    /// Gives a viscoelastic line at rest on its positions the slow strains that belong to them.
+    /// Sets the slow strains of a viscoelastic line at rest at its positions.
     pub fn become_viscoelastic(&mut self, line: &Line) {
         self.viscoelastic.clear();
         if let Some(laws) = &line.segments.viscoelastic {
@@ -204,7 +206,7 @@ impl LineState {
         }
     }
 
-    /// At rest at the given node positions [m].
+    /// Line at rest at the given node positions [m].
     pub fn at_rest(position: Vec<Vector3<f64>>) -> LineState {
         let zeros = vec![Vector3::zeros(); position.len()];
         LineState {

@@ -1,4 +1,4 @@
-//! The water's surface over a line: what its nodes lack where they are dry.
+//! The water's surface over a line: the buoyancy that its nodes lose where they are dry.
 
 use nalgebra::Vector3;
 
@@ -6,7 +6,8 @@ use super::build::SegmentPart;
 use super::{Nodes, WaterAlong};
 use crate::physics::surface::{self, Emerged, slope_max};
 
-/// Radius [m] of a part without a diameter, on which the water does not act: it only tells a neighbouring part where the surface is.
+/// Radius [m] of a part without a diameter, on which the water does not act: it only locates the surface for a
+/// neighbouring part.
 const RADIUS_BARE: f64 = 5e-4;
 
 /// A line that may pierce the water's surface.
@@ -20,19 +21,19 @@ pub struct Surface {
     pub share: Vec<[f64; 2]>,
 }
 
-/// What the surface does to a node.
+/// Effect of the surface on a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Dry {
     /// Dry part of the node's tributary length [-].
     pub part: f64,
-    /// Its slope with the node's own height [1/m], not negative.
+    /// Slope of the dry weight with the node's height [1/m], not negative.
     pub slope: f64,
-    /// Buoyancy that the node lacks [N].
+    /// Buoyancy that the node loses [N].
     pub weight: f64,
 }
 
 impl Surface {
-    /// Over segments of displaced weight ρ g A [N/m], lumped to nodes of the given tributary lengths [m].
+    /// Surface over segments of displaced weight ρ g A [N/m], lumped to nodes of the given tributary lengths [m].
     pub(super) fn new(parts: &[SegmentPart], tributary: &[f64]) -> Surface {
         let halves = parts.iter().map(|part| 0.5 * part.length);
         let nodes = tributary.windows(2);
@@ -64,24 +65,24 @@ impl Surface {
         [i, i + 1].map(|node| self.height(&position[node]) - water.elevation(node))
     }
 
-    /// How much of segment `i`, taken as having a radius of at least `breadth` [m], is dry between ends at `heights` [m] over the water;
-    /// `None` where all of it is under water.
+    /// Dry part of segment `i`, taken as having a radius of at least `breadth` [m], between ends at `heights` [m]
+    /// over the water; `None` where all of it is under water.
     #[inline]
     pub fn segment(&self, i: usize, heights: [f64; 2], breadth: f64) -> Option<Emerged> {
         surface::emerged(self.radius[i].max(breadth), heights)
     }
 
-    /// Energy [J] of the buoyancy that segment `i` lacks between ends at `heights` [m].
+    /// Energy [J] of the buoyancy that segment `i` loses between ends at `heights` [m].
     pub fn energy(&self, i: usize, heights: [f64; 2]) -> f64 {
         2.0 * self.buoyancy[i] * surface::energy(self.radius[i], heights)
     }
 
-    /// Node `i` of a line that lies in calm water as `position` [m] says.
+    /// Dry part of node `i` of a line at `position` [m] in calm water.
     pub fn node(&self, i: usize, position: &[Vector3<f64>]) -> Dry {
         self.node_in(WaterAlong::default(), i, position)
     }
 
-    /// Node `i` of a line that lies in the `water` as `position` [m] says.
+    /// Dry part of node `i` of a line at `position` [m] in the `water`.
     pub fn node_in(&self, water: WaterAlong, i: usize, position: &[Vector3<f64>]) -> Dry {
         let mut dry = Dry::default();
         let mut add = |segment: usize, end: usize| {
@@ -102,13 +103,13 @@ impl Surface {
         dry
     }
 
-    /// Whether any of a line that lies as `position` [m] says is out of the water.
+    /// Returns whether any part of a line at `position` [m] is out of the water.
     pub fn is_pierced(&self, position: &[Vector3<f64>]) -> bool {
         let mut segments = position.windows(2).zip(&self.radius);
         segments.any(|(pair, radius)| self.height(&pair[0]).max(self.height(&pair[1])) > -radius)
     }
 
-    /// Greatest stiffness that the surface gives a node in heave [N/m].
+    /// Greatest stiffness of a node in heave due to the surface [N/m].
     pub fn stiffness_max(&self, node: usize) -> f64 {
         let of = |segment: usize| self.buoyancy[segment] * slope_max(self.radius[segment]);
         let below = node.checked_sub(1).map_or(0.0, of);
@@ -118,7 +119,7 @@ impl Surface {
 }
 
 impl Nodes {
-    /// Mass across and along the line [kg] of node `i` where a `dry` part of it [-] is out of the water.
+    /// Mass across and along the line [kg] of node `i` with a `dry` part of it [-] out of the water.
     #[inline]
     pub fn masses(&self, i: usize, dry: f64) -> [f64; 2] {
         let air = self.mass[i];

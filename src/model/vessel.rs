@@ -1,11 +1,11 @@
-//! A vessel: a rigid frame that the host moves, and the points that ride on it.
+//! A vessel: a rigid frame that the host moves, and the points that it carries.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{Kinematics, Motion, Pose};
 use crate::math::attitude::{Attitude, Order};
 
-/// A frame that carries points.
+/// Frame that carries points.
 #[derive(Debug, Clone)]
 pub struct Vessel {
     /// Name.
@@ -14,7 +14,7 @@ pub struct Vessel {
     pub position: Vector3<f64>,
     /// Reference roll, pitch and yaw [rad].
     pub attitude: Vector3<f64>,
-    /// The scene's motion for it.
+    /// Motion of the scene for it.
     motion: Option<Motion>,
     /// Order of the angles of that motion.
     order: Order,
@@ -22,17 +22,17 @@ pub struct Vessel {
     reference_rotation: UnitQuaternion<f64>,
 }
 
-/// Where a vessel is, and how it moves.
+/// Position and motion of a vessel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// Its origin.
+    /// Origin of the vessel.
     pub origin: Kinematics,
-    /// Its attitude, and how it turns.
+    /// Attitude and angular velocity of the vessel.
     pub attitude: Attitude,
 }
 
 impl Vessel {
-    /// At a reference position [m], with reference roll, pitch and yaw [rad].
+    /// Vessel at a reference position [m], with reference roll, pitch and yaw [rad].
     pub fn new(
         name: String,
         position: Vector3<f64>,
@@ -55,13 +55,14 @@ impl Vessel {
         self.motion.as_ref()
     }
 
-    /// The frame displaced by a pose that a host gives: x, y, z [m] from the reference position; roll, pitch and yaw [rad] in the order Z-Y-X,
-    /// added to the reference angles.
+    /// Frame displaced by a pose of a host: x, y, z [m] from the reference position; roll, pitch and yaw [rad] in the
+    /// order Z-Y-X, added to the reference angles.
     pub fn frame(&self, pose: &Pose) -> Frame {
         self.turned(Order::Zyx, self.attitude, pose)
     }
 
-    /// The same displaced by a pose of the scene's motion, whose angles may be of the order X-Y-Z, as the reference angles then are.
+    /// Frame displaced by a pose of the scene's motion, whose angles may be of the order X-Y-Z, as the reference
+    /// angles then are.
     pub fn frame_of_motion(&self, pose: &Pose) -> Frame {
         let reference = match self.order {
             Order::Zyx => self.attitude,
@@ -70,7 +71,7 @@ impl Vessel {
         self.turned(self.order, reference, pose)
     }
 
-    /// Displacement [m] and angles [rad] that a host would give where the scene's motion has this pose and frame.
+    /// Displacement [m] and angles [rad] of a host that are equivalent to this pose and frame of the scene's motion.
     pub fn pose_for_host(&self, pose: &Pose, frame: &Frame) -> [f64; 6] {
         let mut value = pose.value;
         if self.order != Order::Zyx {
@@ -98,7 +99,7 @@ impl Vessel {
         }
     }
 
-    /// Where a point of the body at `arm` [m] is in the reference position [m].
+    /// Place of a point of the body at `arm` [m] in the reference position [m].
     pub fn reference_place(&self, arm: Vector3<f64>) -> Vector3<f64> {
         self.position + self.reference_rotation * arm
     }

@@ -1,14 +1,16 @@
-//! Lines whose end B is on a winch: how they are laid out at any length paid out.
+//! Lines whose end B is on a winch: their elements at any length paid out.
 //!
 //! The longest line is the one with all that can be paid out, in segments of nominal lengths l_i. With n segments out, the last one has the length
 //!
 //!   e = S + ΔL − Σ_{i<n−1} l_i,
 //!
-//! S being the length of the line at no change ΔL, and all others their nominal ones. Paid out beyond [`LONGEST`]·l it splits in two, of
-//! which the first has its nominal length; hauled in below [`SHORTEST`]·l it merges with its neighbour. The range exceeds l, so that a winch
-//! that rocks to and fro does not split and merge all the time.
+//! S being the length of the line at no change ΔL, and all others have their nominal lengths. Paid out beyond
+//! [`LONGEST`]·l it splits in two, of which the first has its nominal length; hauled in below [`SHORTEST`]·l it
+//! merges with its neighbour. The range exceeds l, so that a winch that oscillates does not split and merge all the
+//! time.
 //!
-//! What the nodes carry is linear in the lengths beside them. Contact keeps the depth into which a node of nominal length sinks.
+//! The masses and coefficients of the nodes are linear in the adjacent lengths. Contact keeps the penetration of a
+//! node of nominal length.
 
 use super::{Line, Nodes};
 use crate::scene::TimeFunction;
@@ -17,9 +19,9 @@ use crate::scene::TimeFunction;
 pub const LONGEST: f64 = 1.5;
 /// Length of the end segment below which it merges with its neighbour, over its nominal one [-].
 pub const SHORTEST: f64 = 0.4;
-/// Least length of the end segment where nothing is left to merge with, over its nominal one [-].
+/// Least length of the end segment without a neighbour to merge with, over its nominal one [-].
 const LAST: f64 = 0.1;
-/// Segments of a line, at least.
+/// Least number of segments of a line.
 const SEGMENTS_MIN: usize = 2;
 
 /// The winch at end B of a line.
@@ -37,22 +39,22 @@ pub struct Winch {
     pub length_max: f64,
     /// Greatest speed [m/s].
     pub speed_max: Option<f64>,
-    /// Length paid out in time [m] where the scene's own motion is followed.
+    /// Length paid out in time [m] where the scene's motion is followed.
     pub path: Option<TimeFunction>,
 }
 
-/// What happens to the end segment.
+/// Change of the end segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Passage {
-    /// It splits in two.
+    /// The end segment splits in two.
     Split,
-    /// It merges with its neighbour.
+    /// The end segment merges with its neighbour.
     Merge,
 }
 
 impl Winch {
-    /// On the line `longest`, with all that can be paid out, of whose segments `nominal` are out at no change; the last section begins at
-    /// segment `first`.
+    /// Winch on the line `longest`, with all that can be paid out, of whose segments `nominal` are out at no change;
+    /// the last section begins at segment `first`.
     pub(super) fn new(longest: Line, [first, nominal]: [usize; 2], winch: &crate::scene::Winch) -> Winch {
         Winch {
             length: longest.nodes.arc[nominal],
@@ -70,7 +72,7 @@ impl Winch {
         &self.longest
     }
 
-    /// The same, to be completed.
+    /// The same, for modification.
     pub(super) fn longest_mut(&mut self) -> &mut Line {
         &mut self.longest
     }
@@ -87,7 +89,7 @@ impl Winch {
         left.max(LAST * self.longest.segments.length[count - 1])
     }
 
-    /// What becomes of the last of `count` segments at a length change [m].
+    /// Change of the last of `count` segments at a length change [m].
     pub fn passage(&self, count: usize, change: f64) -> Option<Passage> {
         let part = self.end_length(count, change) / self.longest.segments.length[count - 1];
         if part > LONGEST && count < self.longest.segment_count() {
@@ -99,7 +101,7 @@ impl Winch {
         }
     }
 
-    /// Segments of a line that is laid out anew at a length change [m].
+    /// Number of segments of a line at a length change [m].
     pub fn segments_at(&self, change: f64) -> usize {
         let mut count = self.nominal;
         while let Some(passage) = self.passage(count, change) {
@@ -113,13 +115,13 @@ impl Winch {
 }
 
 impl Line {
-    /// Most nodes that it ever has.
+    /// Greatest number of nodes of the line.
     pub fn nodes_max(&self) -> usize {
         let winch = self.winch.as_ref();
         winch.map_or(self.nodes.arc.len(), |winch| winch.longest.nodes.arc.len())
     }
 
-    /// Lays out a line on a winch with so many segments at a length change [m].
+    /// Lays out a line on a winch with `count` segments at a length change [m].
     pub fn pay_out(&mut self, count: usize, change: f64) {
         let Some(winch) = self.winch.take() else {
             return;
@@ -171,7 +173,7 @@ impl Line {
     }
 }
 
-/// What is proportional to the length that a node stands for, with that of the longest line.
+/// Quantities proportional to the tributary length of a node, with those of the longest line.
 fn extensive<'a>(
     nodes: &'a mut Nodes,
     longest: &'a Nodes,

@@ -1,6 +1,6 @@
-//! Output channels by MoorDyn's names, as columns beside moorline's own.
+//! Output channels by MoorDyn's names, as columns next to moorline's.
 //!
-//! Tensions are those of segments, as in MoorDyn-C: of the last one at an end, of the two beside an inner node in the mean. Positions
+//! Tensions are those of segments, as in MoorDyn-C: of the last one at an end, the mean of the two adjacent ones at an inner node. Positions
 //! are global, and forces at a point are those of the lines on it.
 //!
 //! Source: MoorDyn-C, `Line.hpp`, `getNodeTen`.
@@ -11,13 +11,13 @@ use crate::scene::channel::{Channel, LineEnd, NodePlace, Quantity, check_node};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
 
-/// The channels that a scene asks for.
+/// Channels that a scene requests.
 #[derive(Debug, Clone)]
 pub struct Channels {
     list: Vec<(Column, Source)>,
 }
 
-/// Where a channel's value comes from, by the order of the model.
+/// Source of a channel's value, by the order of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Source {
     Node {
@@ -32,10 +32,10 @@ enum Source {
 }
 
 impl Channels {
-    /// Finds what the channels of a scene speak of in its model.
+    /// Finds the sources of a scene's channels in its model.
     ///
     /// # Errors
-    /// The first channel whose name is unknown or speaks of what the model does not have.
+    /// The first channel whose name is unknown or refers to something that the model does not have.
     pub fn new(scene: &Scene, model: &Model) -> Result<Channels, SceneError> {
         let found = scene.output.channels.iter().enumerate().map(|(index, name)| {
             let source = Channel::parse(name).and_then(|channel| {

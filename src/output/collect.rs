@@ -1,4 +1,4 @@
-//! Reads a simulation into the plain numbers that the writers take.
+//! Reads a simulation into plain numbers for the writers.
 
 use nalgebra::Vector3;
 
@@ -112,7 +112,7 @@ pub fn frame(simulation: &Simulation, time: f64) -> Frame {
     }
 }
 
-/// What beams in free flight hold now, which is `time` [s]; `None` where anything holds a line.
+/// Energy and momenta of beams in free flight at the present time, `time` [s]; `None` where a line has a support.
 pub fn flight(simulation: &Simulation, time: f64) -> Option<Flight> {
     let model = simulation.model();
     let free = |line: &Line| {
@@ -132,7 +132,7 @@ pub fn flight(simulation: &Simulation, time: f64) -> Option<Flight> {
     })
 }
 
-/// The equilibrium that a simulation stands in.
+/// Static equilibrium of a simulation.
 pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
     json::Statics {
         title: scene.title.clone(),

@@ -1,7 +1,7 @@
 //! Tables as comma-separated values.
 //!
 //! `results.csv` has one plain header row (`time,fairlead.x,…`) and one row for every output time, as `pandas.read_csv` and
-//! spreadsheets expect; `results.units.csv` beside it has a row `name,unit,description` for every column. `profile.csv` holds
+//! spreadsheets expect; `results.units.csv` has a row `name,unit,description` for every column. `profile.csv` holds
 //! the shape of the lines in long form, a row for every time, line and node; where any line has bending stiffness there are columns
 //! for curvature and moment, empty for the others. Numbers have the fewest digits that read back to
 //! the same bits.
@@ -16,7 +16,7 @@ const PROFILE_HEADER: [&str; 8] = ["time", "line", "node", "s", "x", "y", "z", "
 /// Writes the results: a header row of names, then a row for every output time, each value in its column's unit.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write_results(record: &Record, out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record(record.columns().iter().map(|column| &column.name))?;
@@ -33,7 +33,7 @@ pub fn write_results(record: &Record, out: impl Write) -> io::Result<()> {
 /// Writes name, unit and description of every column of the results.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write_units(record: &Record, out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record(["name", "unit", "description"])?;
@@ -43,14 +43,14 @@ pub fn write_units(record: &Record, out: impl Write) -> io::Result<()> {
     table.flush()
 }
 
-/// Header of what lines with bending stiffness have besides.
+/// Additional columns of lines with bending stiffness.
 const BENDING_HEADER: [&str; 2] = ["curvature", "moment"];
 
 /// Writes the shapes of the lines: time [s], line, node, unstretched arc length s [m], x, y, z [m], effective tension [N], and
 /// curvature [1/m] and moment [N m] where a line bends.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write_profile(record: &Record, out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let mut nodes = record

@@ -35,7 +35,7 @@ pub const LOG_CATEGORIES: [(&str, &str); 4] = [
     ),
 ];
 
-/// Everything that an FMU of a scene is made of, besides the library.
+/// Content of an FMU of a scene, except the library.
 #[derive(Debug, Clone)]
 pub struct Description {
     /// The table of variables.
@@ -144,7 +144,7 @@ fn write_document(
     Ok(())
 }
 
-/// The title, without what XML cannot carry.
+/// Title of the scene, without characters that XML cannot carry.
 fn model_name(scene: &Scene) -> String {
     let title: String = scene
         .title
@@ -169,7 +169,7 @@ fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// Whether a name follows the standard's structured naming convention without quotes.
+/// Returns whether a name follows the standard's structured naming convention without quotes.
 fn is_structured(name: &str) -> bool {
     name.split('.').all(|part| {
         let stem = part

@@ -1,4 +1,4 @@
-//! The static equilibrium as JSON: what `moorline statics --json` prints, as `docs/json.md` has it:
+//! Static equilibrium as JSON: the output of `moorline statics --json`, as described in `docs/json.md`:
 //!
 #![doc = include_str!("../../docs/json.md")]
 
@@ -40,7 +40,7 @@ pub struct Line {
     pub stretched_length: f64,
     /// Greatest vertical distance below the chord [m].
     pub sag: f64,
-    /// Its closed form, where it has one.
+    /// Closed form of the line, where it has one.
     pub catenary: Option<Catenary>,
     /// Nodes from end A to end B.
     pub profile: Vec<ProfileNode>,
@@ -66,7 +66,7 @@ pub struct Catenary {
 /// An end of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct End {
-    /// Force of the line on what holds this end [N].
+    /// Force of the line on the support of this end [N].
     pub force: [f64; 3],
     /// Size of that force [N].
     pub tension: f64,
@@ -95,11 +95,11 @@ pub struct ProfileNode {
 pub struct Point {
     /// Name of the point.
     pub name: String,
-    /// Who moves it, by the scene's word.
+    /// Origin of its motion, by the scene's word.
     pub kind: &'static str,
     /// Position [m].
     pub position: [f64; 3],
-    /// Force on the point [N], of all lines and, where forces do not move it, of its own mass and load.
+    /// Force on the point [N], of all lines and, where forces do not move it, of its mass and load.
     pub force: [f64; 3],
 }
 
@@ -108,14 +108,14 @@ pub struct Point {
 pub struct Vessel {
     /// Name of the vessel.
     pub name: String,
-    /// Of closed-form catenaries, where the lines have them.
+    /// Stiffness from closed-form catenaries, where the lines have them.
     #[serde(flatten)]
     pub hold: Hold,
-    /// Of the lines' elements.
+    /// Stiffness from the lines' elements.
     pub elements: Hold,
 }
 
-/// How the mooring holds a vessel.
+/// Stiffness of the mooring on a vessel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Hold {
     /// Force [N] and moment [N m] of the mooring, about the vessel's origin.
@@ -127,7 +127,7 @@ pub struct Hold {
 /// Writes the equilibrium as indented JSON with a line end behind it.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write(statics: &Statics, mut out: impl Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut out, statics)?;
     writeln!(out)

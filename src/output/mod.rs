@@ -1,4 +1,4 @@
-//! What leaves the program: tables, ParaView files, figures, the report and `--json`.
+//! Results written by the program: tables, ParaView files, figures, the report and `--json`.
 //!
 //! All of it is written from plain numbers: a [`record::Record`] of a run, a [`json::Statics`] of an equilibrium. Nothing here
 //! prints. A file appears under its name only when it is whole ([`write_file`]).
@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 
 use crate::scene::Scene;
 
-/// Why something could not be written.
+/// Reason for which something could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// A folder could not be made.
@@ -33,13 +33,13 @@ pub enum OutputError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// Something that is not a folder has the folder's name.
     #[error("{} is no folder: give the name of one", .path.display())]
     NotAFolder {
-        /// What has the name.
+        /// Path that has the name.
         path: PathBuf,
     },
     /// A folder takes no files.
@@ -47,7 +47,7 @@ pub enum OutputError {
     Closed {
         /// The folder.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A file could not be written.
@@ -55,7 +55,7 @@ pub enum OutputError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
 }
@@ -63,7 +63,7 @@ pub enum OutputError {
 /// Makes a folder and those above it, where they are missing.
 ///
 /// # Errors
-/// Where a file has its name, or the operating system refuses.
+/// A file has its name, or the operating system refuses.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     if path.exists() && !path.is_dir() {
         return Err(OutputError::NotAFolder {
@@ -76,7 +76,7 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Makes a folder as [`make_folder`] does, and sees that it takes files.
+/// Makes a folder like [`make_folder`], and checks that files can be written there.
 ///
 /// # Errors
 /// As there, and where it takes none.
@@ -90,7 +90,7 @@ pub fn open_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Removes what this process has not written to its end in a folder of a run, and beside the files that links in it lead to.
+/// Removes incomplete files of this process from a folder of a run, and beside the targets of links in it.
 pub fn remove_partial(folder: &Path) {
     let ending = partial_ending();
     for folder in [folder.to_path_buf(), folder.join(vtk::FRAME_FOLDER)] {
@@ -108,11 +108,13 @@ pub fn remove_partial(folder: &Path) {
     }
 }
 
-/// Writes a file under a temporary name beside it and renames it when it is whole: an interrupted run leaves the old file or
-/// none, never half of one. A link stays, and what it leads to is written; what is no regular file is never replaced.
+/// Writes a file under a temporary name in the same folder and renames it when it is complete: an interrupted run
+/// leaves the old file or none, never half of one. A link stays, and its target is written; only regular files are
+/// replaced.
 ///
 /// # Errors
-/// Something that is no regular file, or where the operating system refuses; the temporary file is then removed.
+/// The name belongs to something other than a regular file, or the operating system refuses; the temporary file is
+/// then removed.
 pub fn write_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -128,10 +130,11 @@ pub fn write_file(
     })
 }
 
-/// Sees that a file could be written under a name: what has the name now is a regular file, a link to one, or nothing, and the folder exists.
+/// Checks that a file could be written under a name: the name belongs to a regular file, a link to one, or nothing,
+/// and the folder exists.
 ///
 /// # Errors
-/// What is in the way.
+/// The obstacle.
 pub fn check_file(path: &Path) -> Result<(), OutputError> {
     let target = target_of(path).and_then(|target| {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -171,20 +174,21 @@ fn target_of(path: &Path) -> io::Result<PathBuf> {
     refuse(format!("more than {LINKS_MAX} links lead from it"))
 }
 
-/// A new file for writing, in place of what an ended process may have left under a temporary name.
+/// New file for writing, in place of a temporary file that an ended process may have left.
 fn create(partial: &Path) -> io::Result<File> {
     // where nothing is left there is nothing to remove
     let _ = fs::remove_file(partial);
     File::create_new(partial)
 }
 
-/// Lets `write` make a file under a temporary name beside the file that `path` leads to, and gives it that name when it is whole.
+/// Calls `write` for a temporary file next to the file that `path` leads to, and renames that file when it is
+/// complete.
 fn replace_file(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> io::Result<()> {
     let path = &target_of(path)?;
     let partial = partial_name(path);
     let made = write(&partial).and_then(|()| fs::rename(&partial, path));
     if made.is_err() {
-        // The first failure is the one to tell; a remainder that cannot be removed does not look complete.
+        // The first failure is reported; a remainder that cannot be removed does not look complete.
         let _ = fs::remove_file(&partial);
     }
     made
@@ -195,7 +199,7 @@ const LINKS_MAX: usize = 40;
 /// Most shapes written for ParaView [-]; of more, evenly chosen ones stand for all.
 const VTK_FRAMES_MAX: usize = 240;
 
-/// Writes a run of a scene into a folder: `results.csv` with `results.units.csv`, `profile.csv` where the scene asks for it, the
+/// Writes a run of a scene into a folder: `results.csv` with `results.units.csv`, `profile.csv` where the scene requests it, the
 /// shapes for ParaView (`lines.pvd` and its folder), every figure as SVG, and `report.html`.
 ///
 /// # Errors

@@ -26,7 +26,7 @@ pub struct NaturalModes {
 /// A natural mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mode {
-    /// Natural period [s]; `None` where nothing restores.
+    /// Natural period [s]; `None` without a restoring force.
     pub period: Option<f64>,
     /// Natural frequency [Hz].
     pub frequency: f64,
@@ -273,7 +273,7 @@ impl LineShape {
 /// Writes the modes as indented JSON with a line end behind it.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write(modes: &NaturalModes, mut out: impl Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut out, modes)?;
     writeln!(out)

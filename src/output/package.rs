@@ -19,19 +19,19 @@ use crate::scene::{Scene, SceneError};
 /// Name of the scene below `resources/`.
 pub const SCENE_FILE: &str = "scene.toml";
 
-/// Why an FMU was not written.
+/// Reason for which an FMU was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum PackageError {
     /// The scene cannot be described.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The FMU library is not where it should be.
+    /// The FMU library is missing.
     #[error(
         "the FMU library {name} is not beside the program in {}: build it with `cargo build --release` in the workspace",
         folder.display()
     )]
     NoLibrary {
-        /// Its file name.
+        /// File name.
         name: String,
         /// Folder of the program.
         folder: PathBuf,
@@ -55,7 +55,7 @@ pub enum PackageError {
     Zip(#[from] zip::result::ZipError),
 }
 
-/// The FMU library beside the running program, or one folder up, where test programs are.
+/// FMU library in the folder of the running program, or one folder up, the place for test programs.
 ///
 /// # Errors
 /// Names the library and the folder where it was expected.
@@ -77,8 +77,9 @@ pub fn find_library() -> Result<PathBuf, PackageError> {
         })
 }
 
-/// Packages a scene with the FMU library into `target`, which has its name when it is whole. `text` is the text of the file that the
-/// scene was read from. The mesh is the one that the scene has now, whatever a host sets later.
+/// Packages a scene with the FMU library into `target`, which gets its name when it is complete. `text` is the text
+/// of the file that the scene was read from. The mesh is the present one of the scene, regardless of later inputs of
+/// a host.
 ///
 /// # Errors
 /// A scene that cannot be described, a library that cannot be read, a target that cannot be written.
@@ -106,8 +107,8 @@ pub fn write_fmu(
     Ok(())
 }
 
-/// The user's own text where it alone says the whole scene; else, with motion files or in another format, the scene
-/// written out.
+/// Returns the user's text where it alone defines the whole scene; else, with motion files or in another format, the
+/// scene written out.
 fn packaged_text(scene: &Scene, text: &str) -> String {
     match Scene::from_toml(text) {
         Ok(read) if read == *scene => text.to_string(),

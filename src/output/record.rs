@@ -1,7 +1,7 @@
-//! What a run leaves behind: plain numbers, gathered step by step, that every writer of this module reads.
+//! Record of a run: plain numbers, gathered step by step, that every writer of this module reads.
 //!
-//! A [`Record`] knows no solver. Whoever drives a simulation names the columns once, adds a row at every output time and a
-//! frame where the shape of the lines is wanted.
+//! A [`Record`] does not depend on a solver. The driver of a simulation names the columns once, adds a row at every
+//! output time and a frame where the shape of the lines is required.
 
 use std::time::Duration;
 
@@ -14,9 +14,9 @@ pub struct Column {
     pub name: String,
     /// Unit symbol, such as `N`; `1` where the number has none.
     pub unit: String,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub description: String,
-    /// Whether its values are whole numbers: counts and truth values.
+    /// True if its values are whole numbers: counts and truth values.
     pub whole: bool,
 }
 
@@ -42,16 +42,16 @@ pub struct Frame {
     pub lines: Vec<Vec<Node>>,
 }
 
-/// What beams in free flight hold at one instant.
+/// Energy and momenta of beams in free flight at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flight {
     /// Time [s].
     pub time: f64,
-    /// Energy of motion [J].
+    /// Kinetic energy [J].
     pub kinetic: f64,
-    /// Energy of strain [J].
+    /// Strain energy [J].
     pub strain: f64,
-    /// Energy of weight, above z = 0 [J].
+    /// Potential energy of weight, above z = 0 [J].
     pub gravitational: f64,
     /// Angular momentum about the origin [N m s].
     pub angular_momentum: [f64; 3],
@@ -75,7 +75,7 @@ pub struct StaticLine {
 /// The closed-form elastic catenary of a line in its reference configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Catenary {
-    /// Its figures.
+    /// Figures of the line.
     pub figures: StaticLine,
     /// Points of its shape from end A to end B [m].
     pub profile: Vec<[f64; 3]>,
@@ -88,42 +88,42 @@ pub struct LineRecord {
     pub name: String,
     /// The discretised line in static equilibrium; `None` where the lines have none, such as beams in free flight.
     pub equilibrium: Option<StaticLine>,
-    /// The closed form beside it; `None` where the line has none.
+    /// Closed form for comparison; `None` where the line has none.
     pub catenary: Option<Catenary>,
 }
 
-/// What surrounds the lines, as far as a figure shows it.
+/// Surroundings of the lines that a figure shows.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Surroundings {
-    /// Whether there is water, with its surface at z = 0.
+    /// True if there is water, with its surface at z = 0.
     pub water: bool,
     /// Height of the seabed [m]; `None` without one.
     pub seabed: Option<f64>,
 }
 
-/// What the run cost.
+/// Cost of the run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Counters {
     /// Internal steps of the solver [-].
     pub substeps: u64,
     /// Simulated time [s].
     pub simulated: f64,
-    /// Time by the clock on the wall that the steps took.
+    /// Wall-clock time of the steps.
     pub wall: Duration,
 }
 
 impl Counters {
-    /// Simulated seconds per second by the clock [-]; `None` where no time was measured.
+    /// Simulated seconds per second of wall-clock time [-]; `None` where no time was measured.
     pub fn real_time_factor(&self) -> Option<f64> {
         let wall = self.wall.as_secs_f64();
         (wall > 0.0).then(|| self.simulated / wall)
     }
 }
 
-/// Everything that a run leaves behind.
+/// All results of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// What was run, in a line.
+    /// Description of the run, in a line.
     pub title: String,
     columns: Vec<Column>,
     values: Vec<f64>,
@@ -131,18 +131,18 @@ pub struct Record {
     pub frames: Vec<Frame>,
     /// The lines.
     pub lines: Vec<LineRecord>,
-    /// What the lines hold in time, where all of them are beams that nothing holds.
+    /// Energy and momenta in time, where all lines are beams without supports.
     pub flight: Vec<Flight>,
     /// Names of the points whose force is recorded: the fairleads.
     pub points: Vec<String>,
-    /// What surrounds the lines.
+    /// Surroundings of the lines.
     pub surroundings: Surroundings,
-    /// What the run cost.
+    /// Cost of the run.
     pub counters: Counters,
 }
 
 impl Record {
-    /// An empty record whose first column is time [s], with `columns` behind it.
+    /// Empty record whose first column is time [s], with `columns` behind it.
     pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Record {
         let time = Column {
             name: "time".to_string(),
@@ -171,7 +171,7 @@ impl Record {
     /// Adds a row: the time [s] and one value for every further column, in its unit.
     ///
     /// # Panics
-    /// Where the number of values is not the number of columns behind time: a mistake of the caller.
+    /// The number of values is not the number of columns after time: a mistake of the caller.
     pub fn add_row(&mut self, time: f64, values: impl IntoIterator<Item = f64>) {
         self.values.push(time);
         self.values.extend(values);

@@ -1,7 +1,7 @@
-//! `report.html`: one page about a run that needs no other file and no network.
+//! `report.html`: one self-contained page about a run.
 //!
-//! A summary, the static equilibrium beside the closed-form catenary, tension and laid length in time, the figures as inline
-//! SVG, and what is modelled in words.
+//! A summary, the static equilibrium compared with the closed-form catenary, tension and laid length in time, the figures as inline
+//! SVG, and a description of the model.
 
 use std::fmt::Write;
 
@@ -23,7 +23,7 @@ pre { white-space: pre-wrap; background: #f6f6f6; padding: .8rem; font-size: .85
 /// Digits of a number in a table [-].
 const DIGITS: usize = 6;
 
-/// The page. `words` says what the scene models, as `moorline check` prints it.
+/// Page of a run. `words` is the description of the scene's model, as `moorline check` prints it.
 pub fn html(record: &Record, words: &str) -> String {
     let title = match record.title.as_str() {
         "" => "moorline run",
@@ -50,7 +50,7 @@ pub fn html(record: &Record, words: &str) -> String {
     )
 }
 
-/// What the run cost, in a sentence.
+/// Cost of the run, in a sentence.
 fn cost(record: &Record) -> String {
     let counters = &record.counters;
     let speed = counters.real_time_factor().map_or(String::new(), |factor| {
@@ -67,7 +67,7 @@ fn cost(record: &Record) -> String {
     )
 }
 
-/// Discretised equilibrium beside the closed form.
+/// Discretised equilibrium compared with the closed form.
 fn statics(record: &Record) -> String {
     type Figure = fn(&StaticLine) -> f64;
     let figures: [(&str, Figure); 4] = [
@@ -163,7 +163,7 @@ pub fn difference(value: f64, reference: f64) -> String {
     }
 }
 
-/// A number with so many digits that count, as a person reads it.
+/// Number with `digits` significant digits.
 pub fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}").replace("-0", "0");

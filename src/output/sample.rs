@@ -71,7 +71,7 @@ fn line(name: &str, side: f64) -> LineRecord {
 }
 
 /// The record.
-pub fn record() -> Record {
+pub(super) fn record() -> Record {
     let mut record = Record::new("two lines on a seabed, swaying", columns());
     for i in 0..=600 {
         let time = 0.1 * f64::from(i);

@@ -12,7 +12,7 @@ use quick_xml::events::{BytesDecl, BytesText, Event};
 use super::csv::shortest;
 use super::record::{Frame, Node};
 
-/// Folder of the frames, beside the collection.
+/// Folder of the frames, next to the collection.
 pub const FRAME_FOLDER: &str = "vtk";
 
 /// Name of a frame's file, relative to the collection, with a forward slash on every system.
@@ -23,7 +23,7 @@ pub fn frame_name(index: usize) -> String {
 /// Writes the shape of all lines at one instant as `.vtp`.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write_frame(frame: &Frame, out: impl Write) -> io::Result<()> {
     let nodes: Vec<Node> = frame.lines.iter().flatten().copied().collect();
     let mut xml = document(out)?;
@@ -116,7 +116,7 @@ fn write_array<W: Write>(
 /// Writes the collection `.pvd` of frames at these times [s], named by [`frame_name`].
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write_collection(times: impl Iterator<Item = f64>, out: impl Write) -> io::Result<()> {
     let mut xml = document(out)?;
     xml.create_element("VTKFile")

@@ -5,22 +5,25 @@
 //!   η = a cos ψ,   ψ = k (x cos θ + y sin θ) − ωt + φ,   ω² = g k tanh kh,
 //!   u = a ω C(z) cos ψ,   w = a ω S(z) sin ψ,   C = cosh k(z + h)/sinh kh,   S = sinh k(z + h)/sinh kh,
 //!
-//! u along θ, w upwards; the accelerations are ∂/∂t of these, as the theory is linear. Above and below z = 0 the
-//! argument is stretched as Wheeler does, z' = h (z − η)/(h + η) with the elevation η of all components (deep water: z − η), so that the water
-//! moves at the surface as the linear theory says of z = 0. What is above η moves as the water at η does. The ramp ½(1 − cos πt/t_r)
-//! multiplies the amplitudes up to the time t_r; its rate is a part of the accelerations.
+//! u along θ, w upwards; the accelerations are ∂/∂t of these, as the theory is linear. The argument is stretched
+//! after Wheeler, above and below z = 0: z' = h (z − η)/(h + η) with the elevation η of all components (deep water: z
+//! − η). The water at the surface therefore moves as the linear theory predicts at z = 0. A point above η moves as
+//! the water at η does. The ramp ½(1 − cos πt/t_r) multiplies the amplitudes up to the time t_r; its rate is a part
+//! of the accelerations.
 //!
-//! A place is moved only by components that reach it: with A = a ω² e^{kz} the acceleration that a component would have there in deep
-//! water and R = √Σ(aω²)², those of the highest frequencies are left out that all have A < 10⁻⁴ R/√N. They add up to less than 10⁻⁴ of the
-//! acceleration at the surface. z is taken three standard deviations of the elevation too high for that, for the troughs. From the
-//! elevation that stretches z those of the highest frequencies are left out whose √Σa² times √Σ(k aω² e^{kz})² is below 10⁻⁴ R; near the
-//! surface that is none.
+//! A place is moved only by components that reach it. With A = a ω² e^{kz}, the acceleration that a component would
+//! have there in deep water, and R = √Σ(aω²)², the components of highest frequency that all have A < 10⁻⁴ R/√N are
+//! left out. They add up to less than 10⁻⁴ of the acceleration at the surface. For this test z is taken three
+//! standard deviations of the elevation too high, to allow for the troughs. The elevation that stretches z excludes
+//! the components of highest frequency whose √Σa² times √Σ(k aω² e^{kz})² is below 10⁻⁴ R; near the surface that
+//! excludes none.
 //!
-//! Between two instants not further apart than [`Waves::interval_below`] velocity, acceleration and elevation follow cubics with the slopes
-//! that they have there, [`Orbit::between`]. By the error h⁴f⁗/384 of that cubic the interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves
-//! an error of 10⁻³ of the acceleration, or less, beside what the stretching makes of the slopes, of the order of (ka)². h is also
-//! at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, since places are foretold over that time by their
-//! velocities, and at most 0.5 s. a is that at the highest place, a e^{kz} with z again three standard deviations too high: short waves, which
+//! Between two instants not further apart than [`Waves::interval_below`] velocity, acceleration and elevation follow
+//! cubics with the slopes that they have there, [`Orbit::between`]. From the error h⁴f⁗/384 of that cubic, the
+//! interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves an error of at most 10⁻³ of the acceleration. The stretching
+//! adds an error of the slopes, of the order of (ka)². h is also at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the
+//! period of a single wave, since places are extrapolated over that time by their velocities, and at most 0.5 s. a is
+//! the amplitude at the highest place, a e^{kz} with z again three standard deviations too high: short waves, which
 //! change soonest, do not reach down to lines that hang from a deep fairlead.
 //!
 //! Source: Airy (1845) as in Dean & Dalrymple (1991), Water Wave Mechanics for Engineers and Scientists, chapter 3; Wheeler (1970), J.
@@ -46,7 +49,7 @@ const TROUGH: f64 = 3.0;
 const BETWEEN: f64 = 1e-3;
 /// Longest time between two instants [s].
 const INTERVAL_MAX: f64 = 0.5;
-/// Deepest trough, over the depth [-]: the bed does not fall dry.
+/// Deepest trough, over the depth [-]: the seabed does not fall dry.
 const TROUGH_MAX: f64 = 0.9;
 
 /// One wave train.
@@ -73,12 +76,13 @@ pub struct Orbit {
     pub jerk: Vector3<f64>,
     /// Elevation of the surface above or below the place, by the components that stretch the place, all of them near the surface [m].
     pub elevation: f64,
-    /// Its rate by the components that reach the place, all of them near the surface [m/s].
+    /// Rate of the elevation by the components that reach the place, all of them near the surface [m/s].
     pub rise: f64,
 }
 
 impl Orbit {
-    /// The motion at time `t` [s] between two instants `t0` and `t1` [s], by cubics with the slopes at both; `before` where they are one.
+    /// Motion at time `t` [s] between two instants `t0` and `t1` [s], by cubics with the slopes at both; `before`
+    /// where the instants coincide.
     pub fn between(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2], t: f64) -> Orbit {
         if t1 <= t0 {
             return *before;
@@ -118,7 +122,7 @@ pub fn cubics(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2]) -> [[Vector3<f6
 /// A sum of wave trains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waves {
-    /// By frequency, the lowest first.
+    /// Components by frequency, the lowest first.
     components: Vec<Component>,
     table: Table,
     /// For every component, the height below which no place is moved by it or by those after it [m].
@@ -131,7 +135,7 @@ pub struct Waves {
     intervals: Vec<[f64; 2]>,
 }
 
-/// The components for the kernels: four side by side, padded with components of no amplitude.
+/// Components for the kernels: four side by side, padded with components of no amplitude.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Table {
     amplitude: Vec<f64>,
@@ -153,10 +157,10 @@ impl Table {
     }
 }
 
-/// Some waves at one time: what every place needs of it. Also the scratch of the places.
+/// State of some waves at one time, shared by every place, with scratch arrays for the places.
 #[derive(Debug, Clone, Default)]
 pub struct Instant {
-    /// The time, once there is one [s].
+    /// Time, once one is set [s].
     time: Option<f64>,
     /// −ωt + φ of the components, within a turn [rad].
     turn: Vec<f64>,
@@ -220,7 +224,7 @@ impl Waves {
         }
     }
 
-    /// The components, the lowest frequency first.
+    /// Components, the lowest frequency first.
     pub fn components(&self) -> &[Component] {
         &self.components
     }
@@ -236,7 +240,7 @@ impl Waves {
         deviation(&self.components)
     }
 
-    /// How many components, of the lowest frequencies, move the water at a height [m].
+    /// Number of components, of the lowest frequencies, that move the water at a height [m].
     pub fn reaching(&self, z: f64) -> usize {
         self.reach.partition_point(|reach| *reach <= z)
     }
@@ -409,9 +413,10 @@ fn interval(components: &[Component]) -> f64 {
     smooth.min(near).min(INTERVAL_MAX)
 }
 
-/// Heights that intervals are found for: from the first, of the shortest scale of any wave, each is deeper by this factor [-].
+/// Factor between successive heights at which intervals are evaluated [-]; the first is of the shortest scale of any
+/// wave.
 const INTERVAL_DEEPER: f64 = 1.5;
-/// Their number.
+/// Number of heights [-].
 const INTERVAL_HEIGHTS: i32 = 24;
 
 /// Heights, and the longest times between two instants for places below each.
@@ -449,9 +454,9 @@ fn reach(components: &[Component], numbers: &[f64]) -> Vec<f64> {
     heights
 }
 
-/// Heights that are tried for the elevation that stretches: each is deeper than the one before by this factor [-].
+/// Factor between successive heights tried for the elevation that stretches [-].
 const DEEPER: f64 = 1.15;
-/// Their number; the deepest is 2e5 times as deep as the first.
+/// Number of heights [-]; the deepest is 2e5 times as deep as the first.
 const HEIGHTS: usize = 88;
 
 /// For every component, the height below which the elevation of it and of those after it is left out [m].
@@ -522,7 +527,7 @@ mod tests {
         waves.orbit(place, &mut instant)
     }
 
-    /// Velocity as the equations say it, component by component.
+    /// Velocity by the equations as written, component by component.
     fn written_out(waves: &Waves, place: Vector3<f64>, t: f64) -> Vector3<f64> {
         let angle = |c: &Component, k: f64| {
             let way = place.x * c.direction.cos() + place.y * c.direction.sin();
@@ -549,7 +554,7 @@ mod tests {
         trains.iter().map(velocity).sum()
     }
 
-    /// A sea of many components of a height that matters.
+    /// Sea of many components with a significant height.
     fn storm(depth: Option<f64>) -> Waves {
         let component = |i: u32| Component {
             amplitude: 0.4,
@@ -586,7 +591,7 @@ mod tests {
                 (at(place + step) - at(place - step)) / (2.0 * d)
             };
             let [x, y, z] = [slope(0), slope(1), slope(2)];
-            // what stretching adds is of second order in the amplitude
+            // the contribution of stretching is of second order in the amplitude
             assert!((x.x + y.y + z.z).abs() < 1e-3 * x.norm());
             assert!((z.x - x.z).abs() < 1e-3 * x.norm() && (x.y - y.x).abs() < 1e-3 * x.norm());
         }

@@ -10,28 +10,31 @@
 //!
 //! ∂c/∂e₁ = P₁q₂/l₁ = u₁,   ∂²c/∂e₁² = −(q₁u₁ᵀ + u₁q₁ᵀ + c P₁/l₁)/l₁,   ∂²c/∂e₁∂e₂ = P₁P₂/(l₁l₂).
 //!
-//! Two directions that meet where stiffness changes bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂), and nothing where one of them is
-//! a hinge. A clamp is a direction that is held.
+//! Two directions that meet where stiffness changes bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂); B = 0 where one of
+//! them is a hinge. A clamp is a fixed direction.
 //!
-//! A moment M on an end of a line turns its last segment, of the end-to-end vector e and direction q: a turn δθ = q × δq across the line takes the work
-//! M·δθ = (M × q)·δe/l, and so M is a couple of forces ± f on the segment's two nodes,
+//! A moment M on an end of a line turns its last segment, of the end-to-end vector e and direction q. A turn δθ = q ×
+//! δq across the line takes the work M·δθ = (M × q)·δe/l. M is therefore a couple of forces ± f on the segment's two
+//! nodes,
 //!
 //! f = M × e/|e|²,   ∂f/∂e = ([M]ₓ − 2 (M × q) qᵀ)/l²,
 //!
-//! which bends a line by M/EI there, with an error in (κl)². The part of M along the line does no work, for nothing here resists torsion; its
-//! ∂f/∂e is the unsymmetric one, that of a load without a potential.
+//! which bends a line by M/EI there, with an error in (κl)². The part of M along the line does no work, since no
+//! torsional stiffness is modelled. ∂f/∂e is unsymmetric, as that of a load without a potential.
 //!
-//! Also here: EI of a solid round section and of a bundle of loose fibres, and the compression a segment can carry. A bundle of N equal loose strands of
-//! area A/N, d' = d/√N each, that slide on each other: N·(A/N)²E/4π = EI/N. The other reading, EI/N², is one strand of them alone.
-//! A chain of segments of length l buckles in its shortest wave, a zigzag, at 4EI/l²: the bending energy of a zigzag of
-//! amplitude a is ½(EI/l)(4a/l)² a node, and a push P gives ½P(2a)²/l. No push beyond it has a shape that the mesh resolves, and
-//! so a segment carries no more; without EI that is the rope that does not push at all.
+//! The module also holds EI of a solid round section and of a bundle of loose fibres, and the compression a segment
+//! can carry. A bundle of N equal loose strands of area A/N, d' = d/√N each, that slide on each other has
+//! N·(A/N)²E/4π = EI/N. The alternative definition, EI/N², is the stiffness of a single strand. A chain of segments
+//! of length l buckles in its shortest wave, a zigzag, at 4EI/l²: the bending energy of a zigzag of amplitude a is
+//! ½(EI/l)(4a/l)² a node, and a push P gives ½P(2a)²/l. The mesh cannot resolve the shape under a greater push, so a
+//! segment carries no more. Without EI it carries no compression.
 //!
 //! Source: Bergou, Wardetzky, Robinson, Audoly & Grinspun (2008), Discrete Elastic Rods, ACM Trans. Graph. 27(3), eq. 1 and
-//! section 4.2 (κb and the bending energy); second derivatives, series stiffness, couple, fibres and zigzag derived here. The limit of compression is what
-//! OrcaFlex offers as "segment Euler load", there π²EI/l².
-//! Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the energy is infinite. A rest curvature has a
-//! size but no direction, as in a line that is free to twist: its force is not smooth where the line is straight.
+//! section 4.2 (κb and the bending energy); second derivatives, series stiffness, couple, fibres and zigzag derived
+//! here. The limit of compression corresponds to "segment Euler load" of OrcaFlex, there π²EI/l².
+//! Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the energy is infinite. A
+//! rest curvature has a magnitude but no direction, as in a line that is free to twist: its force is not smooth where
+//! the line is straight.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,12 +43,12 @@ use crate::math::circle;
 /// |κb| below which the direction of a rest curvature fades [-].
 const REST_FADE: f64 = 1e-6;
 
-/// A segment as bending sees it.
+/// Direction of a segment, as used by the bending law.
 #[derive(Debug, Clone, Copy)]
 pub struct Direction {
     /// Unit vector q [-].
     pub along: Vector3<f64>,
-    /// 1/l [1/m]; 0 for a direction that is held.
+    /// 1/l [1/m]; 0 for a direction that is prescribed.
     pub per_length: f64,
 }
 
@@ -70,7 +73,7 @@ pub struct Hessian {
 }
 
 impl Hessian {
-    /// Times a factor.
+    /// Returns the second derivatives times a factor.
     #[inline(always)]
     pub fn times(&self, factor: f64) -> Hessian {
         Hessian {
@@ -80,7 +83,7 @@ impl Hessian {
         }
     }
 
-    /// The sum of two.
+    /// Returns the sum of two.
     #[inline(always)]
     pub fn plus(&self, other: &Hessian) -> Hessian {
         Hessian {
@@ -100,7 +103,7 @@ impl Hessian {
     }
 }
 
-/// The turn from one direction to the next.
+/// Turn from one direction to the next.
 #[derive(Debug, Clone, Copy)]
 pub struct Turn {
     first: Direction,
@@ -116,7 +119,7 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// From `first` to `second`.
+    /// Turn from `first` to `second`.
     #[inline(always)]
     pub fn new(first: Direction, second: Direction) -> Turn {
         let (q1, q2) = (first.along, second.along);
@@ -152,7 +155,8 @@ impl Turn {
         }
     }
 
-    /// Moment [N m] on what holds the first direction, where that is held: it would turn it to the second.
+    /// Moment [N m] on the support of the first direction, where that is prescribed, in the sense that turns it
+    /// towards the second.
     pub fn moment_on_first(&self, stiffness: f64, rest: f64) -> Vector3<f64> {
         let [slope, _] = self.slopes(stiffness, rest);
         -slope * self.first.along.cross(&self.second.along)
@@ -175,7 +179,7 @@ impl Turn {
         ]
     }
 
-    /// The exact second derivatives.
+    /// Exact second derivatives.
     #[inline(always)]
     pub fn hessian(&self, stiffness: f64, rest: f64) -> Hessian {
         let [d1, d2] = self.slopes(stiffness, rest);
@@ -217,8 +221,8 @@ impl Turn {
         ]
     }
 
-    /// Stiffness of a damper of `damping` [N m s] on the rate of k across the line, the section not spinning about its axis:
-    /// [N s/m]. What turns with the line as a whole is not damped.
+    /// Stiffness of a damper of `damping` [N m s] on the rate of k across the line, the section not spinning about
+    /// its axis: [N s/m]. Rotation of the line as a whole is not damped.
     #[inline(always)]
     pub fn damper(&self, damping: f64) -> Hessian {
         let mean = (self.first.along + self.second.along).normalize();
@@ -231,17 +235,17 @@ impl Turn {
     }
 }
 
-/// A moment on an end of a line, as forces on the two nodes of its segment.
+/// Moment on an end of a line, as forces on the two nodes of its segment.
 #[derive(Debug, Clone, Copy)]
 pub struct Couple {
-    /// On the second node, and against it on the first [N].
+    /// Force on the second node; the first takes its negative [N].
     pub force: Vector3<f64>,
     /// ∂f/∂e [N/m].
     pub slope: Matrix3<f64>,
 }
 
 impl Couple {
-    /// Of a moment M [N m] on a segment of the end-to-end vector e [m].
+    /// Couple of a moment M [N m] on a segment of the end-to-end vector e [m].
     pub fn new(moment: Vector3<f64>, chord: Vector3<f64>) -> Couple {
         let per_square = 1.0 / chord.norm_squared().max(f64::MIN_POSITIVE);
         let turned = per_square * moment.cross(&chord);
@@ -263,8 +267,8 @@ pub fn solid_round(diameter: f64, youngs_modulus: f64) -> f64 {
     youngs_modulus * circle::second_moment(diameter)
 }
 
-/// EI [N m²] of a section of loose strands, from that of one solid section: divided by their number to the power of 1 or, in the other
-/// reading, 2.
+/// EI [N m²] of a section of loose strands, from that of one solid section: divided by their number to the power of 1
+/// or, in the alternative definition, 2.
 pub fn of_strands(solid: f64, strands: usize, power: i32) -> f64 {
     solid / (strands as f64).powi(power)
 }

@@ -20,7 +20,7 @@
 //!
 //! x = Hℓ (α/σ + 1/EA),   α = atanh(ε)/ε.
 //!
-//! Differences of large numbers are gone, and w = 0 (α = 1, σ = T) is nothing special.
+//! No differences of large numbers remain, and w = 0 (α = 1, σ = T) needs no special case.
 //!
 //! # One equation
 //! From the same identities H² = (σ² − Vₘ²)(1 − ε²). A line held at ends X, Z apart has H = X/(L(α/σ + 1/EA)) and
@@ -28,19 +28,19 @@
 //!
 //! X²/(λ/sinh λ + (σ/EA)/cosh λ)² + Z²/(1 + σ/EA)² = L²,
 //!
-//! whose left side increases with λ: one root, always. Without stretch it is the classical X sinh λ/λ = √(L² − Z²).
-//! See `uniform` for how it is balanced so that no digit is lost.
+//! whose left side increases with λ, so there is exactly one root. Without stretch it is the classical X sinh λ/λ = √(L² − Z²).
+//! `uniform` balances it so that no digit is lost.
 //!
 //! # The bed
-//! A flight from the bed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and what lies between them
-//! must reach X; what a flight is longer than its span, (H/w)(sinh β − β) with sinh β = V/H, makes this one balance in H
-//! (`touchdown`). Without tension the flights hang and the rest of the line is slack: H = 0, the layout is one of many, and
-//! the one returned spreads the slack evenly. Friction acts towards A, as on a line laid from A and hauled at B; towards B where B lies on the
-//! bed and A does not ([`is_laid_from_b`]).
+//! A flight from the bed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and the part between
+//! them must reach X. The excess of a flight's length over its span, (H/w)(sinh β − β) with sinh β = V/H, makes this
+//! one balance in H (`touchdown`). Without tension the flights hang and the rest of the line is slack: H = 0, the
+//! layout is one of many, and the returned one spreads the slack evenly. Friction acts towards A, as on a line laid
+//! from A and hauled at B; towards B where B lies on the bed and A does not ([`is_laid_from_b`]).
 //!
 //! # Several sections
-//! The line is laid out from A under a given tension, which is searched (`sections`). What floats rises off the bed without
-//! a ceiling.
+//! The line is laid out from A under a trial tension, which is searched (`sections`). Buoyant sections rise off the
+//! bed without an upper limit.
 //!
 //! # Source and validity
 //! The elastic catenary: H. M. Irvine, Cable Structures, MIT Press, 1981. Touchdown with friction as a model: J. M. Jonkman,
@@ -99,7 +99,7 @@ pub struct Bed {
     pub friction: f64,
 }
 
-/// Why a line cannot be solved: the input is not a line.
+/// Reasons for which the input describes no solvable line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CatenaryError {
     /// The list of sections is empty.
@@ -112,11 +112,11 @@ pub enum CatenaryError {
         index: usize,
         /// Name of the property.
         key: &'static str,
-        /// What was given, in `unit`.
+        /// Value given, in `unit`.
         value: f64,
         /// Unit of the value.
         unit: &'static str,
-        /// What would be right.
+        /// Valid range.
         wanted: &'static str,
     },
     /// Span, rise, or a property of the bed is out of range.
@@ -124,11 +124,11 @@ pub enum CatenaryError {
     Input {
         /// Name of the input.
         key: &'static str,
-        /// What was given, in `unit`.
+        /// Value given, in `unit`.
         value: f64,
         /// Unit of the value.
         unit: &'static str,
-        /// What would be right.
+        /// Valid range.
         wanted: &'static str,
     },
     /// An end lies below the bed.
@@ -136,7 +136,7 @@ pub enum CatenaryError {
         "bed.height: the bed at z = {bed} m is above end {end} at z = {z} m; it must be at or below both ends"
     )]
     EndBelowBed {
-        /// Which end, A or B.
+        /// Name of the end, A or B.
         end: char,
         /// Height of that end relative to A [m].
         z: f64,
@@ -171,8 +171,8 @@ pub struct Catenary {
 
 /// Solves the line of `sections`, from end A to end B, whose ends are `span` apart horizontally and B `rise` above A [m].
 ///
-/// Every line that is one has a solution, so the only errors are inputs that are not finite, not positive where they must be,
-/// or an end below the bed.
+/// Every valid line has a solution, so the only errors are inputs that are not finite, not positive where they must
+/// be, or an end below the bed.
 pub fn solve(
     sections: &[Section],
     span: f64,
@@ -207,8 +207,8 @@ pub fn solve(
     })
 }
 
-/// Whether friction holds a line as one that was laid from end B and hauled at end A: where, of ends at these heights above the bed [m], B lies on it and A
-/// does not; `length` is that of the line [m].
+/// Returns whether friction acts as on a line that was laid from end B and hauled at end A: of ends at these heights
+/// above the bed [m], B lies on it and A does not. `length` is the length of the line [m].
 pub fn is_laid_from_b([a, b]: [f64; 2], length: f64) -> bool {
     b <= ON_BED * length && a > ON_BED * length
 }
@@ -221,7 +221,7 @@ fn solve_from_a(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) ->
     }
 }
 
-/// The one section that `sections` are, if they are all of one kind.
+/// Single section equivalent to `sections`, if they are all of one kind.
 fn uniform(sections: &[Section]) -> Option<Section> {
     let first = sections[0];
     let alike = |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
@@ -380,7 +380,7 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
     held
 }
 
-/// Refuses what is not a line; returns the bed with ends that are below it by rounding put on it.
+/// Refuses input that is not a line; returns the bed, lowered to ends that are below it only by rounding.
 fn check(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result<Option<Bed>, CatenaryError> {
     if sections.is_empty() {
         return Err(CatenaryError::NoSections);
@@ -453,7 +453,7 @@ impl Catenary {
         self.held.horizontal_b
     }
 
-    /// Horizontal tension at end A [N]: that at B less what friction holds.
+    /// Horizontal tension at end A [N]: the tension at B less the friction of the bed.
     pub fn horizontal_a(&self) -> f64 {
         self.held.horizontal_a
     }
@@ -478,8 +478,8 @@ impl Catenary {
         self.held.horizontal_b.hypot(self.held.vertical_b)
     }
 
-    /// Coulomb friction that the bed uses along what lies and is tight [-]: that of the bed; less only where sections float and no
-    /// state uses all of it; 0 where nothing lies.
+    /// Coulomb friction in use along the tight part on the bed [-]: the coefficient of the bed. It is less only where
+    /// sections float and no state uses all of it; 0 where nothing lies on the bed.
     pub fn friction(&self) -> f64 {
         if self.laid().next().is_some() {
             self.held.friction
@@ -518,7 +518,7 @@ impl Catenary {
         self.shape.at(s)
     }
 
-    /// What the line holds, weighed from end A up.
+    /// Energy of the line, with heights measured upwards from end A.
     pub fn energy(&self) -> CatenaryEnergy {
         self.shape.pieces.iter().map(Piece::energy).sum()
     }

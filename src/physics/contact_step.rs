@@ -1,4 +1,4 @@
-//! Contact with the seabed over a step of time, so that its spring gives back what it took.
+//! Contact with the seabed over a time step, whose spring conserves energy.
 //!
 //! With the penetrations p₀ before and p₁ after a step Δt, the spring's force is the discrete gradient of its energy,
 //!
@@ -11,14 +11,14 @@
 use super::fading_damper::fade;
 use super::seabed::ContactCoefficients;
 
-/// What the bed does to a node over a step.
+/// Action of the bed on a node over a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactStep {
     /// Upward force [N].
     pub force: f64,
-    /// Its slope with p₁ [N/m].
+    /// Slope of the force with p₁ [N/m].
     pub slope: f64,
-    /// The spring's part of the force [N].
+    /// Part of the force from the spring [N].
     pub spring: f64,
 }
 

@@ -2,9 +2,10 @@
 //!
 //! f = max(0, k max(p, 0) − c s(p) ż),   s = 3u² − 2u³,   u = ½ (1 + p/r) between 0 and 1,
 //!
-//! so that the damper is off at p = −r, whole from p = r on, and smooth between. A damper that switches breaks Newton's method: an iterate that
-//! lifts a node is let go, and falls back. r is [`damper_reach`] at least, two penetrations of the node at rest, and what it moves in a step. Where nothing
-//! moves the force is that of `seabed`.
+//! so that the damper is off at p = −r, fully active from p = r on, and smooth between. A damper that switches breaks
+//! Newton's method: an iterate that lifts a node releases it, and the next falls back. r is the greatest of
+//! [`damper_reach`], two penetrations of the node at rest, and its displacement in a step. At rest the force is that
+//! of `seabed`.
 //!
 //! Source: the cubic step as a C¹ switch; contact as in `seabed`, and valid as that is, for r well below the length of a segment.
 
@@ -32,19 +33,20 @@ pub fn fade(penetration: f64, reach: f64) -> (f64, f64) {
     (u * u * (3.0 - 2.0 * u), 3.0 * u * (1.0 - u) / reach)
 }
 
-/// What a bed whose damper fades does to a node.
+/// Action of a bed whose damper fades on a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FadingContact {
     /// Upward force [N].
     pub force: f64,
-    /// Its slope with penetration [N/m].
+    /// Slope of the force with penetration [N/m].
     pub stiffness: f64,
-    /// Minus its slope with ż [N s/m].
+    /// Negative slope of the force with ż [N s/m].
     pub damping: f64,
 }
 
 impl FadingContact {
-    /// At a penetration [m] and vertical velocity ż [m/s], the damper fading in over ± `reach` [m]; `None` where the bed does not act.
+    /// Contact at a penetration [m] and vertical velocity ż [m/s], the damper fading in over ± `reach` [m]; `None`
+    /// where the bed does not act.
     #[inline(always)]
     pub fn new(k: ContactCoefficients, penetration: f64, velocity: f64, reach: f64) -> Option<FadingContact> {
         if penetration <= -reach {

@@ -2,8 +2,9 @@
 //!
 //! u(z) = u₀ + Σ_j Δu_j · min(max((z − z_j)/h_j, 0), 1),   du/dz = Σ_j Δu_j/h_j over the layers j that z lies in
 //!
-//! straight between the given heights and constant below the lowest and above the highest, like the profiles that current meters
-//! and metocean reports give. The same expression serves one height and four at once; results are the same bit for bit.
+//! linear between the given heights and constant below the lowest and above the highest, like the profiles that
+//! current meters and metocean reports give. The same expression serves one height and four at once; results are the
+//! same bit for bit.
 //!
 //! Source: piecewise linear interpolation; relative velocity in Morison's formula as in Hall & Goupee (2015), Ocean Engineering 104,
 //! 590-603, section 2. Valid for currents that change slowly: the force on a line by the acceleration of the water, ρA(1 + C_a) ∂u/∂t,
@@ -41,7 +42,7 @@ impl Profile {
         }
     }
 
-    /// Through pairs of height [m] and velocity [m/s], no two of them at the same height, in any order.
+    /// Profile through pairs of height [m] and velocity [m/s], no two of them at the same height, in any order.
     ///
     /// # Panics
     /// There is no pair, or two are at one height.
@@ -107,9 +108,9 @@ impl Profile {
 /// The current at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stream<'a> {
-    /// Its shape over the height.
+    /// Shape over the height.
     pub profile: &'a Profile,
-    /// What multiplies the shape at this time [-].
+    /// Factor on the shape at this time [-].
     pub factor: f64,
 }
 

@@ -7,7 +7,8 @@
 //! ```
 //!
 //! with s the part of the line's tangent that lies in the plane: a line that stands on the bed is across it all around. Inside the
-//! ellipse nothing slides. On it the line slides where dissipation is greatest, v_i ∝ −f_i/D_i², so that the friction is D_a against a line dragged along itself, D_b across.
+//! ellipse nothing slides. On it the line slides in the direction of greatest dissipation, v_i ∝ −f_i/D_i², so that
+//! the friction is D_a against a line dragged along its axis, D_b across.
 //! With the force f* that would hold a node, and the compliance W_i of sliding to force along the axes,
 //!
 //! ```text
@@ -90,12 +91,13 @@ impl Axes {
 }
 
 impl Friction {
-    /// The greater of the coefficients [-].
+    /// Greater of the coefficients [-].
     pub fn greatest(&self) -> f64 {
         self.axial.max(self.transverse)
     }
 
-    /// Semi-axes of the ellipse [N], along and across the line of which a part `share` [-] lies in the plane, under a normal force [N].
+    /// Semi-axes of the ellipse [N] along and across a line of which a part `share` [-] lies in the plane, under a
+    /// normal force [N].
     #[inline(always)]
     pub fn limits<R: Real>(&self, share: R, normal_force: R) -> [R; 2] {
         let one = R::splat(1.0);
@@ -146,7 +148,7 @@ impl<R: Real> Ellipse<R> {
     }
 }
 
-/// The friction at a node that `holding` [N] would hold, in the ellipse of the semi-axes `limits` [N].
+/// Friction at a node that `holding` [N] would hold, within the ellipse of the semi-axes `limits` [N].
 #[inline(always)]
 pub fn slide<R: Real>(holding: [R; 2], compliance: [R; 2], limits: [R; 2]) -> Slide<R> {
     let [zero, one] = [0.0, 1.0].map(R::splat);
@@ -198,7 +200,7 @@ pub struct NodeFriction {
     pub multiplier: Option<f64>,
 }
 
-/// [`slide`] of one node.
+/// Friction of one node by [`slide`].
 pub fn node_friction(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64>) -> NodeFriction {
     let Slide {
         force,
@@ -212,7 +214,7 @@ pub fn node_friction(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Ve
 }
 
 impl NodeFriction {
-    /// Slope of the force with what would hold the node [-], the limits held; all compliances being 1.
+    /// Slope of the friction with the holding force [-], at constant limits and unit compliances.
     pub fn slope(&self, limits: Vector2<f64>) -> Matrix2<f64> {
         let Some(gamma) = self.multiplier else {
             return Matrix2::identity();

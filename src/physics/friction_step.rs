@@ -1,14 +1,14 @@
 //! Normal contact and Coulomb friction of a node over a step of the leapfrogs, both implicit.
 //!
-//! The node would leave the step with the velocity u. With M = m_n I + (m_t − m_n) t tᵀ, the bed's normal n and its
-//! plane's axes a, b, the velocity v it does leave with and the impulses λ obey
+//! Without contact the node would leave the step with the velocity u. With M = m_n I + (m_t − m_n) t tᵀ, the bed's
+//! normal n and its plane's axes a, b, the actual velocity v and the impulses λ obey
 //!
 //! ```text
 //! M (v − u) = λ_n n + λ_a a + λ_b b,   λ_n = Δt (k p − (k Δt + c) v_n) ≥ 0,   (λ_a, λ_b) in the ellipse of λ_n
 //! ```
 //!
-//! A node that sticks leaves with v_a = v_b = 0 to the last digit: it does not creep. λ_n of the ellipse is that of the node if it stuck, which is
-//! the same where the line lies in the plane of the bed.
+//! A node that sticks leaves with v_a = v_b = 0 to the last digit and does not drift. λ_n of the ellipse is that of a
+//! sticking node, which is exact where the line lies in the plane of the bed.
 //!
 //! Source: backward Euler on Coulomb's law, as in Moreau (1988), Unilateral contact and dry friction in finite freedom
 //! dynamics, CISM 302; friction by [`super::friction`]. Stable for any stiffness; valid as `seabed` is.
@@ -17,7 +17,7 @@ use super::friction::{Axes, Friction, slide};
 use super::slender::Slender;
 use crate::math::real::{Real, RealVector, choose};
 
-/// A node, or one in every lane, and how it meets the seabed.
+/// Node, or one in every lane, with its contact with the seabed.
 #[derive(Debug, Clone, Copy)]
 pub struct Landing<V: RealVector> {
     /// Inverse mass across the line, and its excess along the line [1/kg].
@@ -141,7 +141,7 @@ mod tests {
         transverse: 0.7,
     };
 
-    /// Impulse of the seabed beside friction [N s].
+    /// Impulse of the seabed excluding friction [N s].
     fn push(node: &Landing<Vector3<f64>>, free: Vector3<f64>, landed: &Landed<Vector3<f64>>) -> Vector3<f64> {
         let mass = node.inverse_mass.inverted().matrix(node.tangent);
         mass * (landed.velocity - free) - landed.friction

@@ -8,15 +8,15 @@
 //! soundings at the grid's points, with the slopes of [`crate::math::shape_preserving`] along x and along y, at the edges those of
 //! the chord, and with the mean of the slope of h_x along y and of h_y along x as its twist. At every point the two slopes, and then the twist, are
 //! reduced until the control points of all cells around it lie within the soundings of their cell, or beyond by a twentieth of their range. A
-//! bicubic is a convex combination of its control points: so the surface lies there too. It is continuously differentiable, since cells share what is
+//! bicubic is a convex combination of its control points, so the surface lies within these bounds too. It is continuously differentiable, since cells share what is
 //! reduced, and reproduces planes.
 //! A bilinear surface would need a normal that is not its gradient to be smooth, and a node that slides
 //! without friction would gain or lose energy with every crossing of a cell; here the normal is the gradient's, and the force k p n is conservative but for p
-//! times the curvature of the surface. Outside the grid the surface goes on as at its edge.
+//! times the curvature of the surface. Outside the grid the surface continues with the values at its edge.
 //!
 //! Source: bicubic interpolation as in Press et al. (2007), Numerical Recipes, 3rd ed., section 3.6.3; convex hull of a Bézier net as in Farin
-//! (2002), Curves and Surfaces for CAGD, 5th ed., chapter 14. Valid where penetrations are small beside the radius of curvature. A summit between
-//! soundings of nearly equal height is cut off.
+//! (2002), Curves and Surfaces for CAGD, 5th ed., chapter 14. Valid where penetrations are small compared with the
+//! radius of curvature. A summit between soundings of nearly equal height is cut off.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -27,7 +27,7 @@ use crate::math::shape_preserving::{End, slopes, smooth_slopes};
 /// Slopes at the rows of a table.
 type Law = fn(&[f64], &[f64], [End; 2]) -> Vec<f64>;
 
-/// By how much the surface may leave the soundings of a cell, over their range [-].
+/// Excursion of the surface beyond the soundings of a cell, over their range [-].
 const EXCURSION_MAX: f64 = 0.05;
 
 /// Surface of a seabed.
@@ -68,7 +68,7 @@ struct Relief {
     curvature: [f64; 3],
 }
 
-/// How a node stands to the surface.
+/// Position of a node relative to the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
     /// Distance p below the surface, along its normal [m].
@@ -82,7 +82,7 @@ pub struct Touch {
 }
 
 impl Ground {
-    /// How a node at a place [m] stands to the surface.
+    /// Position of a node at a place [m] relative to the surface.
     pub fn touch(&self, place: Vector3<f64>) -> Touch {
         let Relief {
             height,
@@ -323,9 +323,10 @@ fn stand<V: RealVector>(height: V::Real, [hx, hy]: [V::Real; 2], place: V) -> (V
     ((height - place.components()[2]) * upright, normal)
 }
 
-/// Limits what a node of a grid gives to a cell, over the sides of the cell from that node: control points of the cell's Bézier net.
+/// Limits the slopes of a node of a grid for one cell, over the sides of the cell from that node: control points of
+/// the cell's Bézier net.
 ///
-/// A bicubic is a convex combination of its net. So it stays within bounds that hold for the points z + a, z + b and z + a + b + c of
+/// A bicubic is a convex combination of its net and stays within bounds that hold for the points z + a, z + b and z + a + b + c of
 /// each of its corners, with a = h_x Δx/3, b = h_y Δy/3 and c = h_xy Δx Δy/9, signed into the cell.
 struct Corner {
     /// Δx/3 and Δy/3, signed into the cell [m].
@@ -335,7 +336,7 @@ struct Corner {
 }
 
 impl Corner {
-    /// The greatest part, up to 1, of a change [m] that keeps the bounds.
+    /// Greatest part, up to 1, of a change [m] that keeps the bounds.
     fn part(&self, change: f64) -> f64 {
         let [low, high] = self.bounds;
         let bound = if change > 0.0 { high } else { low };
@@ -368,7 +369,7 @@ fn limit(corners: &[Corner], [hx, hy, hxy]: [f64; 3]) -> [f64; 3] {
 /// Place of a coordinate among the lines of a grid.
 struct Place {
     cell: usize,
-    /// Part of the cell before it [-].
+    /// Part of the cell before the coordinate [-].
     part: f64,
     /// 1 over the width of the cell [1/m]; 0 outside the grid, where nothing changes.
     per_width: f64,

@@ -6,24 +6,24 @@
 //!   B = ρ g V s,      ∫ B dz = −2R ρ g V (u³ − u⁴/2)        buoyancy, and its potential
 //!   f = −½ ρ CdA s |v| v,   M = ρ V Ca s I                  v the velocity relative to the water
 //!
-//! In waves the height is over the elevation of the surface, v is relative to the moving water and f has ρ V (1 + Ca) s ∂u/∂t besides, of
-//! Froude, Krylov and the added mass.
+//! In waves the height is measured from the elevation of the surface, v is relative to the moving water and f
+//! includes ρV (1 + Ca) s ∂u/∂t, the Froude-Krylov force and that of the added mass.
 //!
-//! s is exact: it is the volume of a spherical cap. Drag and added mass are taken in proportion to it. A point with a drag area and
-//! no volume is wetted as the sphere whose cross-section that area is.
+//! s is exact: it is the volume of a spherical cap. Drag and added mass are taken in proportion to it. A point with a
+//! drag area and no volume is submerged as the sphere of that cross-section.
 //!
-//! Where s changes, the equation of motion is M a = f without the impulse Ṁ v, so that a point which enters the water takes
-//! ½ Ṁ v² from it and gives it back where it leaves. Slamming is thus not modelled.
+//! Where s changes, the equation of motion is M a = f without the impulse Ṁ v, so that a point which enters the water
+//! loses ½ Ṁ v² and regains it where it leaves. Slamming is not modelled.
 //!
 //! Source: the cap's volume πh²(3R − h)/3 by Archimedes; drag and added mass after Morison, O'Brien, Johnson & Schaaf (1950), J.
-//! Petroleum Technology 2(5), 149-154, without a direction. Valid for bodies small beside the waves and speeds at which they make
-//! none. Proportion to s is exact deep below and far above the surface only.
+//! Petroleum Technology 2(5), 149-154, without a direction. Valid for bodies small compared with the waves and speeds
+//! at which they make none. Proportion to s is exact only deep below and far above the surface.
 
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-/// What the water does to a point.
+/// Sphere in water: buoyancy, added mass and drag of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
     /// Radius R [m], positive.
@@ -38,12 +38,12 @@ pub struct Sphere {
     pub drag: f64,
 }
 
-/// How much of a sphere is in the water.
+/// Submergence of a sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wetted {
     /// Submerged part of the volume s [-].
     pub part: f64,
-    /// Its slope with height ds/dz [1/m], not positive.
+    /// Slope of the part with height ds/dz [1/m], not positive.
     pub slope: f64,
 }
 
@@ -66,7 +66,7 @@ impl Sphere {
         })
     }
 
-    /// How much of it is in the water where its centre is at `height` [m] over the surface.
+    /// Submergence of the sphere with its centre at `height` [m] over the surface.
     #[inline]
     pub fn wetted(&self, height: f64) -> Wetted {
         if height <= -self.radius {
@@ -82,8 +82,8 @@ impl Sphere {
         }
     }
 
-    /// The same on the way from one height to another [m]: the mean of s, and its slope with the height at the end. The mean is exact, so that
-    /// it times the way is the change of ∫ s dz.
+    /// Submergence on the path from one height to another [m]: the mean of s, and its slope with the height at the
+    /// end. The mean is exact: times the path length it is the change of ∫ s dz.
     pub fn wetted_between(&self, from: f64, to: f64) -> Wetted {
         let [low, high] = [from, to].map(|height| 0.5 * (1.0 - height / self.radius));
         let [a, b] = [low, high].map(|u| u.clamp(0.0, 1.0));

@@ -6,20 +6,21 @@
 //!
 //! k_eff = min(k, w/(δ d h)·d),    c_eff = max(c·k_eff/k, min(c, 2ζ √(k_eff m))),    m the mass across the line,
 //!
-//! so that a node at rest is pressed in by δ times the segment length h: with the usual
-//! kbot of 3 MPa/m the static penetration would be micrometres and every node that lands would ring. At what level that begins so that what
-//! hangs from the bed is right: `model/build/resting.rs`. A damper that is softened like its spring loses its hold: of the chains in the tank
-//! 1 % of critical damping is left, and nodes that land ring for periods of the motion. So it keeps the part ζ of critical damping, 2√(k m) of a
-//! mass on a spring, unless the scene's own is less. Both tend to the scene's own as the mesh is refined, and have reached them where the spring has.
+//! so that a node at rest penetrates by δ times the segment length h: with the usual kbot of 3 MPa/m the static
+//! penetration would be micrometres and every node that lands would ring. `model/build/resting.rs` sets the level of
+//! the contact so that the suspended part is right. A damper that is softened like its spring becomes too weak: of
+//! the chains in the tank 1 % of critical damping is left, and nodes that land ring for periods of the motion. The
+//! damper therefore keeps the part ζ of critical damping, 2√(k m) of a mass on a spring, unless the damping of the
+//! scene is less. Both tend to the values of the scene as the mesh is refined, and reach them where the spring does.
 //!
 //! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper
-//! pulls on a rising node); the regularisation and its δ were chosen by the convergence study told in the README. On the public scenes
+//! pulls on a rising node); the regularisation and its δ were chosen by the convergence study described in the README. On the public scenes
 //! and ten variants, n = 14 to 40, δ = 0.01 and 0.005 have 4 and 8 % more RMS error of tension, and 24 and 37 % less of the position half-way
 //! where that lies on the bed: a node rests 0.01 h deep, and that falls with h only. δh = c h²w/H, λ of constant elements, gives 1.01, 0.97
 //! and 1.06 of the error of tension with c = ¼, ½ and 1. There the damper × 0 to × 3 changes nothing above 2 %, × 10 costs 6 %. ζ: on
 //! lindahl_slow, 56, 80 and 160 elements, the RMS error of tension is 1.24, 1.30 and 0.55 % with the damper softened like the spring, and 1.03,
 //! 0.85 and 0.39 % with ζ = 0.2.
-//! Valid where penetrations are small beside the segment length.
+//! Valid where penetrations are small compared with the segment length.
 
 /// Static penetration of a resting node under regularised contact, per nodal length [-].
 pub const REGULARISED_PENETRATION: f64 = 0.02;
@@ -60,8 +61,8 @@ pub fn regularised(
     }
 }
 
-/// Contact of a point of `weight` [N], which has no length or diameter that the bed's own coefficients would refer to: as stiff as sinks
-/// it in by [`POINT_PENETRATION`], with the bed's ratio of damping to stiffness `lag` [s].
+/// Contact of a point of `weight` [N], which has no length or diameter for the bed's coefficients to refer to. Its
+/// stiffness gives a penetration of [`POINT_PENETRATION`], with the bed's ratio of damping to stiffness `lag` [s].
 pub fn under_point(weight: f64, lag: f64) -> ContactCoefficients {
     let stiffness = weight.abs() / POINT_PENETRATION;
     ContactCoefficients {

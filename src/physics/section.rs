@@ -16,7 +16,7 @@
 //!   h = 1 + u/6 + 3u²/40,          p = v/6 + 17v²/360,
 //!
 //! which a circular arc and a uniform twist have exactly up to terms in α⁴ and α⁶ (h and p are the series of α/sin α and 1 − sin α/α in sin² α).
-//! Under a moment, elements of 0.2 rad bend 2.2 % too far without them and 0.002 % with them. From the rest values Γ⁰, K⁰,
+//! Under a moment, elements of 0.2 rad bend 2.2 % too far without h and p and 0.002 % with them. From the rest values Γ⁰, K⁰,
 //!
 //!   N = C_Γ (Γ* − Γ⁰),  M = C_K (K* − K⁰),  U = ½ L [N·(Γ* − Γ⁰) + M·(K* − K⁰)],  C_Γ = (GA, GA, EA),  C_K = (EI, EI, GJ).
 //!
@@ -41,7 +41,7 @@ pub struct Section {
     pub frame: Matrix3<f64>,
 }
 
-/// Six numbers of a section: in forces' place Γ or N, in moments' place K or M.
+/// Six components of a section: Γ or N in the place of forces, K or M in the place of moments.
 pub type Sextuple = Vector6<f64>;
 
 /// Stiffness or damping of a section along its directors.
@@ -60,13 +60,13 @@ pub struct SectionLaw {
 /// The parts of the strain energy.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StrainEnergy {
-    /// Of stretching [J].
+    /// Strain energy of stretching [J].
     pub axial: f64,
-    /// Of shear [J].
+    /// Strain energy of shear [J].
     pub shear: f64,
-    /// Of bending [J].
+    /// Strain energy of bending [J].
     pub bending: f64,
-    /// Of torsion [J].
+    /// Strain energy of torsion [J].
     pub torsion: f64,
 }
 
@@ -114,7 +114,7 @@ impl StrainEnergy {
     }
 }
 
-/// How the stress of a step follows the strains at its ends.
+/// Weights of the strains at both ends of a step in its stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mixture {
     /// Part of the change of strain over the step that acts [-]: ½; in statics, where both ends are the same, 1.
@@ -126,9 +126,10 @@ pub struct Mixture {
 /// Stress of a step and its slope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
-    /// What times the change of the plain strains is the work on an element, per length.
+    /// Stress: its product with the change of the plain strains is the work on an element, per length.
     pub stress: Sextuple,
-    /// Its slope with the plain strains at the end of the step: stiffness [N] for forces over stretches, and so on.
+    /// Slope of the stress with the plain strains at the end of the step: stiffness [N] for forces over stretches,
+    /// and so on.
     pub slope: Matrix6<f64>,
 }
 
@@ -148,7 +149,7 @@ fn turns(strain: &Sextuple, length: f64) -> (f64, f64) {
     (v + length * length * strain[5] * strain[5], v)
 }
 
-/// D: what times the change of the plain strains is the change of the starred ones.
+/// D: its product with the change of the plain strains is the change of the starred ones.
 #[inline(always)]
 fn correction_gradient(before: &Sextuple, now: &Sextuple, length: f64) -> Matrix6<f64> {
     let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
@@ -167,7 +168,7 @@ fn correction_gradient(before: &Sextuple, now: &Sextuple, length: f64) -> Matrix
     gradient
 }
 
-/// Change of Dᵀ S with the plain strains at the end of the step, where S = `stress` stays.
+/// Change of Dᵀ S with the plain strains at the end of the step, at constant S = `stress`.
 #[inline(always)]
 fn correction_curvature(before: &Sextuple, now: &Sextuple, stress: &Sextuple, length: f64) -> Matrix3<f64> {
     let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));

@@ -21,7 +21,7 @@ pub struct Slender<R> {
 }
 
 impl<R: Real> Slender<R> {
-    /// From the values across and along the line.
+    /// Returns the tensor of the values across and along the line.
     #[inline(always)]
     pub fn new([across, along]: [R; 2]) -> Slender<R> {
         Slender {
@@ -30,13 +30,13 @@ impl<R: Real> Slender<R> {
         }
     }
 
-    /// The inverse, from the masses across and along the line [kg].
+    /// Returns the inverse, from the masses across and along the line [kg].
     #[inline(always)]
     pub fn inverse(masses: [R; 2]) -> Slender<R> {
         Slender::new(masses.map(R::recip))
     }
 
-    /// The inverse of this matrix.
+    /// Returns the inverse of this matrix.
     #[inline(always)]
     pub fn inverted(self) -> Slender<R> {
         Slender::inverse([self.across, self.across + self.excess])

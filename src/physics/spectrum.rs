@@ -2,12 +2,14 @@
 //!
 //!   S(ω) ∝ ω⁻⁵ exp(−5/4 (ω/ω_p)⁻⁴) γ^exp(−½((ω − ω_p)/(σω_p))²),   σ = 0.07 up to ω_p, 0.09 above,   ∫S dω = m₀ = H_s²/16
 //!
-//! with γ = 1 for Pierson-Moskowitz. The factor in front is found by integration from ½ω_p to 5ω_p, beyond which 0.2 % of the energy
-//! would lie with γ = 1; an approximation of it, 5/16 H_s² ω_p⁴ (1 − 0.287 ln γ), is right to 2 % for 1 ≤ γ ≤ 7.
+//! with γ = 1 for Pierson-Moskowitz. The factor in front is found by integration from ½ω_p to 5ω_p, which leaves out
+//! 0.2 % of the energy with γ = 1; an approximation of it, 5/16 H_s² ω_p⁴ (1 − 0.287 ln γ), is right to 2 % for 1 ≤ γ
+//! ≤ 7.
 //!
-//! N components of one amplitude √(2m₀/N) stand for it: the range is cut into N bands of equal energy, and the frequency of each is
-//! drawn within its band in proportion to the energy there, so that no record repeats itself; phases are drawn evenly from a whole turn. Directions
-//! are drawn from D(θ) ∝ cos²ˢ(½(θ − θ₀)), component by component. The same seed gives the same sea, on another machine to rounding.
+//! N components of one amplitude √(2m₀/N) stand for the spectrum: the range is cut into N bands of equal energy. The
+//! frequency of each is drawn within its band in proportion to the energy there, so that no record repeats itself.
+//! Phases are drawn evenly from a whole turn. Directions are drawn from D(θ) ∝ cos²ˢ(½(θ − θ₀)), component by
+//! component. The same seed gives the same sea, on another machine to rounding.
 //!
 //! Source: Hasselmann et al. (1973), Deutsche Hydrographische Zeitschrift A8(12); Pierson & Moskowitz (1964), J. Geophys. Res. 69,
 //! 5181-5190; DNV-RP-C205 (2010), Environmental Conditions and Environmental Loads, sections 3.5.5 and 3.5.8; the spread after
@@ -93,7 +95,7 @@ impl Distribution {
         Distribution { start, width, sums }
     }
 
-    /// Where a part of the whole lies below [-].
+    /// Argument below which a part of the whole lies [-].
     fn quantile(&self, part: f64) -> f64 {
         let after = self.sums.partition_point(|sum| *sum <= part);
         let piece = after.clamp(1, PIECES) - 1;
@@ -178,7 +180,7 @@ mod tests {
         );
         assert_eq!(sea, same);
         assert!(sea.iter().zip(&other).all(|(a, b)| a.phase != b.phase));
-        // what this seed gives everywhere
+        // values of this seed on every machine
         assert_relative_eq!(
             sea[0].phase,
             TAU * {

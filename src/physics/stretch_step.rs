@@ -1,19 +1,20 @@
-//! Tension of a segment over a step of time, so that its spring gives back what it took.
+//! Tension of a segment over a time step, whose spring conserves energy.
 //!
 //! With the strains ε before and ε' after a step, the tension is the discrete gradient of the energy per unstretched length,
 //!
 //!   T̄ = (W(ε') − W(ε))/(ε' − ε),
 //!
-//! along q̄ = (d + d')/(l + l') of both chords d of the lengths l. T̄ q̄·(d' − d) = T̄ (l' − l) is then what the spring comes to hold, whether the
-//! segment turns, slackens or snaps within the step. The mean of the forces before and after does that only where the law is linear and nothing turns.
+//! along q̄ = (d + d')/(l + l') of both chords d of the lengths l. T̄ q̄·(d' − d) = T̄ (l' − l) is then the change of
+//! the spring's energy, whether the segment turns, slackens or snaps within the step. The mean of the forces before
+//! and after conserves energy only where the law is linear and nothing turns.
 //!
 //! Source: discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467; of springs Greenspan (1984), J. Comput. Phys. 56, 28-48. Valid for any law with
 //! an energy; its slope is not negative where W is convex.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Change of the strain, over the strain, below which the mean of both tensions is taken for that over the step [-]: then they differ by less than
-/// the difference of energies is rounded to.
+/// Relative change of the strain below which the mean of both tensions replaces the discrete gradient [-]: the two
+/// then differ by less than the rounding of the energy difference.
 const SMALL: f64 = 1e-5;
 
 /// A spring at a strain.
@@ -23,7 +24,7 @@ pub struct Spring {
     pub strain: f64,
     /// Tension W' [N].
     pub tension: f64,
-    /// Its slope with the strain [N].
+    /// Slope of the tension with the strain [N].
     pub slope: f64,
     /// Energy W per unstretched length [N].
     pub energy: f64,
@@ -36,12 +37,12 @@ pub struct Stretched {
     pub chord: Vector3<f64>,
     /// l [m].
     pub length: f64,
-    /// Its spring.
+    /// Spring of the segment.
     pub spring: Spring,
 }
 
 impl Stretched {
-    /// Direction of its chord [-]; zero where both nodes coincide.
+    /// Direction of the chord [-]; zero where both nodes coincide.
     #[inline(always)]
     pub fn direction(&self) -> Vector3<f64> {
         if self.length > 0.0 {
@@ -65,12 +66,12 @@ pub struct Mean {
     pub tension: f64,
     /// dT̄/dε' [N].
     pub slope: f64,
-    /// What of its work the spring does not keep, per unstretched length [N].
+    /// Part of the work that the spring does not store, per unstretched length [N].
     pub taken: f64,
 }
 
 impl Mean {
-    /// Of a spring, the discrete gradient of its energy.
+    /// Mean tension of a spring: the discrete gradient of its energy.
     #[inline(always)]
     pub fn of_spring(before: &Spring, after: &Spring) -> Mean {
         let change = after.strain - before.strain;
@@ -85,7 +86,7 @@ impl Mean {
         }
     }
 
-    /// Of both tensions, which is that of a linear spring.
+    /// Mean of both tensions, which is exact for a linear spring.
     #[inline(always)]
     pub fn of_tensions(before: &Spring, after: &Spring) -> Mean {
         Mean {
@@ -108,7 +109,7 @@ pub struct StretchStep {
 }
 
 impl StretchStep {
-    /// Of a tension between two states.
+    /// Step of a tension between two states.
     #[inline(always)]
     pub fn new([before, after]: [&Stretched; 2], mean: Mean) -> StretchStep {
         let (chords, length) = (before.chord + after.chord, before.length + after.length);
@@ -125,8 +126,8 @@ impl StretchStep {
         self.mean.tension * self.direction
     }
 
-    /// ∂(T̄ q̄)/∂d' [N/m] of a segment of an unstretched length [m] that has a direction `after` the step [-], with `across` [N] in the place of the tension
-    /// where it resists to turning.
+    /// ∂(T̄ q̄)/∂d' [N/m] of a segment of an unstretched length [m] that has a direction `after` the step [-], with
+    /// `across` [N] in place of the tension for its resistance to turning.
     #[inline(always)]
     pub fn stiffness(&self, unstretched: f64, after: Vector3<f64>, across: f64) -> Matrix3<f64> {
         let turning = across / self.length;

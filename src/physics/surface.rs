@@ -1,11 +1,11 @@
-//! A line that pierces the water's surface: how much of it is dry, and the energy of the buoyancy it lacks.
+//! A line that pierces the water's surface: its emerged part, and the energy of the buoyancy it loses.
 //!
-//! A straight piece of line of radius R has the height ζ(u) = (1 − u) ζ₀ + u ζ₁ over the water, 0 ≤ u ≤ 1. With the dry part a(ζ/R) of its
-//! cross-section, the halves that are lumped to its two ends are dry by
+//! A straight piece of line of radius R has the height ζ(u) = (1 − u) ζ₀ + u ζ₁ over the water, 0 ≤ u ≤ 1. With the
+//! dry part a(ζ/R) of its cross-section, the dry parts of the halves that are lumped to its two ends are
 //!
 //!   p₀ = 2 ∫ (1 − u) a du,   p₁ = 2 ∫ u a du,   ∂p/∂ζ = 2 ∫ [(1 − u)², u(1 − u); u(1 − u), u²] a' du,
 //!
-//! and of the buoyancy B of either half they lack B p₀ and B p₁, the gradient of the potential
+//! and these lose B p₀ and B p₁ of the buoyancy B of either half, the gradient of the potential
 //!
 //!   C = 2B ∫ χ du,   χ(ζ) = ∫ a dζ from far below: 0 deep under water, ζ in the air.
 //!
@@ -19,11 +19,11 @@
 //! same a, which moves no buoyancy along it. All integrals are exact: the wet, the crossing and the dry stretch of u apart, the crossing one
 //! by Gauss's four points.
 //!
-//! Where p changes, the equation of motion is M a = f without the impulse Ṁ v, as for [`super::point`]: slamming is not modelled.
+//! Where p changes, the equation of motion is M a = f without the impulse Ṁ v, as for [`super::point`]. Slamming is not modelled.
 //!
 //! Source: Archimedes' principle on the unstretched volume; lumping by the linear shape functions of a two-node element, e.g. Cook,
 //! Malkus & Plesha (1989), Concepts and Applications of Finite Element Analysis, section 2.6; the polynomial is fitted here. Valid for slopes
-//! of the water's surface that are small over a piece, and for lines thin beside their length.
+//! of the water's surface that are small over a piece, and for lines thin compared with their length.
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -37,7 +37,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// How much of a piece of line is out of the water.
+/// Emerged part of a piece of line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Emerged {
     /// Dry parts p₀, p₁ of the halves that belong to its ends [-].
@@ -46,8 +46,8 @@ pub struct Emerged {
     pub slopes: [f64; 3],
 }
 
-/// The dry part of a piece of line of `radius` R [m], positive, whose ends are at `heights` [m] over the water; `None` where all of it
-/// is under water.
+/// Emerged part of a piece of line of `radius` R [m], positive, whose ends are at `heights` [m] over the water;
+/// `None` where all of it is under water.
 #[inline]
 pub fn emerged(radius: f64, heights: [f64; 2]) -> Option<Emerged> {
     let piece = Piece::new(radius, heights)?;
@@ -70,7 +70,7 @@ pub fn emerged(radius: f64, heights: [f64; 2]) -> Option<Emerged> {
     Some(Emerged { parts, slopes })
 }
 
-/// ∫ χ du [m] of the same piece: the energy of the buoyancy that it lacks over its buoyancy.
+/// ∫ χ du [m] of the same piece: the energy of the buoyancy that it loses over its buoyancy.
 pub fn energy(radius: f64, heights: [f64; 2]) -> f64 {
     let Some(piece) = Piece::new(radius, heights) else {
         return 0.0;
@@ -88,16 +88,16 @@ pub fn slope_max(radius: f64) -> f64 {
     FRAC_2_PI / radius
 }
 
-/// A piece that is not all under water, from its lower to its higher end.
+/// Piece that is not fully submerged, from its lower to its higher end.
 struct Piece {
     radius: f64,
     /// Height of the lower end over the water [m].
     low: f64,
     /// Height of the higher end over the lower [m].
     rise: f64,
-    /// Whether the first end is the higher one.
+    /// True if the first end is the higher one.
     falls: bool,
-    /// u where the section comes out, and where it is out [-].
+    /// u where the section begins to emerge, and where it is fully emerged [-].
     start: f64,
     end: f64,
 }
@@ -123,7 +123,7 @@ impl Piece {
         })
     }
 
-    /// Points of the quadrature over what crosses the surface: u, weight and ζ/R [-].
+    /// Points of the quadrature over the part that crosses the surface: u, weight and ζ/R [-].
     fn crossing(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let width = self.end - self.start;
         let points = if width > 0.0 { &GAUSS[..] } else { &[] };
@@ -186,7 +186,7 @@ mod tests {
         for [low, high] in [[-3.0, 7.0], [-1.0, 1.0], [-9.0, 0.5]] {
             let at = emerged(RADIUS, [low, high]).unwrap();
             let over = high / (high - low);
-            // what is curved at the surface is of the order of the radius squared
+            // the curved part at the surface is of the order of the radius squared
             assert_relative_eq!(0.5 * (at.parts[0] + at.parts[1]), over, max_relative = 1e-12);
             assert_relative_eq!(at.parts[0], over * over, epsilon = 1e-3);
             let turned = emerged(RADIUS, [high, low]).unwrap();

@@ -1,9 +1,10 @@
 //! Tension of a line given at some strains: a monotone curve through the rows of a table.
 //!
-//! Between two rows the tension is the cubic Hermite polynomial with the slopes of [`rising_slopes`]. The least slope at the first row lets a line
-//! at rest resist the first pull. The curve is continuous with its slope, rises wherever the table rises, and goes on beyond the last row with
-//! the last slope (MoorDyn stays at the last tension there). Below zero strain it goes on with the first slope, which a line that cannot push does not
-//! feel. Its energy is the exact integral.
+//! Between two rows the tension is the cubic Hermite polynomial with the slopes of [`rising_slopes`]. The least slope
+//! at the first row gives a line at rest resistance to the first pull. The curve is continuous with its slope, rises
+//! wherever the table rises, and continues beyond the last row with the last slope (MoorDyn stays at the last tension
+//! there). Below zero strain it continues with the first slope, which does not affect a line that cannot push. Its
+//! energy is the exact integral.
 //!
 //! Source: [`crate::math::shape_preserving`]. Valid for rows that begin at (0, 0) and rise in strain and in tension.
 
@@ -13,27 +14,28 @@ use super::stretch::Stretch;
 use crate::math::hermite::Hermite;
 use crate::math::shape_preserving::rising_slopes;
 
-/// The curve through a table, over its steepest slope EA.
+/// Curve through a table, over its steepest slope EA.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TensionTable {
     pieces: Arc<[Piece]>,
 }
 
-/// The curve from one row to the next; everything over EA.
+/// Curve from one row to the next; everything over EA.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece {
-    /// Strain at its start [-].
+    /// Strain at the start of the piece [-].
     start: f64,
-    /// Its length in strain [-]; infinite behind the last row.
+    /// Length of the piece in strain [-]; infinite behind the last row.
     span: f64,
-    /// Energy per unstretched length at its start [-].
+    /// Energy per unstretched length at the start of the piece [-].
     energy: f64,
     /// Coefficients of powers of the strain from its start.
     powers: [f64; 4],
 }
 
 impl TensionTable {
-    /// Through rows of strain [-] and tension [N]; with it the steepest slope EA [N], which its values are divided by.
+    /// Curve through rows of strain [-] and tension [N], with its steepest slope EA [N], by which its values are
+    /// divided.
     pub fn through(rows: &[[f64; 2]]) -> (TensionTable, f64) {
         assert!(rows.len() > 1, "a curve goes through two rows at least");
         let (strains, tensions): (Vec<f64>, Vec<f64>) = rows.iter().map(|row| (row[0], row[1])).unzip();
@@ -81,7 +83,7 @@ impl TensionTable {
 }
 
 impl Piece {
-    /// The cubic through two rows with the slopes there.
+    /// Cubic through two rows with the slopes there.
     fn between([low, high]: [[f64; 2]; 2], [start, end]: [f64; 2]) -> Piece {
         let span = high[0] - low[0];
         let cubic = Hermite::new((low[0], low[1], start), (high[0], high[1], end));
@@ -104,7 +106,7 @@ impl Piece {
         }
     }
 
-    /// Its greatest slope: at one of its ends, or where the slope of the slope is zero.
+    /// Greatest slope of the piece: at one of its ends, or where the slope of the slope is zero.
     fn steepest(&self) -> f64 {
         let [_, b, c, d] = self.powers;
         if !self.span.is_finite() {

@@ -9,17 +9,20 @@
 //!   T = K ε + C ε̇ + G ε₁,  K = BA_s EA_d/B,  C = BA_s BA_d/B,  G = (BA_d EA₁ − BA_s EA_d)/B,
 //!   B ε̇₁ = EA_d (ε − ε₁) − EA₁ ε₁ + BA_d ε̇.
 //!
-//! The trapezoidal rule closes a step Δt of the implicit integrators: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) + BA_d Δε]/(B + ½Δt (EA_d + EA₁)), ε̄ the
-//! mean strain. It keeps the books of the dampers exactly, but rings where Δt is many times the relaxation time τ = B/(EA_d + EA₁); leapfrogs, whose forces do not
-//! wait for its end, take the exact solution for a constant strain rate, z = Δt/τ, r = EA_d/(EA_d + EA₁), p = r + (BA_d/B − r)(1 − e⁻ᶻ)/z:
+//! The trapezoidal rule closes a step Δt of the implicit integrators: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) +
+//! BA_d Δε]/(B + ½Δt (EA_d + EA₁)), ε̄ the mean strain. It accounts for the dissipation of the dampers exactly, but
+//! rings where Δt is many times the relaxation time τ = B/(EA_d + EA₁). The leapfrogs, whose forces do not depend on
+//! the end of the step, take the exact solution for a constant strain rate, z = Δt/τ, r = EA_d/(EA_d + EA₁), p = r +
+//! (BA_d/B − r)(1 − e⁻ᶻ)/z:
 //!
 //!   ε₁' = e⁻ᶻ ε₁ + (r (1 − e⁻ᶻ) − p) ε + p ε'.
 //!
 //! A rope that would push carries nothing, and its slow part contracts by itself, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear
 //! solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
 //!
-//! The slow spring holds ½EA₁ ε₁², the fast one ½EA_d e² of e = ε − ε₁ while it is stretched; what work goes beyond that is lost. A step within which the fast
-//! one slackens or snaps makes nothing of it: there it pulls with the discrete gradient of its energy, and its damper with BA_d (e'₊ − e₊)/Δt.
+//! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² of e = ε − ε₁ while it is stretched; the rest of the work
+//! is dissipated. A step within which the fast one slackens or snaps creates no energy: there it pulls with the
+//! discrete gradient of its energy, and its damper with BA_d (e'₊ − e₊)/Δt.
 //!
 //! Source: the law of MoorDyn's `EA_s|EA_d`, `BA_s|BA_d` line types, `source/Line.cpp` of MoorDyn-C, after Hall, Duong & Lozon (2023), IOWTC2023, on
 //! semi-taut moorings with polyester ropes; closed forms derived here. Valid for small strain and EA_d > EA_s > 0, BA_s > 0.
@@ -47,36 +50,36 @@ pub struct Viscoelastic {
     pub contraction: f64,
 }
 
-/// What a step comes to.
+/// Result of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViscoelasticStep {
     /// Slow strain ε₁' at its end [-].
     pub slow: f64,
-    /// Its slope with the strain at the end of the step [-].
+    /// Slope of ε₁' with the strain at the end of the step [-].
     pub slow_slope: f64,
-    /// Tension over the step, and what the dampers take.
+    /// Tension over the step, and the dissipation of the dampers.
     pub mean: Mean,
 }
 
-/// How the memory goes on over a step in which the strain rate is constant: ε₁' = `kept` ε₁ + `first` ε + `last` ε', or `slack` ε₁ where
-/// nothing is carried.
+/// Evolution of the memory over a step in which the strain rate is constant: ε₁' = `kept` ε₁ + `first` ε + `last` ε',
+/// or `slack` ε₁ where nothing is carried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relaxation {
     /// e⁻ᶻ [-].
     pub kept: f64,
-    /// Of the strain before, r (1 − e⁻ᶻ) − p [-].
+    /// Factor of the strain before, r (1 − e⁻ᶻ) − p [-].
     pub first: f64,
-    /// Of the strain afterwards, p [-].
+    /// Factor of the strain afterwards, p [-].
     pub last: f64,
-    /// What a slack rope keeps [-].
+    /// Factor of the memory in a slack rope [-].
     pub slack: f64,
 }
 
-/// How the fast part pulls over a step.
+/// Pull of the fast part over a step.
 struct Pull {
-    /// [N]
+    /// Tension [N].
     tension: f64,
-    /// Its slope with the strain afterwards [N].
+    /// Slope of the tension with the strain afterwards [N].
     slope: f64,
 }
 
@@ -162,7 +165,7 @@ fn roots([a, b, c]: [f64; 3]) -> [f64; 2] {
 }
 
 impl Viscoelastic {
-    /// From static and dynamic stiffness [N] and the damping of each [N s].
+    /// Law from static and dynamic stiffness [N] and the damping of each [N s].
     pub fn new([static_ea, dynamic_ea]: [f64; 2], [slow_damping, fast_damping]: [f64; 2]) -> Self {
         let slow = dynamic_ea * static_ea / (dynamic_ea - static_ea);
         let yielding = 1.0 / (slow_damping + fast_damping);
@@ -208,13 +211,13 @@ impl Viscoelastic {
         strain.max(0.0) * self.fast / (self.fast + self.slow)
     }
 
-    /// Tension without the damper C, before it is cut at zero [N].
+    /// Tension without the damper C, before it is limited to zero [N].
     #[inline(always)]
     pub fn elastic(&self, strain: f64, slow: f64) -> f64 {
         self.stiffness * strain + self.memory * slow
     }
 
-    /// What becomes of the memory in `dt` [s].
+    /// Evolution of the memory in `dt` [s].
     pub fn relaxation(&self, dt: f64) -> Relaxation {
         let both = self.fast + self.slow;
         let z = dt * both * self.yielding;
@@ -236,7 +239,7 @@ impl Viscoelastic {
         }
     }
 
-    /// A step of `dt` [s] between two strains [-].
+    /// Step of `dt` [s] between two strains [-].
     pub fn step(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
         if self.yielding == 0.0 {
             return self.plain_step(strains, gradient(self.fast, strains), dt);
@@ -249,7 +252,7 @@ impl Viscoelastic {
             let spring = gradient(self.fast, [before, after]);
             spring.tension + damper * (after.max(0.0) - before.max(0.0))
         };
-        // the slow part pulls with nothing where it contracts by itself, but where it would go on beyond no strain
+        // the slow part pulls with nothing where it contracts freely, but where it would go on beyond no strain
         let resists = if contracted > 0.0 {
             0.0
         } else {
@@ -280,7 +283,7 @@ impl Viscoelastic {
         series.step([relaxed, after], Pull { tension, slope })
     }
 
-    /// A step as if the fast part could push at its end, which is what [`Viscoelastic::step`] comes to where it pulls throughout.
+    /// Step as if the fast part could push at its end, which equals [`Viscoelastic::step`] where it pulls throughout.
     pub fn held(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
         let (damper, stiffness) = (self.fast_damping / dt, 0.5 * self.fast);
         let slope = stiffness + damper;
@@ -304,7 +307,7 @@ impl Viscoelastic {
         series.step([relaxed, after], Pull { tension, slope })
     }
 
-    /// A step without memory, of a spring that has a mean tension.
+    /// Step without memory, of a spring that has a mean tension.
     fn plain_step(&self, strains: [f64; 2], spring: Mean, dt: f64) -> ViscoelasticStep {
         let pulled = strains.map(|strain| strain.max(0.0));
         let (damper, change) = (self.fast_damping / dt, strains[1] - strains[0]);
@@ -337,7 +340,7 @@ impl Viscoelastic {
         }
     }
 
-    /// Energy held per unstretched length [N].
+    /// Stored energy per unstretched length [N].
     #[inline(always)]
     pub fn energy(&self, strain: f64, slow: f64) -> f64 {
         let fast = (strain - slow).max(0.0);
@@ -438,7 +441,8 @@ mod tests {
         }
     }
 
-    /// Ropes with all, one and none of the dampers, and steps that stay taut, slacken, snap and stay slack, with what a slack one has kept.
+    /// Ropes with all, one and none of the dampers, and steps that stay taut, slacken, snap and stay slack, with the
+    /// memory of a slack one.
     fn all_steps() -> impl Iterator<Item = (Viscoelastic, [f64; 2], f64, f64)> {
         let laws = [0.0, 1.1e7, 4.0e8].map(rope).into_iter();
         let laws = laws.chain([Viscoelastic::plain(1.0e8, 1.0e5)]);

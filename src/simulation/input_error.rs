@@ -1,16 +1,18 @@
-//! How much of the motion that a host gives its extrapolation misses, and what that does to tension.
+//! Error of the extrapolation of a host's motion, and the resulting error of tension.
 //!
-//! A host that gives displacements at the start of every communication step h is extrapolated over it. What it then gives at the end differs from
-//! the path's end by m, and the path has to be bent back at a velocity of m/h. With the velocity v of the given motion this is the share
+//! Displacements that a host gives at the start of every communication step h are extrapolated over it. The next
+//! sample differs from the path's end by m, and the path has to be bent back at a velocity of m/h. With the velocity
+//! v of the given motion the relative error is
 //!
 //! e = √(⟨m²/h²⟩/⟨v²⟩)
 //!
-//! of it. The error of tension, RMS over standard deviation, is about 2.5 e: 0.7 to 1.7 times that on `lindahl_fast`, `oc3_catenary` and
+//! of the motion. The error of tension, RMS over standard deviation, is about 2.5 e: 0.7 to 1.7 times that on `lindahl_fast`, `oc3_catenary` and
 //! `taut_polyester` with 12 to 32 steps a period, displacements only, and with 12 and 17 with velocities (`tests/systems/host_edge.rs`). The error falls with
 //! h³, as m/h does.
 //!
-//! Mean values forget with the time of ten periods, of the frequency √(⟨a²⟩/⟨v²⟩) with the acceleration a. The first samples do not count, from
-//! which no motion can be known. The fastest part of the motion dominates the measure, as it does the error of tension.
+//! Mean values decay with the time of ten periods, of the frequency √(⟨a²⟩/⟨v²⟩) with the acceleration a. The first
+//! samples, which do not determine a motion, are not counted. The fastest part of the motion dominates the measure,
+//! as it does the error of tension.
 
 use std::f64::consts::TAU;
 
@@ -24,23 +26,23 @@ use crate::dynamics::motion::AxesPath;
 use crate::model::{Model, Role};
 use crate::scene::Reconstruction;
 
-/// Error of tension over the share of the velocity that is missed [-].
+/// Error of tension over the relative error of velocity [-].
 const GAIN: f64 = 2.5;
-/// Periods of the motion over which mean values forget [-].
+/// Periods of the motion over which mean values decay [-].
 const PERIODS: f64 = 10.0;
-/// Periods that must have passed before a warning [-].
+/// Periods before a warning [-].
 const PERIODS_MIN: f64 = 3.0;
-/// Samples that do not count, from the start [-].
+/// Number of samples from the start that are not counted [-].
 const SAMPLES_MIN: usize = 8;
-/// Share of the scene's size that may be missed without any effect [-].
+/// Share of the scene's size below which an error has no effect [-].
 const NEGLIGIBLE: f64 = 1e-7;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;
 
-/// Mean squares of the motion given and of what its extrapolation missed.
+/// Mean squares of the motion given and of its extrapolation error.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct InputRecord {
-    /// Samples so far, up to those that do not count [-].
+    /// Samples so far, up to the number not counted [-].
     samples: usize,
     /// Time in the sums [s].
     time: f64,
@@ -56,13 +58,13 @@ pub(super) struct InputRecord {
     step: f64,
 }
 
-/// Squares of one sample, summed over all bodies: of m, v and a.
+/// Squares of one sample, summed over all bodies: those of m, v and a.
 type Squares = [f64; 3];
 
 impl InputRecord {
-    /// Takes in what is given at a time [s], before the paths are continued by it.
+    /// Records the inputs at a time [s], before they continue the paths.
     #[inline(never)]
-    pub fn take(&mut self, model: &Model, scale: &Scale, paths: &Paths, inputs: &Inputs, t: f64) {
+    pub(super) fn take(&mut self, model: &Model, scale: &Scale, paths: &Paths, inputs: &Inputs, t: f64) {
         let Some(gaps) = paths.gaps(t) else {
             return;
         };
@@ -107,7 +109,7 @@ impl InputRecord {
         }
     }
 
-    /// Estimated error of tension over its variation [-]; 0 where what is missed is negligible against a size [m].
+    /// Estimated error of tension over its variation [-]; 0 where the error is negligible compared with a size [m].
     fn error(&self, size: f64) -> f64 {
         let negligible = NEGLIGIBLE * size / self.step;
         if self.speed <= 0.0 || self.missed <= negligible * negligible * self.time {
@@ -130,7 +132,7 @@ fn add(squares: &mut Squares, path: &AxesPath, place: Vector3<f64>, gaps: [f64; 
 }
 
 impl Simulation {
-    /// The record with what is given at the start of the next step, where that is extrapolated.
+    /// Record including the inputs at the start of the next step, where these are extrapolated.
     pub(super) fn record_inputs(&self) -> InputRecord {
         let snapshot = &self.snapshot;
         let mut record = snapshot.input_record;
@@ -143,13 +145,13 @@ impl Simulation {
         record
     }
 
-    /// Estimated error of tension, RMS over its standard deviation, from extrapolating over the last ten periods of the motion what the host gave
-    /// [-]; 0 where nothing is extrapolated.
+    /// Estimated error of tension, RMS over its standard deviation, from the extrapolation of the host's inputs over
+    /// the last ten periods of the motion [-]; 0 where nothing is extrapolated.
     pub fn input_error(&self) -> f64 {
         self.snapshot.input_record.error(self.scale.size)
     }
 
-    /// What a host should know of its inputs where their extrapolation costs more than the tolerance allows.
+    /// Warning on the inputs of a host whose extrapolation costs more than the tolerance allows.
     pub fn input_warning(&self) -> Option<String> {
         let record = &self.snapshot.input_record;
         let (error, tolerance) = (self.input_error(), self.model.solver.tolerance);
@@ -170,7 +172,7 @@ impl Simulation {
     }
 }
 
-/// A positive number with one digit, no greater than it is.
+/// Positive number with one digit, rounded down.
 fn rounded_down(number: f64) -> f64 {
     let unit = 10.0_f64.powi(number.log10().floor() as i32);
     let digits = (number / unit).floor().max(1.0);

@@ -1,4 +1,4 @@
-//! What a host says to a simulation: where points and vessels are, which lines let go, what winches pay out.
+//! Inputs of a host to a simulation: positions of points and vessels, releases of lines, length changes of winches.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -8,20 +8,20 @@ use crate::dynamics::motion::rates;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, Model};
 
-/// What a host has said about points and vessels.
+/// Inputs of a host for points and vessels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Inputs {
     pub points: Vec<PointInput>,
     pub vessels: Vec<VesselInput>,
-    /// Whether each line is to let go.
+    /// Release command of each line.
     pub releases: Vec<bool>,
-    /// What the winches are to have paid out, by line [m].
+    /// Length changes of the winches, by line [m].
     pub length_changes: Vec<f64>,
 }
 
 impl Inputs {
-    /// Nothing said yet.
-    pub fn new(model: &Model) -> Inputs {
+    /// Inputs before any is set.
+    pub(super) fn new(model: &Model) -> Inputs {
         Inputs {
             points: vec![PointInput::default(); model.points.len()],
             vessels: vec![VesselInput::default(); model.vessels.len()],
@@ -31,16 +31,17 @@ impl Inputs {
     }
 }
 
-/// What a host has said about a point.
+/// Inputs of a host for a point.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct PointInput {
     /// Displacement from the reference position [m].
     pub displacement: [f64; 3],
-    /// Velocity [m/s], and where it is told rather than derived from the displacements, as [`rates`] has them.
+    /// Velocity [m/s], and the axes along which it is given rather than derived from the displacements, as returned
+    /// by [`rates`].
     pub rates: [[f64; 3]; 2],
 }
 
-/// What a host has said about a vessel.
+/// Inputs of a host for a vessel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct VesselInput {
     /// Displacement from the reference position [m]; roll, pitch and yaw from the reference attitude [rad].
@@ -51,7 +52,7 @@ pub(super) struct VesselInput {
 
 impl VesselInput {
     /// Rates of the pose [m/s, rad/s]. Those of the angles need the whole angular velocity.
-    pub fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
+    pub(super) fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
         let [vx, vy, vz, wx, wy, wz] = self.velocity;
         let [_, _, _, roll, pitch, yaw] = self.pose;
         let turning = match (wx, wy, wz) {
@@ -66,7 +67,7 @@ impl VesselInput {
 }
 
 impl Simulation {
-    /// Sets where a coupled point is now, from its reference position [m].
+    /// Sets the present displacement of a coupled point from its reference position [m].
     pub fn set_displacement(&mut self, point: usize, displacement: [f64; 3]) {
         self.snapshot.inputs.points[point].displacement = displacement;
     }
@@ -76,7 +77,8 @@ impl Simulation {
         self.snapshot.inputs.points[point].displacement
     }
 
-    /// Sets how a coupled point moves now [m/s]; axes without a velocity are derived from the displacements.
+    /// Sets the present velocity of a coupled point [m/s]; axes without a velocity are derived from the
+    /// displacements.
     pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
         self.snapshot.inputs.points[point].rates = rates(velocity);
     }
@@ -113,23 +115,24 @@ impl Simulation {
         }
     }
 
-    /// Sets how a vessel moves now: velocity of its origin [m/s] and angular velocity [rad/s], both in global axes. What is absent is
-    /// derived from the poses; the rotation needs all three components.
+    /// Sets the present motion of a vessel: velocity of its origin [m/s] and angular velocity [rad/s], both in global
+    /// axes. Absent components are derived from the poses; the rotation needs all three components.
     pub fn set_vessel_velocity(&mut self, vessel: usize, velocity: [Option<f64>; 6]) {
         self.snapshot.inputs.vessels[vessel].velocity = velocity;
     }
 
-    /// Says whether a line is to let go of the point that its scene names; it does so at the next step, and for good.
+    /// Sets the release command of a line, which detaches it from the point that its scene names; it is permanent
+    /// from the next step on.
     pub fn set_release(&mut self, line: usize, release: bool) {
         self.snapshot.inputs.releases[line] = release;
     }
 
-    /// Whether a line is to let go, as set.
+    /// Returns the release command of a line.
     pub fn release(&self, line: usize) -> bool {
         self.snapshot.inputs.releases[line]
     }
 
-    /// Whether ends A and B of a line are released from their points.
+    /// Returns whether ends A and B of a line are released from their points.
     pub fn released(&self, line: usize) -> [bool; 2] {
         self.snapshot.state.lines[line].released
     }

@@ -14,7 +14,7 @@ use crate::math::unit;
 use crate::model::{Line, Model, Point, Role};
 use crate::scene::Reconstruction;
 
-/// The paths of everything that a host moves, told at the same times.
+/// Paths of everything that a host moves, sampled at the same times.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Paths {
     clock: Clock,
@@ -44,14 +44,14 @@ impl Clone for Paths {
     }
 }
 
-/// Whether a host moves a point.
+/// Returns whether a host moves a point.
 pub(super) fn is_coupled(point: &Point) -> bool {
     matches!(point.role, Role::Coupled { .. })
 }
 
 impl Paths {
-    /// At rest at a time [s] where the inputs say.
-    pub fn at_rest(model: &Model, time: f64, inputs: &Inputs, follows_scene: bool) -> Paths {
+    /// Paths at rest at a time [s] at the places of the inputs.
+    pub(super) fn at_rest(model: &Model, time: f64, inputs: &Inputs, follows_scene: bool) -> Paths {
         let points = model.points.iter().zip(&inputs.points);
         let coupled = points.filter(|(point, _)| is_coupled(point));
         let place = |(point, input): (&Point, &PointInput)| {
@@ -67,7 +67,7 @@ impl Paths {
     }
 
     /// Times from the newest sample to now, `time` [s], and from the one before to the newest [s], where both are known and in order.
-    pub fn gaps(&self, time: f64) -> Option<[f64; 2]> {
+    pub(super) fn gaps(&self, time: f64) -> Option<[f64; 2]> {
         self.clock.gaps(time)
     }
 
@@ -100,7 +100,8 @@ impl Paths {
     }
 }
 
-/// Makes paths those `before` continued by what a host says of the coupled points and the vessels, for the vector unit of the machine.
+/// Continuation of the paths `before` by a host's samples of the coupled points and the vessels, for the vector unit
+/// of the machine.
 struct Extend<'a> {
     paths: &'a mut Paths,
     before: &'a Paths,

@@ -25,7 +25,7 @@ use super::paths::{Paths, is_coupled};
 const ERROR_MAX: f64 = 1e-12;
 /// Pieces of a bridge, at most [-].
 const PIECES_MAX: usize = 16;
-/// Rounding of the times that are asked for, over a piece [-].
+/// Rounding of the requested times, over a piece [-].
 const ROUNDING: f64 = 1e-6;
 
 /// Source of prescribed motions: the model, and the paths of a communication step.
@@ -38,7 +38,7 @@ pub(super) struct MotionSource<'a> {
 
 impl<'a> MotionSource<'a> {
     /// Along the scene's own motion or the paths of a host.
-    pub fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> MotionSource<'a> {
+    pub(super) fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> MotionSource<'a> {
         MotionSource {
             model,
             paths,
@@ -47,7 +47,7 @@ impl<'a> MotionSource<'a> {
     }
 
     /// A point at time `t` [s].
-    pub fn point(&self, point: usize, t: f64) -> Kinematics {
+    pub(super) fn point(&self, point: usize, t: f64) -> Kinematics {
         let reference = self.model.points[point].reference;
         let moved = |k: Kinematics| Kinematics {
             position: reference + k.position,
@@ -83,11 +83,11 @@ impl<'a> MotionSource<'a> {
     }
 
     /// A vessel at time `t` [s].
-    pub fn frame(&self, vessel: usize, t: f64) -> Frame {
+    pub(super) fn frame(&self, vessel: usize, t: f64) -> Frame {
         self.frame_at(vessel, &self.pose(vessel, t))
     }
 
-    /// A vessel at a pose of what it follows.
+    /// Frame of a vessel at a pose of its motion.
     fn frame_at(&self, vessel: usize, pose: &Pose) -> Frame {
         let data = &self.model.vessels[vessel];
         match self.vessel_motion(vessel) {
@@ -126,7 +126,7 @@ struct Bridge {
     rate: f64,
     /// Empty where the motion must be evaluated at every internal step.
     pieces: Vec<Quintic>,
-    /// What bounds the error where a motion of the scene is bridged.
+    /// Bounds of the error where a motion of the scene is bridged.
     derivatives: Option<Derivatives>,
 }
 
@@ -149,7 +149,8 @@ impl Bridge {
         pieces(bounds.map_or(0.0, |bounds| bounds.shift(length)), most)
     }
 
-    /// Bridges a span of time [s] in `count` pieces from end to end, between which `at` tells where the point is.
+    /// Bridges a span of time [s] in `count` pieces from end to end, between which `at` returns the kinematics of the
+    /// point.
     fn build(
         &mut self,
         [start, end]: [f64; 2],
@@ -176,7 +177,7 @@ impl Bridge {
         }
     }
 
-    /// Where the point is at time `t` [s]; without how it turns.
+    /// Kinematics of the point at time `t` [s], without its rotation.
     #[inline]
     fn at(&self, t: f64) -> Option<Kinematics> {
         let count = self.pieces.len();
@@ -195,7 +196,8 @@ impl Bridge {
     }
 }
 
-/// Where a point that a host moves is at both ends of a step, along x, y and z: position [m], velocity [m/s] and acceleration [m/s²].
+/// Ends of a step of a point that a host moves, along x, y and z: position [m], velocity [m/s] and acceleration
+/// [m/s²].
 pub(super) type HostEnds = [[Lanes; 3]; 2];
 
 /// Prescribed motions over a communication step.
@@ -203,12 +205,12 @@ pub(super) type HostEnds = [[Lanes; 3]; 2];
 pub(super) struct PrescribedMotion {
     /// Start and end of the step [s].
     span: [f64; 2],
-    /// Where the points are then, but those that a host moves.
+    /// Kinematics of the points at both ends, except those that a host moves.
     ends: Vec<[Kinematics; 2]>,
-    /// The same of these, told with their paths.
+    /// Ends of the points that a host moves, given with their paths.
     hosted: Vec<HostEnds>,
     evaluations: Vec<Evaluation>,
-    /// Whether anything moves but by forces, or as a host says.
+    /// True if anything moves by prescribed motion or by a host.
     moves: bool,
     /// Bounds of the derivatives of the motions of vessels, where these are motions of the scene other than cubics.
     vessels: Vec<Option<Derivatives>>,
@@ -217,8 +219,8 @@ pub(super) struct PrescribedMotion {
 }
 
 impl PrescribedMotion {
-    /// For a model whose points follow the scene, or a host; `choices` are those of its networks.
-    pub fn new<'a>(
+    /// Motion of a model whose points follow the scene, or a host; `choices` are those of its networks.
+    pub(super) fn new<'a>(
         model: &Model,
         follows_scene: bool,
         choices: impl Iterator<Item = &'a Choice>,
@@ -267,17 +269,17 @@ impl PrescribedMotion {
         }
     }
 
-    /// Where the points that a host moves are at both ends of the next span, for those who know their paths.
-    pub fn hosted(&mut self) -> &mut [HostEnds] {
+    /// Ends of the points that a host moves at both ends of the next span, to be filled in from their paths.
+    pub(super) fn hosted(&mut self) -> &mut [HostEnds] {
         &mut self.hosted
     }
 
     /// Makes ready for a span of time [s].
-    pub fn prepare(&mut self, at: &MotionSource, span: [f64; 2]) {
+    pub(super) fn prepare(&mut self, at: &MotionSource, span: [f64; 2]) {
         let goes_on = self.span[1] == span[0];
         self.span = span;
         if at.follows_scene {
-            // and not a host: what the scene does not move rests
+            // without a host, points that the scene does not move are at rest
             let paths = self.hosted.iter_mut().zip(&at.paths.points);
             paths.for_each(|(ends, path)| *ends = path.0.ends());
         }
@@ -346,9 +348,10 @@ impl PrescribedMotion {
         }
     }
 
-    /// A point at time `t` [s] of the span; how it turns is told at its ends, and everywhere where lines are clamped.
+    /// Kinematics of a point at time `t` [s] of the span; its rotation is given at the ends, and everywhere where
+    /// lines are clamped.
     #[inline(always)]
-    pub fn point(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
+    pub(super) fn point(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
         let [start, end] = self.span;
         match &self.evaluations[point] {
             Evaluation::Host(path) if t == start || t == end => {
@@ -358,7 +361,7 @@ impl PrescribedMotion {
         }
     }
 
-    /// [`PrescribedMotion::point`] but at the ends of what the host says.
+    /// [`PrescribedMotion::point`] except at the ends of a host's samples.
     #[inline(never)]
     fn other(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
         if let Evaluation::Host(path) = &self.evaluations[point] {
@@ -390,7 +393,8 @@ fn knot_time([start, end]: [f64; 2], knot: usize, count: Option<usize>) -> f64 {
     start + (end - start) * (knot as f64 / count as f64)
 }
 
-/// Pieces that a span needs whose sixth derivative times its sixth power is at most this [m]; `None` where they are more than `most`.
+/// Number of pieces of a span whose sixth derivative times its sixth power is at most this [m]; `None` where it
+/// exceeds `most`.
 fn pieces(sixth: f64, most: usize) -> Option<usize> {
     let excess = sixth * QUINTIC_ERROR / ERROR_MAX;
     (1..=most.min(PIECES_MAX)).find(|&count| (count as f64).powi(6) >= excess)

@@ -1,4 +1,4 @@
-//! What a simulation tells of itself: forces, tensions, shapes and energies.
+//! Results of a simulation: forces, tensions, shapes and energies.
 
 use std::cell::OnceCell;
 
@@ -18,7 +18,7 @@ use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
 
-/// How far a vessel in a current goes to either side to tell its stiffness [m, rad].
+/// Displacement of a vessel in a current to either side for its difference quotients of stiffness [m, rad].
 const ASIDE: f64 = 1e-3;
 
 /// A node of a line's profile.
@@ -34,11 +34,11 @@ pub struct ProfileNode {
     pub z: f64,
     /// Effective tension [N].
     pub tension: f64,
-    /// How it bends, where the line has bending stiffness.
+    /// Curvature and moment, where the line has bending stiffness.
     pub bending: Option<NodeBending>,
 }
 
-/// How a line bends at a node.
+/// Curvature and moment of a line at a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct NodeBending {
     /// Curvature [1/m].
@@ -69,7 +69,7 @@ struct LineReactions {
 
 impl Reactions {
     /// Allocates for a model; nothing is evaluated.
-    pub fn new(model: &Model) -> Reactions {
+    pub(super) fn new(model: &Model) -> Reactions {
         Reactions {
             energy: OnceCell::new(),
             vessels: vec![OnceCell::new(); model.vessels.len()],
@@ -78,7 +78,7 @@ impl Reactions {
     }
 
     /// Drops all values, for another state.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.energy.take();
         for force in &mut self.vessels {
             force.take();
@@ -142,7 +142,7 @@ impl Simulation {
         }
     }
 
-    /// Whether a current acts on anything that hangs together with a vessel.
+    /// Returns whether a current acts on anything that hangs together with a vessel.
     fn drifts(&self, vessel: usize) -> bool {
         let model = &*self.model;
         let holds = |network: &&Network| {
@@ -213,14 +213,14 @@ impl Simulation {
         hung
     }
 
-    /// Where the origin of a vessel is now [m].
+    /// Present place of the origin of a vessel [m].
     fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
         let snapshot = &self.snapshot;
         let at = MotionSource::new(&self.model, &snapshot.paths, snapshot.follows_scene);
         at.frame(vessel, snapshot.state.time).origin.position
     }
 
-    /// Moment [N m] of the lines that are clamped to a point on what holds it, in global axes.
+    /// Moment [N m] of the lines that are clamped to a point on its support, in global axes.
     pub fn end_moment(&self, point: usize) -> Vector3<f64> {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let at = &state.points[point];
@@ -238,7 +238,8 @@ impl Simulation {
         attached.iter().filter_map(moment).sum()
     }
 
-    /// Force of the mooring on a point [N]: what a vessel feels there, of the lines and, where forces do not move the point, of its own mass.
+    /// Force of the mooring on a point [N]: the load on a vessel there, from the lines and, where forces do not move
+    /// the point, from its mass.
     pub fn end_force(&self, point: usize) -> [f64; 3] {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let data = &model.points[point];
@@ -333,7 +334,7 @@ impl Simulation {
             .map_or_else(|| chords.sum(), |closed_form| closed_form.stretched_length)
     }
 
-    /// What the closed-form catenary of a quasi-static line says of it now.
+    /// Closed-form catenary of a quasi-static line in the present state.
     fn closed_form(&self, line: usize) -> Option<&ClosedForm> {
         self.snapshot.state.lines[line].closed_form.as_ref()
     }
@@ -366,8 +367,8 @@ impl Simulation {
             .collect()
     }
 
-    /// Tension of node `i` of a line as MoorDyn-C writes it [N], damping within the line included: at an end that of the end's segment, in
-    /// between the size of the mean of the two segments beside the node, as vectors. [`Simulation::tension_a`] and
+    /// Tension of node `i` of a line as MoorDyn-C writes it [N], damping within the line included: at an end that of the end's segment,
+    /// at an inner node half the magnitude of the vector sum of the two adjacent segments. [`Simulation::tension_a`] and
     /// [`Simulation::tension_b`] are the forces on the points at the ends, with the half segment's weight, drag and inertia.
     pub fn segment_tension(&self, line: usize, i: usize) -> f64 {
         let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
@@ -481,7 +482,7 @@ impl Simulation {
         *energy.get_or_init(|| self.work.energy(&self.model, &self.snapshot.state))
     }
 
-    /// Energy balance since the start, where the scene asks for it
+    /// Energy balance since the start, where the scene requests it
     /// ([`Output::energy_balance`](crate::scene::Output::energy_balance)).
     pub fn energy_balance(&self) -> Option<EnergyBalance> {
         let mut balance = self.snapshot.balance?;
@@ -500,7 +501,7 @@ impl Simulation {
     }
 }
 
-/// Length whose weight the contact springs carry [m].
+/// Length of which the contact springs carry the weight [m].
 fn laid_length(line: &Line, state: &LineState) -> f64 {
     let Some(contact) = &line.nodes.contact else {
         return 0.0;

@@ -1,7 +1,7 @@
-//! The size of a scene, and how far inputs may lead from it.
+//! Size of a scene, and the limits of inputs that follow from it.
 //!
-//! Beyond some thousand times the size of a scene the equations still have solutions, of rounding: such inputs are a wrong unit or a host that has
-//! lost its stability, and are refused before anything is solved.
+//! Beyond some thousand times the size of a scene the equations still have solutions, dominated by rounding. Such
+//! inputs are a wrong unit or come from an unstable host, and are refused before anything is solved.
 
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ const TURNS_MAX: f64 = 6283.0;
 const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 const RATES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
 
-/// What lengths of a scene inputs are compared with.
+/// Lengths of a scene with which inputs are compared.
 #[derive(Debug, Clone)]
 pub(super) struct Scale {
     /// Greatest length of a line or distance between two points [m].
@@ -28,7 +28,7 @@ pub(super) struct Scale {
 
 impl Scale {
     /// Of a model.
-    pub fn new(model: &Model) -> Scale {
+    pub(super) fn new(model: &Model) -> Scale {
         let lengths = model.lines.iter().map(|line| {
             let sections = line.sections.iter();
             sections.map(|section| section.length).sum::<f64>()
@@ -53,7 +53,8 @@ impl Scale {
         }
     }
 
-    /// Refuses inputs of a step of `length` [s] that lead too far, before anything is solved: the body and what is wrong.
+    /// Refuses inputs of a step of `length` [s] that exceed the limits, before anything is solved: names the body and
+    /// the fault.
     fn check(&self, model: &Model, inputs: &Inputs, length: f64) -> Result<(), (Body, String)> {
         let reach = REACH * self.size;
         for (index, point) in model.points.iter().enumerate() {
@@ -74,13 +75,13 @@ impl Scale {
     }
 
     /// Refuses the inputs of a start.
-    pub fn check_start(&self, model: &Model, inputs: &Inputs) -> Result<(), SceneError> {
+    pub(super) fn check_start(&self, model: &Model, inputs: &Inputs) -> Result<(), SceneError> {
         self.check(model, inputs, 0.0)
             .map_err(|(_, problem)| SceneError::new("", problem))
     }
 
     /// Refuses the inputs of a step of `length` [s] from a time [s].
-    pub fn check_step(
+    pub(super) fn check_step(
         &self,
         model: &Model,
         inputs: &Inputs,

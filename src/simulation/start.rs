@@ -1,4 +1,4 @@
-//! How a simulation starts: at rest, where the scene or its static equilibrium says.
+//! Start of a simulation: at rest, at the initial shapes of the scene or in its static equilibrium.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,12 +17,12 @@ use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
 use crate::statics::{self, StaticsError, catenary_network, equilibrium, guess};
 
-/// What becomes of lines that are given a shape to start on.
+/// Treatment of lines with an initial shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shapes {
     /// They start on it.
     AsGiven,
-    /// They come to rest from it.
+    /// Initial shapes from which lines move to rest.
     Equilibrium,
 }
 
@@ -121,7 +121,8 @@ fn take_shapes(model: &Model, number: usize, state: &mut State) {
     }
 }
 
-/// Gives beams their frames at time `t` [s], and rest where no shape is given or all are to be at rest; `attitude` tells how a point has turned.
+/// Gives beams their frames at time `t` [s], and rest where no shape is given or all start at rest; `attitude`
+/// returns the rotation of a point.
 fn rest_beams(
     model: &Model,
     state: &mut State,
@@ -176,8 +177,8 @@ fn solve_catenary(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) 
     catenary::solve(&sections, span, b.z - a.z, bed).ok()
 }
 
-/// The closed-form catenary of a line in its reference configuration; none where an end is free, or where it would come out of the
-/// water, of which the closed form knows nothing.
+/// Closed-form catenary of a line in its reference configuration; none where an end is free, or where the line would
+/// rise out of the water, which the closed form does not model.
 pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
     let ends = line.ends.map(|point| &model.points[point]);
     if ends.iter().any(|point| point.free().is_some()) {

@@ -1,4 +1,4 @@
-//! Notes on what is likely a slip in a run: ends that jump, lines that are strained beyond what lines bear, tables that are left.
+//! Notes on likely mistakes in a run: ends that jump, lines strained beyond realistic strains, tables that are left.
 
 mod left_tables;
 
@@ -22,7 +22,7 @@ pub struct Watch {
 
 #[derive(Debug, Clone)]
 struct Watched {
-    /// Where its ends were at the last communication point [m].
+    /// Places of the ends at the last communication point [m].
     ends: [Vector3<f64>; 2],
     /// Strain that is noted [-]; infinite where it was noted, or where large strains are meant.
     strain_max: f64,
@@ -85,7 +85,7 @@ fn ends(simulation: &Simulation, line: usize) -> [Vector3<f64>; 2] {
         .map(|point| points[point].position)
 }
 
-/// A note on an end that a host or a given path moved by a large part of the line in one step.
+/// Note on an end that a host or a given path moved by a large part of the line in one step.
 fn jump(
     simulation: &Simulation,
     line: usize,
@@ -116,7 +116,7 @@ fn breaking_tension(releases: [Release; 2]) -> Option<(End, f64)> {
         .next()
 }
 
-/// A note on a line whose tension breaks it at the start.
+/// Note on a line whose tension exceeds its breaking limit at the start.
 fn breaks_at_once(simulation: &Simulation, line: usize, end: End, limit: f64) -> Option<Note> {
     let data = &simulation.model.lines[line];
     let node = match end {

@@ -1,4 +1,4 @@
-//! How far the winches are: their paths between communication points, and lines laid out as long as they are.
+//! Paid-out lengths of the winches: their paths between communication points, and lines laid out to these lengths.
 
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ use crate::scene::{SceneError, TimeFunction};
 pub(super) struct WinchPath {
     /// Length change [m] in time.
     pub path: AxisPath,
-    /// When the winch was told last [s], and what, within its speed [m].
+    /// Time of the winch's last input [s], and its length change within the speed limit [m].
     told: [f64; 2],
 }
 
 impl WinchPath {
-    /// Continues by a communication step from what a host says at a time [s] of the length change [m]; a winch that has a greatest speed
-    /// [m/s] lags behind what is faster.
-    pub fn extend(
+    /// Continues by a communication step from a host's length change [m] at a time [s]; a winch with a greatest speed
+    /// [m/s] lags behind faster inputs.
+    pub(super) fn extend(
         &mut self,
         speed_max: Option<f64>,
         [time, wanted]: [f64; 2],
@@ -34,7 +34,7 @@ impl WinchPath {
     }
 
     /// Continues along the scene's own path from a time [s] by a communication step [s]: through its value there, at its mean rate around it.
-    pub fn follow(&mut self, path: &TimeFunction, time: f64, step: f64) {
+    pub(super) fn follow(&mut self, path: &TimeFunction, time: f64, step: f64) {
         let end = time + step;
         let velocity = (path.at(end + step) - path.at(time)) / (2.0 * step);
         self.path.follow([time, end], [path.at(end), velocity]);
@@ -49,7 +49,7 @@ fn start(winch: &Winch, told: f64, follows: Option<f64>) -> f64 {
     }
 }
 
-/// What is wrong with a length change [m], where something is.
+/// Fault of a length change [m], where there is one.
 pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
     let Some(winch) = &line.winch else {
         return Ok(());

@@ -333,7 +333,7 @@ impl BeamStatics {
         })
     }
 
-    /// Moves `sections` by a method that says whether it found the equilibrium, and checks what it found.
+    /// Moves `sections` by a method that returns whether it found the equilibrium, and checks the result.
     fn search(
         &mut self,
         case: &BeamCase,

@@ -1,18 +1,19 @@
 //! Static equilibrium of lines that meet at free points, each line one closed-form elastic catenary.
 //!
-//! Unknowns are the positions of the free points on their free axes, nothing else: what is out of balance at a point is
+//! Unknowns are the positions of the free points on their free axes only. The residual at a point is
 //!
 //!   R = Σ F_line + F_load(t) − w ẑ,
 //!
-//! w the weight less the buoyancy of what is in the water, F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
+//! w the weight less the buoyancy of the submerged part, F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
 //! free flight is exact (see `stiffness`), that of a line on the seabed a difference quotient of its closed form; across its plane a line
 //! has H/X. Steps are limited, and cut until the power R·δ has not turned: without friction the potential energy is convex
 //! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the seabed rests on it
 //! where it would sink.
 //!
-//! Valid for engineering strain, which the closed form is made for, and where no end lies under the seabed. A line's friction on the seabed
-//! is that of [`super::catenary`]: towards end A, as hauled at B, or the other way about. Where it leaves no tension at a point on the seabed, the point may lie
-//! anywhere in a range, and stays where it was.
+//! Valid for engineering strain, for which the closed form is derived, and where no end lies under the seabed. A
+//! line's friction on the seabed is that of [`super::catenary`]: towards end A, as hauled at B, or the reverse. Where
+//! it leaves no tension at a point on the seabed, any place of the point within a range is an equilibrium, and the
+//! point keeps its place.
 //!
 //! Source: energy and convexity as for cables under gravity, Irvine (1981), Cable Structures, chapter 2; the rest is derived here.
 
@@ -77,11 +78,11 @@ pub fn solve(
     Ok(state)
 }
 
-/// As [`equilibrium::rest`], on closed-form catenaries where that is possible; a network whose free points find no rest on these is
-/// brought to rest on its elements first.
+/// Finds the equilibrium like [`equilibrium::rest`], on closed-form catenaries where that is possible. A network
+/// whose free points have no equilibrium on these is brought to rest on its elements first.
 ///
 /// # Errors
-/// No equilibrium was found, or there is none.
+/// No equilibrium was found, or none exists.
 pub fn rest(
     model: &Model,
     number: usize,
@@ -243,7 +244,7 @@ impl Plane {
     }
 }
 
-/// Nodes of a line, and what they do not tell, from its catenary; the line is at rest.
+/// Nodes of a line, with its closed-form tensions, from its catenary; the line is at rest.
 fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
     let [a, b] = line.ends.map(|point| state.points[point].position);
     let plane = Plane::new(a, b);
@@ -383,7 +384,7 @@ impl<'a> Problem<'a> {
         false
     }
 
-    /// Catenaries of all lines and what is out of balance at all points; false where a line has none.
+    /// Catenaries of all lines and residuals at all points; false where a line has none.
     fn evaluate(&self, state: &State, work: &mut Workspace) -> bool {
         for_free_points(self.model, self.network, |index, free| {
             let weight = free.at(state.points[index].position.z).weight;

@@ -6,8 +6,9 @@ use super::catenary::{self, Bed, Catenary, Section};
 use crate::model::{Line, Model};
 use crate::scene::InitialShape;
 
-/// Puts the nodes of a line between its ends at `a` and `b` [m] on its closed-form catenary, with the tensions of its segments [N].
-/// Where there is none, because an end lies under the seabed, on a parabola of about the right length.
+/// Puts the nodes of a line between its ends at `a` and `b` [m] on its closed-form catenary, with the tensions of its
+/// segments [N]. Where there is none, because an end lies under the seabed, the nodes lie on a parabola of about the
+/// right length.
 pub(crate) fn hang(
     model: &Model,
     line: &Line,

@@ -84,7 +84,7 @@ pub enum StaticsError {
         /// Part of the moments along the beam [N m].
         torque: f64,
     },
-    /// The equilibrium of a beam bends or twists an element beyond what its ends can tell.
+    /// The equilibrium of a beam bends or twists an element beyond the angle that its ends resolve.
     #[error(
         "line \"{line}\", node {node}: at rest the beam turns by more than 60 degrees from this node to the next; use more elements \
          there, or a greater bending or torsional stiffness"

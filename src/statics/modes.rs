@@ -16,7 +16,7 @@ use crate::math::eigen::{Eigen, Entry};
 use crate::model::{Line, Model, Network, State};
 use crate::physics::slender::Slender;
 
-/// Unknowns up to which the dense solver is used, whatever the number of modes [-].
+/// Unknowns up to which the dense solver is used, for any number of modes [-].
 const DENSE_MAX: usize = 300;
 
 /// Why a network has no modes.

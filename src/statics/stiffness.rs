@@ -1,25 +1,29 @@
 //! Stiffness of the mooring on a vessel: the 6×6 slope of its force with the vessel's displacements.
 //!
-//! The vessel moves by x, y and z [m] and by small rotations about the global axes through its origin [rad]. A point on it at the
-//! arm r [m] from the origin follows by u = δ + ω × r, clamps turn by ω × d, and everything that forces move goes to where it is in
-//! balance again. With J the exact tangent of the residual R at rest, x the unknowns and c what the turned clamps add to R,
+//! The vessel moves by x, y and z [m] and by small rotations about the global axes through its origin [rad]. A point
+//! on it at the arm r [m] from the origin follows by u = δ + ω × r, clamps turn by ω × d, and all free nodes and
+//! points move to their new equilibrium. With J the exact tangent of the residual R at rest, x the unknowns and c the
+//! contribution of the turned clamps to R,
 //!
 //!   J (u − x) + c = 0 at every node between the ends and every free point,   δR = J (u − x) + c at the ends on the vessel,
 //!
-//! six solves of the system that statics solves. The force of the mooring is F = −R and its moment M = Σ r × F + m, so that
+//! six solves of the linear system of statics. The force of the mooring is F = −R and its moment M = Σ r × F + m, so
+//! that
 //!
 //!   K δ = −δF = Σ δR,   −δM = Σ r × δR + (ω × r) × R − δm,
 //!
 //! the second term because the arms turn. The moment on a clamp of direction d is m = −d × g with g the slope of the energy of its
 //! joint with d, and −δm = (ω × d) × g + d × δg.
 //!
-//! A network whose lines lie on closed-form catenaries takes the stiffness of those, seabed friction included, in place of J; others
-//! have that of their elements: springs, weight, bending and the springs of the seabed; nodes that stick to it hold by their friction, those that slide go on sliding. Drag, inertia and dampers are not in it.
-//! Without friction the mooring is conservative: the parts of K that concern displacements are symmetric, and K − Kᵀ of the rotations is ω ↦ M × ω,
-//! for finite rotations do not commute.
+//! A network whose lines lie on closed-form catenaries takes the stiffness of those, seabed friction included, in
+//! place of J. Others have that of their elements: springs, weight, bending and the springs of the seabed; nodes that
+//! stick to it hold by their friction, and sliding nodes continue to slide. Drag, inertia and dampers are not
+//! included. Without friction the mooring is conservative: the parts of K that concern displacements are symmetric,
+//! and K − Kᵀ of the rotations is ω ↦ M × ω, since finite rotations do not commute.
 //!
-//! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the seabed resists nothing sideways; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its
-//! axial stiffness then keep it where it is. Beams have no tangent here.
+//! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the seabed has no lateral
+//! stiffness; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its axial stiffness then keep it in place. Beams have
+//! no tangent here.
 
 use std::ops::SubAssign;
 

@@ -1,4 +1,4 @@
-//! Copies of a scene beside each other, for tests and benches.
+//! Copies of a scene placed next to each other, for tests and benches.
 
 use moorline::scene::Scene;
 

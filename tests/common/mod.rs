@@ -167,7 +167,7 @@ pub fn relative_drift(scene: &Scene, count: usize) -> f64 {
     }))
 }
 
-/// A scene that asks for the energy balance.
+/// Scene that requests the energy balance.
 pub fn balanced(mut scene: Scene) -> Scene {
     scene.output.energy_balance = true;
     scene
@@ -193,7 +193,8 @@ pub fn error_of_lost(simulation: &Simulation) -> f64 {
     balance_error(simulation).abs() / flow(simulation).dissipation
 }
 
-/// Claims that a simulation goes on bit for bit from its own snapshot put back, and another simulation of the scene from the snapshot's bytes.
+/// Claims that a simulation continues bit for bit from its restored snapshot, and another simulation of the scene
+/// from the snapshot's bytes.
 pub fn assert_replays(mut simulation: Simulation, mut other: Simulation, go_on: impl Fn(&mut Simulation)) {
     let saved = simulation.snapshot().clone();
     let bytes = postcard::to_stdvec(&saved).unwrap();
@@ -225,7 +226,7 @@ pub fn assert_second_order_in_time(coarse: f64, place: impl Fn(f64) -> Vector3<f
     assert_order(2.0, &steps[..4], &errors);
 }
 
-/// Claims that the error of the energy balance over the work given is below `bound` [-] in 0.125 of the coarse step, falls by its order by the axial-implicit
+/// Claims that the error of the energy balance over the external work is below `bound` [-] in 0.125 of the coarse step, falls by its order by the axial-implicit
 /// integrator, and is that of Newton's method by generalised-α.
 pub fn assert_balance_order(integrator: Integrator, coarse: f64, bound: f64, error: impl Fn(f64) -> f64) {
     let steps = [1.0, 0.5, 0.25, 0.125].map(|part| part * coarse);

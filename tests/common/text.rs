@@ -54,7 +54,7 @@ fn cases(table: &str) -> Vec<Case> {
     found
 }
 
-/// Claims that each case of a table is answered by words that begin as the table has it.
+/// Claims that the answer to each case of a table begins with the words in the table.
 pub fn assert_answers(base: &str, table: &str, answer: impl Fn(&str) -> String) {
     let wrong = wrong_answers(base, table, answer);
     assert!(wrong.is_empty(), "{wrong}");

@@ -111,7 +111,7 @@ fn the_leapfrog_oscillates_at_its_own_frequency() {
 
 #[test]
 fn the_axial_implicit_leapfrog_keeps_axial_waves_by_the_share_of_tension_that_it_averages() {
-    // with ρ = 1 a share σ of the tension is ¼, ½, ¼ of three times: 4 sin²(ω̃Δt/2) = (ωΔt)²(1 − σ sin²(ω̃Δt/2)), whatever the step
+    // with ρ = 1 a share σ of the tension is ¼, ½, ¼ of three times: 4 sin²(ω̃Δt/2) = (ωΔt)²(1 − σ sin²(ω̃Δt/2)), for any step
     let shortest = lumped_axial(20, 19);
     for (k, step) in [(1, 5e-4), (1, 2e-3), (2, 5e-3), (5, 5e-3)] {
         let found = released_frequency(Integrator::AxialImplicit, 20, k, 1e-3 * Vector3::x(), step);
@@ -572,7 +572,7 @@ fn a_bump_on_a_taut_string_splits_and_travels_as_dalembert_says() {
 
 #[test]
 fn a_cable_released_from_a_parabola_or_without_tension_settles_into_its_discrete_catenary() {
-    // SeaFEM validation case 11 with 22 elements; each end carries half the weight whatever the mesh
+    // SeaFEM validation case 11 with 22 elements; each end carries half the weight for any mesh
     for integrator in [Integrator::Auto, Integrator::Leapfrog, Integrator::AxialImplicit] {
         for initial in [InitialShape::Parabola(0.72), InitialShape::Straight] {
             let mut scene = shipped("seafem11");

@@ -90,7 +90,7 @@ fn halving_the_axial_implicit_step_of_a_line_that_lands_quarters_the_error_at_le
 
 #[test]
 fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
-    // first order in the step, beside the second order of all else
+    // first order in the step, in addition to the second order of all else
     let fine = with_elements(shipped("taut_polyester"), 10);
     for integrator in LEAPFROGS {
         let reference = recorded(&with_integrator(fine.clone(), integrator, SAMPLE / 256.0), 30.0);

@@ -1,4 +1,4 @@
-//! Fully implicit dynamics: order, dissipation, references, what happens when a step fails.
+//! Fully implicit dynamics: order, dissipation, references, failed steps.
 
 use std::f64::consts::{PI, TAU};
 

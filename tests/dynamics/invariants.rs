@@ -50,7 +50,8 @@ fn the_energy_balance_changes_no_bit_of_the_motion() {
     }
 }
 
-/// Error of the energy balance over all the energy that it has counted, of a scene whose vessel or second point a host puts elsewhere every 0.1 s for 10 s, at once.
+/// Error of the energy balance over all the energy that it has counted, of a scene whose host moves the vessel or the
+/// second point abruptly every 0.1 s for 10 s.
 fn jumping_balance(mut scene: Scene) -> f64 {
     scene.solver.input_reconstruction = Reconstruction::Jump;
     let mut simulation = start(&balanced(scene.clone()));

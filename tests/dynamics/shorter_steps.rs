@@ -1,4 +1,5 @@
-//! Communication steps in which the motion outruns the internal steps are made anew in shorter ones, and a failed attempt leaves nothing behind.
+//! Communication steps in which the motion outruns the internal steps are repeated in shorter ones, and a failed
+//! attempt leaves no trace.
 
 use crate::common::*;
 use moorline::model::Body;

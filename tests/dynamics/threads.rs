@@ -1,4 +1,4 @@
-//! Threads share the networks of a system; what they find must not depend on how many they are.
+//! Threads share the networks of a system; results must not depend on their number.
 
 use crate::common::*;
 use crate::copies::copies;

@@ -1,5 +1,6 @@
-//! No key of the scene format passes in silence: for every key that the reader has, and every kind of object that may have it, another value
-//! changes a result, or is refused by name, or a note names the key and says that it changes nothing.
+//! No key of the scene format is silently ignored: for every key of the reader, and every kind of object that may
+//! have it, another value changes a result, or is refused by name, or a note names the key and states that it changes
+//! nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -104,7 +105,7 @@ fn object<'s>(scene: &'s mut Value, path: &[String]) -> &'s mut Table {
     at.as_table_mut().unwrap()
 }
 
-/// A path as mistakes and notes have it: `lines[1].sections[0]`.
+/// Path in the form of mistakes and notes: `lines[1].sections[0]`.
 fn rendered(path: &[String]) -> String {
     let steps = path.iter().map(|step| match step.parse::<usize>() {
         Ok(_) => format!("[{step}]"),
@@ -180,7 +181,7 @@ fn outcome(folder: &Path, scene: &Value) -> Result<Outcome, Refusal> {
     Ok(found)
 }
 
-/// Moves, releases and pays out what a host may.
+/// Moves, releases and pays out everything that a host can.
 fn drive(simulation: &mut Simulation, t: f64) {
     let model = simulation.model().clone();
     let pose = [0.3 * t, 0.1 * t * t, 0.5 * t * t, 0.1 * t, 0.02 * t, 0.2 * t];
@@ -270,7 +271,7 @@ fn names(text: &str, known: &[&str]) -> bool {
     })
 }
 
-/// Compares a changed key of an object of a name with what was before.
+/// Compares a changed key of an object of a name with the unchanged one.
 fn fate(found: Result<Outcome, Refusal>, at: &str, [name, key]: [&str; 2], before: &Outcome) -> Fate {
     let after = match found {
         Ok(after) => after,
@@ -327,7 +328,7 @@ struct Found {
     silent: Vec<String>,
 }
 
-/// A scene of the list: its text, and how the paths of objects that are to be tried begin.
+/// Scene of the list: its text, and the beginnings of the paths of the objects under test.
 fn scene(list: &Table, row: &Value) -> (Value, Vec<String>) {
     let chosen = |key: &str, usual: &str| {
         let name = row.get(key).and_then(Value::as_str).unwrap_or(usual);
@@ -348,7 +349,7 @@ fn scene(list: &Table, row: &Value) -> (Value, Vec<String>) {
     (scene.into(), chosen("objects", "all").clone().try_into().unwrap())
 }
 
-/// Tries every value of every key of the objects of a scene that are to be tried.
+/// Tries every value of every key of the objects of a scene under test.
 fn try_all(folder: &Path, name: &str, (scene, tried): (Value, Vec<String>), found: &mut Found) {
     let values: BTreeMap<String, BTreeMap<String, Vec<Value>>> = toml::from_str(VALUES).unwrap();
     let before = outcome(folder, &scene).unwrap_or_else(|error| panic!("{name}: {error:?}"));

@@ -1,4 +1,4 @@
-//! The reference of the scene format in `docs/scene.md` is written from the property table. After a change that is meant, write it anew:
+//! The reference of the scene format in `docs/scene.md` is written from the property table. After an intended change, write it again:
 //! `MOORLINE_UPDATE=1 cargo test --test keys page`.
 
 use std::collections::BTreeSet;

@@ -154,7 +154,7 @@ fn assert_frequency(exact: f64, shape: impl Fn(f64) -> f64, beam: impl Fn(usize)
             let step = TAU / exact / steps as f64;
             scene.solver.time_step_max = step;
             let mut simulation = start(&scene);
-            // onto the mode, so that what else the start excites falls out
+            // projected onto the mode, so that other components of the start drop out
             let sample = |_| {
                 simulation.advance(step).unwrap();
                 nodes(&simulation)

@@ -352,7 +352,8 @@ fn the_work_of_a_clamp_that_turns_is_in_the_energy_balance() {
 
 // ------------------------------------------------------------------ vibration
 
-/// Claims that the first three (βL)², the circular frequencies over √(EI/mL⁴), of a beam along x whose end is of a kind tend to exact ones at second order.
+/// Claims that the first three (βL)², the circular frequencies over √(EI/mL⁴), of a beam along x with this kind of
+/// end tend to exact ones at second order.
 fn assert_frequencies(exact: [f64; 3], end: &str, clamps: &str, tension: f64) {
     let stiffness = 1e9; // [N]
     let scale = (EI / MASS / LENGTH.powi(4)).sqrt();

@@ -1,8 +1,9 @@
-//! Lines whose tension is no stiffness times strain: tables of tension over strain, and viscoelastic ropes.
+//! Lines whose tension is not a constant stiffness times strain: tables of tension over strain, and viscoelastic
+//! ropes.
 //!
-//! Claims: a table of a straight line is a stiffness; a line at rest carries what its table says; energy is kept, and what the integrators make or
-//! lose of it vanishes with the step. A viscoelastic rope has its static stiffness at rest, its dynamic one in fast motion, and
-//! loses in every cycle what the closed form says.
+//! Claims: a table of a straight line is a stiffness; a line at rest carries the tension of its table; energy is
+//! conserved, and the integrators' error of energy vanishes with the step. A viscoelastic rope has its static
+//! stiffness at rest, its dynamic one in fast motion, and dissipates in every cycle the energy of the closed form.
 
 use std::f64::consts::PI;
 
@@ -61,7 +62,7 @@ fn a_light_rope_at_rest_carries_what_its_table_says() {
     }
 }
 
-/// The scene by an integrator without dissipation of its own.
+/// The scene by an integrator without algorithmic dissipation.
 fn undissipated(scene: Scene, integrator: Integrator, step: f64) -> Scene {
     let mut scene = with_integrator(scene, integrator, step);
     scene.solver.spectral_radius = (integrator != Integrator::Leapfrog).then_some(1.0);
@@ -71,7 +72,7 @@ fn undissipated(scene: Scene, integrator: Integrator, step: f64) -> Scene {
 #[test]
 fn a_tabulated_rope_keeps_its_energy() {
     for integrator in INTEGRATORS {
-        // energy that the integrator has made or lost after 10 s, over the greatest kinetic energy
+        // error of energy of the integrator after 10 s, over the greatest kinetic energy
         let [coarse, fine] = [2e-3, 5e-4].map(|step| {
             let mut simulation = following(&balanced(undissipated(
                 rope(TABLE, 203.0, SWAY),
@@ -241,7 +242,7 @@ fn the_loops_of_a_viscoelastic_rope_are_those_of_the_closed_form() {
         let area = PI * exact[1] * 0.002 * 0.002 * 200.0;
         let after = flow(&simulation);
         let lost = after.dissipation - before.dissipation;
-        // the damping of the integrator is given too
+        // the damping of the integrator is included
         let given = after.external_work
             - before.external_work
             - (after.algorithmic_dissipation - before.algorithmic_dissipation);

@@ -1,7 +1,7 @@
 //! Lines whose ends are released: by the host, under too much tension, or at a time.
 //!
-//! Claims: a light straight line under tension snaps back as a bar does; a hanging chain falls freely, its middle with g; the point feels nothing of it
-//! any more; the energy balance closes through it; a snapshot replays it.
+//! Claims: a light straight line under tension snaps back as a bar does; a hanging chain falls freely, its middle
+//! with g; the point carries no more force; the energy balance closes through the release; a snapshot replays it.
 
 use crate::common::*;
 use approx::assert_relative_eq;

@@ -68,7 +68,7 @@ fn a_hoisted_weight_and_its_rope_weigh_what_they_weigh_and_their_inertia() {
         simulation.advance(0.05).unwrap();
         let [change, rate, acceleration] = hauling(0.05 * f64::from(step + 1));
         let mass = 2000.0 + 20.0 * (40.0 + change);
-        // all of it is sped up by −ℓ̈; the part that passes the winch takes m ℓ̇² off it
+        // all of it is accelerated by −ℓ̈; the part that passes the winch takes m ℓ̇² off it
         let expected = mass * (G - acceleration) - 20.0 * rate * rate;
         worst = worst.max((simulation.tension_b(0) / expected - 1.0).abs());
         fewest = fewest.min(simulation.model().lines[0].segment_count());

@@ -8,7 +8,7 @@ use proptest::prelude::Rng;
 use proptest::strategy::{NewTree, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
-/// Parts of a tape: what is drawn in one part does not move with what is drawn in another.
+/// Parts of a tape: draws in one part do not shift those in another.
 const PARTS: usize = 48;
 /// Genes of a part.
 const GENES: usize = 64;

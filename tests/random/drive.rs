@@ -17,7 +17,7 @@ pub struct Drive {
     pub follows: bool,
     /// Communication steps [s], [`SPAN`] in all.
     pub steps: Vec<f64>,
-    /// Velocities are given.
+    /// True if velocities are given.
     gives_velocity: bool,
     /// Moved bodies with their motions.
     bodies: Vec<(Body, Motion)>,

@@ -5,7 +5,7 @@ use moorline::simulation::Simulation;
 /// Energy that a balance has counted.
 #[derive(Default)]
 pub struct Balance {
-    /// All that was given and lost, whatever its sign [J].
+    /// Sum of external work and dissipation, all positive [J].
     turnover: f64,
     /// Most that was held [J].
     held: f64,

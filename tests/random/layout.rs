@@ -1,4 +1,4 @@
-//! Points, vessels and lines: anchors below, what holds the lines above, free points between.
+//! Points, vessels and lines: anchors below, supports of the lines above, free points between.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,5 +1,5 @@
-//! Changes that must not change a result, over random scenes: a thing of size zero is one that is absent, and a scene that is turned, moved, reversed, split or written
-//! in another order is the same scene.
+//! Changes that must not change a result, over random scenes: a thing of size zero is equivalent to an absent one,
+//! and a scene that is turned, moved, reversed, split or written in another order is the same scene.
 //!
 //! Elements, integrator, steps and threads are given, with one of the integrators that step elements; a quasi-static line leaves its closed form with any current,
 //! EI or slope, and differs by the error of its mesh. Runs are compared at every communication step: places of all nodes over the size of the scene, and
@@ -7,7 +7,7 @@
 //!
 //! A relation may fail only in a scene that is not smooth (`is_smooth`): where displacements of its points by [`NUDGE`] change the run by [`NUDGED_MAX`] or more, as in
 //! lines that snap, or where a segment at rest is slack, so that its place is not determined. Such scenes are counted, and may be a fifth of all at most. By design
-//! the axial-implicit leapfrog follows curved springs to 1e-3 of the tension, so that its scenes have linear ones; and a line that lies with both ends, or with none, has the
+//! the axial-implicit leapfrog reproduces curved springs to 1e-3 of the tension, so that its scenes have linear ones; and a line that lies with both ends, or with none, has the
 //! friction of one that was laid from end A, so that such lines are reversed without. Lines on winches are left out: the correction of their
 //! end forces is (`dynamics/reaction.rs`).
 
@@ -255,8 +255,8 @@ const TAUT: f64 = 1e-9;
 /// Greatest share of the scenes of a relation that may fail because they are not smooth [-].
 const ROUGH_MAX: f64 = 0.2;
 
-/// Returns true where a scene is smooth: small displacements of its points change its run in proportion. Of a line that snaps they do not, nor of one that may rest in
-/// many places, and rounding changes the run as much.
+/// Returns true where a scene is smooth: small displacements of its points change its run in proportion. A line that
+/// snaps is not smooth, nor is one that may rest in many places, where rounding changes the run as much.
 fn is_smooth(base: &Base, scene: &Scene, bound: f64) -> bool {
     is_taut_at_rest(scene) && (1..=NUDGES).all(|seed| nudged(base, scene, seed) < NUDGED_MAX.min(0.5 * bound))
 }
@@ -295,7 +295,7 @@ struct Found {
     scene: usize,
     gap: Gap,
     holds: bool,
-    /// It fails in a scene that is not smooth.
+    /// The relation fails in a scene that is not smooth.
     rough: bool,
 }
 
@@ -553,7 +553,7 @@ fn a_thing_of_size_zero_is_absent_through_some_seconds() {
     claim(LONG, &through_seconds);
 }
 
-/// The scene with every path a sum of sines, level and free of what has axes of its own.
+/// Scene with every path a sum of sines, level and without objects that have fixed axes.
 fn isotropic(base: &Base) -> Scene {
     base.changed(|scene| {
         for point in &mut scene.points {

@@ -1,20 +1,20 @@
-//! Random scenes: any of the physics, extreme but legal numbers, random motion, 60 s each. None panics, gives a number that is not
-//! finite or hangs; what cannot be run says why and leaves the state as it was; snapshots replay to the last bit; energy balances close
-//! where they can.
+//! Random scenes: any of the physics, extreme but legal numbers, random motion, 60 s each. None panics, returns a
+//! number that is not finite, or hangs; a scene that cannot be run is refused with a reason and leaves the state
+//! unchanged; snapshots replay to the last bit; energy balances close where possible.
 //!
-//! Every scene has a number and is always the same. Beside the suite there are
+//! Every scene has a number and is always the same. In addition to the suite there are
 //!
 //! ```text
 //! cargo test --release --test random -- --ignored --nocapture ten_thousand      the long run; with SCENES=500..1000 a part of it
-//! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and what becomes of it
+//! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and its result
 //! ```
 //!
 //! An energy balance closes where its error is at most 2 % of the energy that it counts. The damping of an integrator may bring energy: the share of energy balances to which
 //! it brought no more than that is claimed too. Beams conserve energy: their energy balances close in every scene. Lines that slacken and snap
 //! do so by a kink in their tension law, which no fixed step of a leapfrog resolves where they are as stiff and as little damped as these may be; the implicit
 //! integrators count all of their work, but may bring energy where their steps are halved and doubled in turns, or an end is released; and a quasi-static
-//! line may jump from one equilibrium to another: of these, the shares are claimed. Held points that jump to where a host says pull stiff lines by more than steps
-//! resolve which are as long as waves allow that these do not make; they are counted apart.
+//! line may jump from one equilibrium to another: of these, the shares are claimed. Held points that a host moves abruptly pull stiff lines by more than can be resolved
+//! by steps as long as the waves of these lines allow; they are counted separately.
 
 mod dice;
 mod drive;
@@ -38,8 +38,8 @@ const SUITE: usize = 500;
 /// Scenes of the long run.
 const LONG: usize = 10_000;
 
-/// Shares of energy balances that close, and of those to which integrators brought nothing, where a host's steps are equal, where they differ, and where held
-/// points jump to where it says [-], as scenes 0..10 000 were measured to have them.
+/// Shares of energy balances that close, and of those without energy from integrators, for a host's equal steps, for
+/// unequal ones, and for held points that it moves abruptly [-], as measured on scenes 0..10 000.
 const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
     ("AxialImplicit", [[0.980, 0.978], [0.971, 0.961], [0.747, 0.742]]),
     ("Bossak", [[0.998, 0.965], [0.999, 0.932], [0.989, 0.899]]),
@@ -51,7 +51,7 @@ const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
     ("QuasiStatic", [[0.980, 0.980], [0.975, 0.975], [0.965, 0.965]]),
     ("several", [[0.978, 0.960], [0.956, 0.942], [0.871, 0.862]]),
 ];
-/// Share of scenes that are too dear to run, as measured on the same [-].
+/// Share of scenes that are too expensive to run, as measured on the same [-].
 const TOO_DEAR: f64 = 0.170;
 /// Standard deviations by which a draw of scenes may miss it by chance [-].
 const BY_CHANCE: f64 = 3.0;
@@ -65,7 +65,7 @@ fn by_chance(share: f64, draws: f64) -> f64 {
     BY_CHANCE * (share * (1.0 - share) / draws.max(1.0)).sqrt()
 }
 
-/// Claims what holds for all scenes of these numbers.
+/// Asserts the claims that hold for all scenes of these numbers.
 fn claim(numbers: Range<usize>) {
     let survey = Survey::of(numbers);
     println!("{survey}");

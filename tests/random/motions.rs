@@ -5,7 +5,7 @@ use moorline::scene::{HarmonicMotion, MotionPath};
 use crate::dice::Dice;
 use crate::plan::{Plan, Resists};
 
-/// Fastest motion along an axis [m/s], but of what is wild.
+/// Fastest motion along an axis [m/s], except for wild motions.
 const SPEED: f64 = 20.0;
 
 /// A motion: sums of sines, or a table that turns a vessel round and round.

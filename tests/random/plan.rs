@@ -5,7 +5,7 @@ use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solv
 use crate::dice::{Dice, Tape};
 use crate::surroundings;
 
-/// Parts of the tape, by what is drawn from them.
+/// Parts of the tape, by the objects drawn from them.
 pub mod part {
     pub const PLAN: usize = 0;
     pub const SOLVER: usize = 1;

@@ -14,9 +14,10 @@ use crate::drive::Drive;
 use crate::plan::Plan;
 use crate::{energy, layout};
 
-/// Work that a scene may cost, in node steps of the explicit leapfrog [-]; a run that would need more stops, and says so.
+/// Work that a scene may cost, in node steps of the explicit leapfrog [-]; a run that would need more stops with that
+/// reason.
 const BUDGET: f64 = 2e7;
-/// Work of one communication step that no scene may exceed, whatever it meets [-].
+/// Work of one communication step that no scene may exceed under any conditions [-].
 const STEP_MAX: f64 = 1e9;
 /// Communication steps of the replay [-].
 const REPLAY: usize = 5;
@@ -71,7 +72,7 @@ pub struct Account {
     pub created: f64,
     /// Work of all steps [-].
     pub work: f64,
-    /// Work of the dearest communication step [-].
+    /// Work of the most expensive communication step [-].
     pub dearest: f64,
     /// Time that it reached [s].
     pub time: f64,

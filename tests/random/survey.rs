@@ -98,7 +98,7 @@ pub struct Survey {
     pub reasons: BTreeMap<String, usize>,
     /// Scenes in which a step could not be made, with the reason.
     pub stopped: Vec<(usize, String)>,
-    /// Dearest communication step, and its scene.
+    /// Most expensive communication step, and its scene.
     pub dearest: (f64, usize),
 }
 
@@ -187,7 +187,7 @@ impl Survey {
         [count(Closing::close), count(Closing::are_sound), balances.len()].map(|count| count as f64)
     }
 
-    /// Greatest error of the energy balances of an integrator, whatever a host's steps [-].
+    /// Greatest error of the energy balances of an integrator, for any steps of a host [-].
     pub fn worst(&self, integrator: &str) -> f64 {
         let found = self.balances.iter();
         let balances = found

@@ -9,7 +9,7 @@ use moorline::scene::{
 use crate::dice::Dice;
 use crate::plan::{Plan, Resists};
 
-/// Explicit steps that lines asked to be integrated explicitly should allow [s]; shorter ones cost more than a scene may.
+/// Explicit steps that lines with explicit integration should allow [s]; shorter ones cost more than a scene may.
 const EXPLICIT_STEP: f64 = 1e-3;
 /// Fastest axial waves of lines that are not wild [m/s]: twenty times those in steel.
 const AXIAL_SPEED: f64 = 1e5;

@@ -1,5 +1,6 @@
-//! Scenes broken in every way that hands and disks break files: each is refused with its place, or is still a scene and then has an
-//! equilibrium of finite numbers, or a message that says why not. None panics, none hangs.
+//! Scenes damaged in every way that users and disks damage files: each is refused with the place of the fault, or is
+//! still a scene and then has an equilibrium of finite numbers, or a message with the reason why not. None panics,
+//! none hangs.
 //!
 //! Mutations come from a generator with a fixed seed: the same files every time.
 
@@ -114,7 +115,7 @@ enum Fate {
     Refused,
     /// In equilibrium and through two steps, all numbers finite.
     Solved,
-    /// Said why there is no equilibrium, or no step.
+    /// Reported the reason for a missing equilibrium or step.
     Unsolved,
 }
 
@@ -160,7 +161,7 @@ fn refused(error: &LoadError) -> Result<Fate, String> {
     }
 }
 
-/// Steps twice by a small step; a step may fail if it says why.
+/// Steps twice by a small step; a step may fail with a reason.
 fn moved(simulation: &mut Simulation) -> Result<Fate, String> {
     for _ in 0..2 {
         match simulation.advance(0.01) {

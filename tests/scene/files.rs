@@ -143,7 +143,7 @@ const CURRENT: (&str, &str) = (
     "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n",
 );
 
-/// Writes a scene and files beside it to a folder and loads it.
+/// Writes a scene and its files to a folder and loads it.
 fn written(folder: &Path, text: &str, files: &[(&str, &str)]) -> Result<LoadedScene, LoadError> {
     for (name, text) in files.iter().chain(&[("scene.toml", text)]) {
         fs::write(folder.join(name), text).unwrap();

@@ -18,7 +18,7 @@ fn assert_read_or_refused_with_a_place(text: &str) {
     }
 }
 
-/// A text with much of what the format allows.
+/// Text with many of the keys that the format allows.
 fn rich_text() -> String {
     SCENE
         .replace(

@@ -1,4 +1,4 @@
-//! The scenes of the repository, and what is said about a scene that is right.
+//! The scenes of the repository, and the description of a valid scene.
 
 use std::fs;
 use std::path::Path;

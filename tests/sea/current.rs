@@ -37,7 +37,7 @@ fn riser(elements: usize, current: &str) -> Scene {
 
 const SHEARED: &str = "{ profile = [[0.0, 1.1, 0.4], [-50.0, 0.8, 0.1], [-200.0, 0.2, -0.3]], factor = 1.2 }";
 
-/// The same current, written anew.
+/// The same current, written independently.
 fn sheared(z: f64) -> Vector3<f64> {
     let rows = [[-200.0, 0.2, -0.3], [-50.0, 0.8, 0.1], [0.0, 1.1, 0.4]];
     let pair = rows.windows(2).find(|pair| z <= pair[1][0]);
@@ -420,7 +420,8 @@ fn check_says_which_current_there_is_and_what_is_not_modelled() {
     assert!(!words.contains("still water of"), "{words}");
 }
 
-/// A taut rope along a current of 3 m/s, its top moved by a centimetre: drag is hard beside axial waves in steps as long as these allow.
+/// Taut rope along a current of 3 m/s, its top moved by a centimetre: drag is stiff compared with axial waves in
+/// steps as long as these allow.
 fn streaming(water: &str, drag: &str, [amplitude, period]: [f64; 2]) -> Scene {
     draft(format!(
         "water = {{ density = 1025.0{water} }}

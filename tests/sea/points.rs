@@ -164,7 +164,8 @@ fn a_drogue_in_a_current_pulls_by_its_drag_whatever_the_step() {
     }
 }
 
-/// A free point between two straight ropes, the first of which starts as `near` says, and a third rope 5 km away that starts as `far` says.
+/// Free point between two straight ropes, the first of which starts as in `near`, and a third rope 5 km away that
+/// starts as in `far`.
 fn beside(near: &str, far: &str) -> Scene {
     draft("line_types.rope = { mass = 10.0, axial_stiffness = 1e6, axial_damping = 1e4 }")
         .fixed("a", [0.0; 3])
@@ -228,7 +229,8 @@ fn check_says_where_each_free_point_starts() {
 
 const BODY: &str = "mass = 9000.0, volume = 1.2, drag_area = 2.5, added_mass = 0.7";
 
-/// A rope from the ground to a fairlead that heaves by 0.8 m in 5 s, of a kind, at a position [m] and with further keys of its own and of the scene.
+/// Rope from the ground to a fairlead that heaves by 0.8 m in 5 s, of a kind, at a position [m] and with additional
+/// keys of the fairlead and of the scene.
 fn heaving_fairlead(kind: &str, position: [f64; 3], [keys, rest]: [&str; 2], body: &str) -> Scene {
     draft(format!(
         "water.density = {RHO}

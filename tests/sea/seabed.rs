@@ -123,7 +123,7 @@ fn segment(simulation: &Simulation, i: usize) -> f64 {
 
 #[test]
 fn statics_with_friction_tends_to_the_closed_form_with_order_2() {
-    // a seabed that does not yield, as the closed form has it; the nodes that land one by one make the errors scatter
+    // a seabed that does not yield, as in the closed form; the nodes that land one by one make the errors scatter
     for (mu, span) in [(0.5, 560.0), (1.0, 575.0), (0.05, 580.0)] {
         let bed = format!("friction = {mu}, contact = \"as_given\", stiffness = 3.0e8");
         let [coarse, fine] = [40, 640].map(|count| {

@@ -137,7 +137,7 @@ fn a_line_that_weighs_as_much_as_water_moves_in_the_orbits_of_the_water() {
                 0.5 * (most - values.fold(f64::INFINITY, f64::min))
             };
             let radius = amplitude * (-k * depth).exp();
-            // what is left of the drift and the stretching are of the order of ka, 3 % here
+            // the remaining drift and the stretching are of the order of ka, 3 % here
             for axis in [0, 2] {
                 assert_relative_eq!(range(axis), radius, max_relative = 0.04);
             }

@@ -85,7 +85,8 @@ impl Line {
         Line::of(dice, FLOATING, 0.0, slack)
     }
 
-    /// A line whose length is that of the chord and `slack` times [-] what the way along the seabed and straight up is longer.
+    /// Line whose length exceeds the chord by `slack` times [-] the excess of the path along the seabed and straight
+    /// up.
     fn of(mut dice: Dice, material: Material, friction: f64, slack: f64) -> Line {
         let depth = dice.decades(10.0, 1000.0);
         let thickness = dice.decades(0.02, 0.16); // of bar or rope [m]
@@ -150,18 +151,20 @@ impl Line {
         [solved.tension_b(), solved.horizontal()]
     }
 
-    /// Least and greatest tension at end B [N] of a line that sinks, on elements of a length l and a seabed that gives way by a depth [m].
+    /// Least and greatest tension at end B [N] of a line that sinks, on elements of a length l and a seabed with a
+    /// deflection of a depth [m].
     ///
     /// The segments k that hang have one horizontal force H and vertical forces V_k = V_1 + (k − 1) w l, where the seabed still bears a part of the weight of the
     /// node before the first, 0 ≤ V_1 ≤ w l; at end B, half an element farther, V = V_m + w l/2. Rise and excess of length over span are therefore
     /// sums of l f(V_k) in place of the integrals of f dV/w from 0 to V, where f is V/T for the one and 1 − H/T for the other. The
-    /// sums are midpoint rules from V_1 − w l/2 to V. What they differ by from the integrals is, of both f, whose slopes are at most 1/H,
+    /// sums are midpoint rules from V_1 − w l/2 to V. Their difference from the integrals is, of both f, whose slopes are at most 1/H,
     ///
     ///   (w l)²/(8 H) for the part between V_1 − w l/2 and 0, and (w l)²/(24 H) for the rule, over w,
     ///
-    /// and, since 0 ≤ f ≤ 1, no more than l/2. So the line on elements is a line in closed form whose length and rise differ by no more
-    /// than δ = min(l/2, w l²/(6 H)) from its own. A soft seabed adds the depth that it gives way by under a resting node. Both are linear in what they change, and
-    /// the tension falls with the length and grows with the rise.
+    /// and, since 0 ≤ f ≤ 1, no more than l/2. The line on elements is therefore a line in closed form whose length
+    /// and rise differ by no more than δ = min(l/2, w l²/(6 H)) from those of the line. A soft seabed adds its
+    /// deflection under a resting node. Both are linear in these changes, and the tension falls with the length and
+    /// grows with the rise.
     fn bounds(&self, [element, depth]: [f64; 2]) -> [f64; 2] {
         let [_, horizontal] = self.closed_form([0.0; 2]);
         let by_slope = self.weight() * element * element / (6.0 * horizontal);
@@ -194,8 +197,8 @@ impl Line {
     }
 }
 
-/// Finds the equilibrium of the lines of these numbers: none may fail, and the tension of those that sink is that of the closed form, which
-/// has no water surface, within what elements may make of it.
+/// Finds the equilibrium of the lines of these numbers: none may fail, and the tension of those that sink is that of
+/// the closed form, which has no water surface, within the error of the elements.
 fn claim(numbers: Range<u64>, line: fn(u64) -> Line) {
     let (mut failures, mut far, mut solves, mut most) = (vec![], vec![], 0, (0, 0));
     for number in numbers.clone() {
@@ -230,7 +233,7 @@ fn claim(numbers: Range<u64>, line: fn(u64) -> Line) {
     );
 }
 
-/// The lines that LINES asks for, or all of the long run.
+/// Lines that LINES requests, or all of the long run.
 fn long_run() -> Range<u64> {
     let bound = |number: &str| number.parse().expect("LINES is two numbers, as 500..1000");
     let given = std::env::var("LINES").ok();

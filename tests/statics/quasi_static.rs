@@ -204,7 +204,7 @@ fn a_line_with_an_end_under_the_bed_rests_on_its_elements() {
 
 // ------------------------------------------------------------------ networks
 
-/// Three lines from two anchors and a coupled point above, which meet in a point with a weight of its own.
+/// Three lines from two anchors and a coupled point above, which meet in a point that has weight.
 fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
     draft(format!(
         "line_types.rope = {{ mass = 6.0, diameter = 0.08, axial_stiffness = {stiffness:e} }}
@@ -497,7 +497,7 @@ fn the_energy_balance_of_a_line_with_friction_on_the_seabed_closes_in_short_step
     }
 }
 
-/// The bridle in a current that only its knot feels.
+/// The bridle in a current that acts on its knot only.
 fn bridle_in_current() -> Scene {
     let mut scene = bridle(
         8,

@@ -1,4 +1,4 @@
-//! The 6×6 stiffness of vessels: against differences of the force, against what symmetry asks for, and against published moorings.
+//! The 6×6 stiffness of vessels: against differences of the force, against symmetry, and against published moorings.
 
 use crate::common::{Draft, draft, greatest, start};
 use approx::assert_relative_eq;
@@ -175,7 +175,8 @@ fn the_stiffness_of_elements_is_the_slope_of_their_force() {
     let smooth = Deck { friction: 0.0, ..OC3 };
     assert_is_slope(&smooth.scene(20, ""), 1e-4, 1e-5);
     assert_is_slope(&bridle(""), 1e-4, 1e-5);
-    // Every equilibrium lays the lines anew on a bed with friction, whose nodes the stiffness holds where they lie: 1.9e-4.
+    // Every equilibrium lays the lines again on a bed with friction, whose nodes the stiffness holds in place:
+    // 1.9e-4.
     assert_is_slope(&OC3.scene(20, ""), 1e-4, 1e-3);
 }
 

@@ -1,4 +1,5 @@
-//! Beside an experiment: all conditions of Bergdahl et al. (2016) with one set of parameters, run by the example that compares them.
+//! Comparison with an experiment: all conditions of Bergdahl et al. (2016) with one set of parameters, run by the
+//! example that compares them.
 
 #[allow(dead_code)] // the example's own main
 #[path = "../../examples/chain_experiment.rs"]

@@ -185,7 +185,7 @@ fn systems_at_rest_are_in_balance_node_by_node_and_as_a_whole() {
         let simulation = start(&scene);
         let found = imbalance(&scene, &simulation);
         println!("{name}: {:.1e} {:.1e}", found.node, found.whole);
-        // in a current, end forces take the drag along the last element as linear, where the nodes have it lumped
+        // in a current, end forces take the drag along the last element as linear, while the nodes have it lumped
         let flows = scene.water.as_ref().is_some_and(|water| water.current.is_some());
         let whole = if flows { 2e-3 } else { 1e-8 };
         assert!(found.node < 1e-8 && found.whole < whole, "{name}");

@@ -1,8 +1,9 @@
 //! The promise of `solver.tolerance`: the RMS error of the fairlead's tension over the second half of a run, at little more than the least cost.
 //!
-//! claim: on five public scenes and ten variants of them, whose elements, integrator and step are left open, tolerances of 5, 2, 1 and
-//! 0.5 % are kept against a converged solution of 640 elements. `tests/reference/promise.csv` holds what that costs; a change of it is a
-//! change of cost: write it anew with `cargo test --release --test systems -- --ignored write_the_reference_work` and say why.
+//! claim: on five public scenes and ten variants of them, whose elements, integrator and step are left open,
+//! tolerances of 5, 2, 1 and 0.5 % are kept against a converged solution of 640 elements.
+//! `tests/reference/promise.csv` holds the cost; for an intended change of cost write it again with `cargo test
+//! --release --test systems -- --ignored write_the_reference_work` and give the reason.
 //!
 //! `cargo test --release --features slow-tests --test systems promise -- --nocapture` prints the errors.
 
@@ -27,9 +28,9 @@ const AXIAL_IMPLICIT_COST: f64 = 3.0;
 /// A scene, by name.
 type Case = (&'static str, Scene);
 
-/// Limits of the promise: on a chain that slackens in every period and lies on the bed for half of its length the RMS error of the raw tension
-/// falls as slowly as 1/n, and 400 elements, the most that are chosen, leave more than 0.5 %. Scene, tolerance, and what is kept instead;
-/// the low-passed tension keeps the tolerance.
+/// Limits of the promise: on a chain that slackens in every period and lies on the bed for half of its length the RMS
+/// error of the raw tension falls as slowly as 1/n, and 400 elements, the most that are chosen, leave more than 0.5
+/// %. Listed are scene, tolerance, and the bound that is kept instead; the low-passed tension keeps the tolerance.
 const ROUGH: [(&str, f64, f64); 1] = [("shallow", 0.005, 0.009)];
 
 fn public() -> Vec<Case> {

@@ -1,4 +1,4 @@
-//! The .fmu container: unpacked into a folder of its own, the library found by the platform's name.
+//! The .fmu container: unpacked into a separate folder, the library found by the platform's name.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What a host needs of modelDescription.xml: version, token, library name, variables.
+//! Data of modelDescription.xml that a host needs: version, token, library name, variables.
 
 use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
@@ -52,7 +52,7 @@ pub struct Variable {
     pub unit: Option<String>,
 }
 
-/// What a host needs of an FMU's description.
+/// Data of an FMU's description that a host needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
     /// Version of the interface.

@@ -25,7 +25,7 @@ pub type fmi2String = *const c_char;
 /// One byte of a serialised state.
 pub type fmi2Byte = c_char;
 
-/// What a call returns.
+/// Status returned by a call.
 pub type fmi2Status = c_uint;
 /// Done.
 pub const fmi2OK: fmi2Status = 0;
@@ -35,7 +35,7 @@ pub const fmi2Warning: fmi2Status = 1;
 pub const fmi2Discard: fmi2Status = 2;
 /// Refused or failed.
 pub const fmi2Error: fmi2Status = 3;
-/// The instance is lost.
+/// The instance is unusable.
 pub const fmi2Fatal: fmi2Status = 4;
 /// Not finished yet (asynchronous steps only).
 pub const fmi2Pending: fmi2Status = 5;
@@ -47,7 +47,7 @@ pub const fmi2ModelExchange: fmi2Type = 0;
 /// The FMU integrates.
 pub const fmi2CoSimulation: fmi2Type = 1;
 
-/// What `fmi2Get…Status` asks for.
+/// Kind of status requested by `fmi2Get…Status`.
 pub type fmi2StatusKind = c_uint;
 /// Status of the last step.
 pub const fmi2DoStepStatus: fmi2StatusKind = 0;
@@ -55,7 +55,7 @@ pub const fmi2DoStepStatus: fmi2StatusKind = 0;
 pub const fmi2PendingStatus: fmi2StatusKind = 1;
 /// Time that the last successful step reached [s].
 pub const fmi2LastSuccessfulTime: fmi2StatusKind = 2;
-/// Whether the FMU wants to end the simulation.
+/// Status kind of a request by the FMU to end the simulation.
 pub const fmi2Terminated: fmi2StatusKind = 3;
 
 /// Host's log function; `printf` format and arguments.
@@ -91,7 +91,7 @@ pub struct fmi2CallbackFunctions {
 pub struct fmi2EventInfo {
     /// Another event iteration is needed.
     pub newDiscreteStatesNeeded: fmi2Boolean,
-    /// The FMU wants to end the simulation.
+    /// The FMU requests the end of the simulation.
     pub terminateSimulation: fmi2Boolean,
     /// Nominal values changed.
     pub nominalsOfContinuousStatesChanged: fmi2Boolean,

@@ -45,7 +45,7 @@ pub type fmi3Binary = *const fmi3Byte;
 /// Clock value.
 pub type fmi3Clock = bool;
 
-/// What a call returns.
+/// Status returned by a call.
 pub type fmi3Status = c_uint;
 /// Done.
 pub const fmi3OK: fmi3Status = 0;
@@ -55,18 +55,18 @@ pub const fmi3Warning: fmi3Status = 1;
 pub const fmi3Discard: fmi3Status = 2;
 /// Refused or failed.
 pub const fmi3Error: fmi3Status = 3;
-/// The instance is lost.
+/// The instance is unusable.
 pub const fmi3Fatal: fmi3Status = 4;
 
-/// How a variable depends on another.
+/// Kind of a variable's dependency on another.
 pub type fmi3DependencyKind = c_uint;
-/// What is known about a clock's interval.
+/// Qualifier of a clock's interval.
 pub type fmi3IntervalQualifier = c_uint;
 
 /// Host's log function.
 pub type fmi3LogMessageCallback =
     Option<unsafe extern "C" fn(fmi3InstanceEnvironment, fmi3Status, fmi3String, fmi3String)>;
-/// Tells the host of a clock tick (scheduled execution).
+/// Notifies the host of a clock tick (scheduled execution).
 pub type fmi3ClockUpdateCallback = Option<unsafe extern "C" fn(fmi3InstanceEnvironment)>;
 /// Called between communication points.
 pub type fmi3IntermediateUpdateCallback = Option<

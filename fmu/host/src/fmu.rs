@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 use crate::{Description, FmiVersion, Slave, Status, archive, fmi2, fmi3};
 
-/// What can go wrong in a host.
+/// Errors of a host.
 #[derive(Debug, thiserror::Error)]
 pub enum HostError {
     /// The container cannot be read.
@@ -15,7 +15,7 @@ pub enum HostError {
     Archive {
         /// The .fmu file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Fault of the file.
         problem: String,
     },
     /// The description cannot be used.
@@ -49,14 +49,14 @@ pub enum HostError {
     Call {
         /// The function of the standard.
         function: &'static str,
-        /// What it returned.
+        /// Status returned.
         status: Status,
-        /// What the FMU said in its log.
+        /// Messages in the FMU's log.
         log: String,
     },
 }
 
-/// The functions of the version that the FMU serves.
+/// Functions of the FMU's version.
 #[derive(Debug)]
 pub(crate) enum Api {
     Two(Box<fmi2::Functions>),
@@ -77,7 +77,7 @@ pub(crate) struct Loaded {
 pub struct Fmu(pub(crate) Arc<Loaded>);
 
 impl Fmu {
-    /// Unpacks an FMU into a folder of its own and loads its library.
+    /// Unpacks an FMU into a separate folder and loads its library.
     ///
     /// # Errors
     /// A container, description or library that cannot be used.
@@ -144,15 +144,15 @@ impl Fmu {
     /// Makes a co-simulation instance; `logging` turns the FMU's log on.
     ///
     /// # Errors
-    /// The FMU refuses; the error holds what it logged.
+    /// The FMU refuses; the error holds its log.
     pub fn instantiate(&self, name: &str, logging: bool) -> Result<Slave, HostError> {
         Slave::new(self, name, &self.description().token, logging)
     }
 
-    /// As [`Fmu::instantiate`] with another token than the description's: an FMU must refuse it.
+    /// Does the same as [`Fmu::instantiate`] with another token than the description's: an FMU must refuse it.
     ///
     /// # Errors
-    /// The FMU refuses; the error holds what it logged.
+    /// The FMU refuses; the error holds its log.
     pub fn instantiate_with_token(&self, name: &str, token: &str, logging: bool) -> Result<Slave, HostError> {
         Slave::new(self, name, token, logging)
     }

@@ -1,4 +1,4 @@
-//! What the FMU logs, caught through the callbacks of both versions.
+//! Log messages of the FMU, caught through the callbacks of both versions.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;

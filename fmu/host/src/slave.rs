@@ -22,7 +22,7 @@ pub struct Slave {
 }
 
 // SAFETY: FMI lets any thread call an instance as long as no two do at once (FMI 2.0 section 2.1.1, FMI 3.0 section
-// 2.2.3); `&mut self` in every call sees to that. The log is behind a mutex.
+// 2.2.3); `&mut self` in every call ensures that. The log is behind a mutex.
 unsafe impl Send for Slave {}
 
 /// A state saved by [`Slave::save_state`]; it belongs to the instance that made it.
@@ -372,7 +372,7 @@ fn joined(messages: &[LogMessage]) -> String {
     texts.join("; ")
 }
 
-/// A path as the URI that FMI 2.0 wants (RFC 3986: everything but unreserved characters, `/` and `:` escaped).
+/// Path as the URI that FMI 2.0 requires (RFC 3986: everything but unreserved characters, `/` and `:` escaped).
 fn file_uri(path: &Path) -> String {
     let path = path.to_string_lossy().replace('\\', "/");
     let mut uri = String::from(if path.starts_with('/') {

@@ -1,6 +1,6 @@
 //! The status that both versions of FMI share.
 
-/// What a call returns; the same numbers in FMI 2.0 and 3.0.
+/// Status returned by a call; the same numbers in FMI 2.0 and 3.0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u32)]
 pub enum Status {
@@ -12,7 +12,7 @@ pub enum Status {
     Discard = 2,
     /// Refused or failed.
     Error = 3,
-    /// The instance is lost.
+    /// The instance is unusable.
     Fatal = 4,
 }
 

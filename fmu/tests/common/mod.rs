@@ -10,7 +10,7 @@ use moorline::scene::Scene;
 use moorline_host::{FmiVersion, Fmu};
 
 /// One chain on a seabed, 20 elements.
-pub const SCENE: &str = include_str!("../../../tests/scenes/chain.toml");
+pub(crate) const SCENE: &str = include_str!("../../../tests/scenes/chain.toml");
 
 /// Builds the library as it is now, with the profile of this test, and returns a copy that later builds leave alone.
 /// Cargo by itself does not: nothing links to a library for C.
@@ -57,11 +57,11 @@ fn package(version: FmiVersion, features: &[&str], text: &str) -> &'static Path 
 }
 
 /// Packages the scene with a library that is built with the given features, and opens it.
-pub fn open(version: FmiVersion, features: &[&str]) -> Fmu {
+pub(crate) fn open(version: FmiVersion, features: &[&str]) -> Fmu {
     Fmu::open(package(version, features, SCENE)).unwrap()
 }
 
 /// Packages another scene, the only one of its test program, and opens it.
-pub fn open_scene(version: FmiVersion, text: &str) -> Fmu {
+pub(crate) fn open_scene(version: FmiVersion, text: &str) -> Fmu {
     Fmu::open(package(version, &[], text)).unwrap()
 }

@@ -1,5 +1,5 @@
-//! What one network does over a communication step: its integrator, in as many internal steps as it needs, and once more in shorter ones
-//! where those were too long.
+//! Communication step of one network: its integrator takes as many internal steps as it needs, and repeats with
+//! shorter ones where those were too long.
 
 use super::Counters;
 use super::Done;
@@ -16,11 +16,11 @@ use crate::elements::{self, copy_network};
 use crate::model::{Kinematics, Model, Network, State};
 use crate::scene::Integrator;
 
-/// Internal steps of a communication step, at most [-].
+/// Greatest number of internal steps of a communication step [-].
 const SUBSTEPS_MAX: f64 = 1e7;
-/// Parts of a communication step in waves, at most [-]: each asks the waves at every node.
+/// Greatest number of parts of a communication step in waves [-]: each evaluates the waves at every node.
 const PARTS_MAX: f64 = 1e5;
-/// A failed step is tried again with half the internal step, at most so often [-].
+/// Greatest number of retries of a failed step with half the internal step [-].
 const RETRIES_MAX: u32 = 6;
 
 /// Refuses a communication step of `length` [s] that has taken `passed` [s] of it in too many internal steps.
@@ -57,12 +57,12 @@ pub(super) enum Solver {
 }
 
 impl Solver {
-    /// Whether it asks the state being built for what waves do.
+    /// Returns whether the integrator reads the waves from the state being built.
     pub(super) fn reads_next(&self) -> bool {
         matches!(self, Solver::Implicit(_))
     }
 
-    /// Whether it is one of the leapfrogs.
+    /// Returns whether the integrator is one of the leapfrogs.
     pub(super) fn is_leapfrog(&self) -> bool {
         matches!(self, Solver::Leapfrog(_) | Solver::AxialImplicit(_))
     }
@@ -91,11 +91,11 @@ fn leapfrog<K: Kernel>(model: &Model, network: &Network) -> LeapfrogNetwork<K> {
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
     pub(super) implicit: elements::Workspace,
-    /// The state at the end of the step, as it is built.
+    /// State at the end of the step, under construction.
     pub(super) next: State,
 }
 
-/// One communication step: where it starts from, and what moves the held points.
+/// One communication step: its initial state, and the motion of the held points.
 pub(super) struct Communication<'a, H> {
     pub(super) model: &'a Model,
     pub(super) state: &'a State,
@@ -104,11 +104,11 @@ pub(super) struct Communication<'a, H> {
     /// [s]
     pub(super) length: f64,
     pub(super) held: &'a H,
-    /// How the winches pay out, by line; empty where there are none.
+    /// Paid-out lengths of the winches, by line; empty where there are none.
     pub(super) winch_paths: &'a [AxisPath],
-    /// Whether the leapfrogs hold the state.
+    /// True if the leapfrogs hold the state.
     pub(super) holds: bool,
-    /// Whether held points may set out from elsewhere than where the last step took them.
+    /// True if held points may start at another place than the last step ended at.
     pub(super) jumps: bool,
 }
 
@@ -172,7 +172,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
                 return Ok(Done { counters, flow });
             }
             if !is_whole {
-                // numbers that are none would stay in padding, and in masses of nodes that the water's surface seems not to meet
+                // NaN would stay in padding, and in masses of nodes that the water's surface does not reach
                 broken = work.broken_node();
                 *work = leapfrog(model, network);
             }
@@ -181,8 +181,8 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         Err(self.diverged(network.lines[line], node))
     }
 
-    /// Makes a leapfrog ready for steps of `drift` [s] of a network. Returns the flow of energy into lines whose prescribed ends jump; these lines in
-    /// `next` are overwritten.
+    /// Prepares a leapfrog for steps of `drift` [s] of a network. Returns the flow of energy into lines whose
+    /// prescribed ends jump; these lines in `next` are overwritten.
     fn set_out<K: Kernel>(
         &self,
         network: &Network,
@@ -316,7 +316,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         Ok(Done { counters, flow })
     }
 
-    /// Refuses a communication step that would take a network too many internal steps, none longer than `part` [s].
+    /// Refuses a communication step that needs too many internal steps of a network, none longer than `part` [s].
     pub(super) fn check_length(&self, number: usize, choice: &Choice, part: f64) -> Result<(), StepError> {
         let longest = match choice.integrator {
             Integrator::QuasiStatic => part,

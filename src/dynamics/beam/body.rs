@@ -1,11 +1,11 @@
 //! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and the bed under it.
 //!
 //!   −w − B (1 − s̄)     weight w under water, buoyancy B of the whole, s̄ the mean of its wetted part over its way: the discrete
-//!                      gradient of the potential, so that the water's surface gives back what it took
+//!                      gradient of the potential, so that the water's surface conserves energy
 //!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its way
 //!   F                  of the bed, as in `physics::contact_step`
 //!
-//! Its mass over the step is the one that the wetted part at the foreseen middle of the step gives it.
+//! The mass over the step follows from the submergence at the extrapolated middle of the step.
 //!
 //! Source: as in `physics::point`; discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid as `physics::point` is, in
 //! water without waves.
@@ -17,7 +17,7 @@ use crate::model::FreePoint;
 use crate::physics::contact_step::contact_step;
 use crate::physics::fading_damper::damper_reach;
 
-/// What is at a free end of a beam.
+/// Body at a free end of a beam.
 #[derive(Debug, Clone, Copy)]
 pub struct Body<'a> {
     /// The point.
@@ -28,18 +28,18 @@ pub struct Body<'a> {
 
 /// Mean forces on a body over a step.
 pub(super) struct BodyStep {
-    /// Of weight and buoyancy, upwards [N].
+    /// Force of weight and buoyancy, upwards [N].
     lift: f64,
-    /// Of the water [N].
+    /// Force of the water [N].
     drag: Vector3<f64>,
-    /// Of the bed, upwards [N].
+    /// Force of the bed, upwards [N].
     push: f64,
     /// −∂f/∂φ₁ of all [N/m].
     pub(super) slope: Matrix3<f64>,
 }
 
 impl Body<'_> {
-    /// Over a step of a length [s] from one place to another [m].
+    /// Forces over a step of a length [s] from one place to another [m].
     pub(super) fn over(&self, [from, to]: [&Vector3<f64>; 2], length: f64) -> BodyStep {
         let mut step = BodyStep {
             lift: -self.point.weight,
@@ -68,7 +68,7 @@ impl Body<'_> {
         step
     }
 
-    /// Energy that crosses the border on a way [m] through a step of a length [s].
+    /// Energy that crosses the boundary on a path [m] through a step of a length [s].
     pub(super) fn flow(&self, step: &BodyStep, moved: &Vector3<f64>, length: f64) -> Flow {
         let drift = length * self.water;
         Flow {
@@ -80,7 +80,7 @@ impl Body<'_> {
 }
 
 impl BodyStep {
-    /// All of them [N].
+    /// Sum of the forces [N].
     pub(super) fn force(&self) -> Vector3<f64> {
         self.drag + (self.lift + self.push) * Vector3::z()
     }

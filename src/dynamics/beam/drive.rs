@@ -1,4 +1,4 @@
-//! A beam of a model over a span of time: what its points do to its ends, and what they get back.
+//! A beam of a model over a span of time: the forces of its points on its ends, and the reactions.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,17 +8,17 @@ use crate::elements::beam::{BeamEnd, end_hold};
 use crate::model::{Beam, Kinematics, Line, Model, State};
 use crate::physics::section::{Section, join};
 
-/// Linear solves, and the energy that crossed the border.
+/// Linear solves, and the energy that crossed the boundary.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Driven {
     /// Linear solves.
     pub solves: usize,
-    /// Energy given and lost.
+    /// External work and dissipation.
     pub flow: Flow,
 }
 
-/// Advances the beam `index` of `state` from `start` to `end` [s] in `count` equal steps; `held` tells where held points are.
-/// `state.time` and held points are left to the caller.
+/// Advances the beam `index` of `state` from `start` to `end` [s] in `count` equal steps; `held` returns the
+/// kinematics of held points. `state.time` and held points are left to the caller.
 ///
 /// # Errors
 /// A step did not converge; the state is then somewhere within the span.
@@ -111,7 +111,7 @@ fn end_of_step<'a, K: Fn(usize, f64) -> Kinematics>(
     }
 }
 
-/// Which unknowns of a beam's ends are held.
+/// Held unknowns of a beam's ends.
 pub fn held(model: &Model, line: &Line) -> [[bool; 6]; 2] {
     [0, 1].map(|end| {
         let clamped = line.beam.as_ref().is_some_and(|beam| beam.clamped[end].is_some());
@@ -124,7 +124,7 @@ pub fn attitude(k: &Kinematics) -> Matrix3<f64> {
     k.orientation.to_rotation_matrix().into_inner()
 }
 
-/// Free points go where their ends went.
+/// Moves free points to their ends.
 fn carry_free_points(model: &Model, index: usize, state: &mut State) {
     let line = &model.lines[index];
     let shape = &state.lines[index];

@@ -1,4 +1,4 @@
-//! What a beam holds and carries at one time: energy, momenta, reactions, curvature and moments.
+//! Energy, momenta, reactions, curvature and moments of a beam at one time.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ use crate::physics::section::{
     Mixture, Section, Sextuple, StrainEnergy, join, response, split, strain, strain_gradient,
 };
 
-/// Momenta of a beam's own mass.
+/// Momenta of a beam's mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Momentum {
     /// Linear momentum [N s].
@@ -23,16 +23,16 @@ pub struct Momentum {
 /// A beam and its state at one time.
 #[derive(Debug, Clone, Copy)]
 pub struct BeamView<'a> {
-    /// Its elements.
+    /// Elements of the beam.
     pub beam: &'a Beam,
-    /// Its lumped nodes.
+    /// Lumped nodes of the beam.
     pub nodes: &'a Nodes,
-    /// Its state.
+    /// State of the beam.
     pub shape: &'a LineState,
 }
 
 impl<'a> BeamView<'a> {
-    /// Of a line, where it is a beam.
+    /// Measures of a line, where it is a beam.
     pub fn of(line: &'a Line, shape: &'a LineState) -> Option<BeamView<'a>> {
         let beam = line.beam.as_ref()?;
         shape.beam.is_some().then_some(BeamView {
@@ -49,7 +49,7 @@ impl<'a> BeamView<'a> {
         }
     }
 
-    /// Energy, without that of the unknowns that `held` says are held at ends A and B.
+    /// Energy, without that of the unknowns at ends A and B that `held` marks as held.
     pub fn energy(&self, held: [[bool; 6]; 2]) -> Energy {
         let state = beam_state(self.shape);
         let last = self.shape.position.len() - 1;
@@ -97,7 +97,7 @@ impl<'a> BeamView<'a> {
         beam_state(self.shape).frames[i].column(2).into_owned()
     }
 
-    /// Stress of an element as it works on the plain strains, with or without its damping.
+    /// Stress of an element conjugate to the plain strains, with or without its damping.
     fn stress(&self, i: usize, damped: bool) -> Sextuple {
         let (element, state) = (&self.beam.elements[i], beam_state(self.shape));
         let (a, b) = (self.section(i), self.section(i + 1));
@@ -118,7 +118,7 @@ impl<'a> BeamView<'a> {
         elastic.stress + element.damping.diagonal().component_mul(&rate)
     }
 
-    /// Effective tension of an element: what its stress pulls with along it [N].
+    /// Effective tension of an element: the axial component of its stress [N].
     pub fn tension(&self, i: usize) -> f64 {
         let force = self.end_stress(i, 1, true).0;
         let chord = self.shape.position[i + 1] - self.shape.position[i];
@@ -126,14 +126,15 @@ impl<'a> BeamView<'a> {
         force.dot(&along)
     }
 
-    /// Force [N] and moment [N m] that the section at the lower (0) or upper (1) end of an element needs against its stress.
+    /// Force [N] and moment [N m] that balance the stress of an element at its lower (0) or upper (1) end.
     fn end_stress(&self, i: usize, side: usize, damped: bool) -> (Vector3<f64>, Vector3<f64>) {
         let element = &self.beam.elements[i];
         let gradient = strain_gradient(&self.section(i), &self.section(i + 1), element.length);
         split(&(element.length * gradient[side].tr_mul(&self.stress(i, damped))))
     }
 
-    /// Bending moment at a node [N m], of its elements' elastic stress: the mean of both sides, which differ by what turns the node.
+    /// Bending moment at a node [N m], from its elements' elastic stress: the mean of both sides, which differ by the
+    /// moment on the node.
     pub fn bending_moment(&self, node: usize) -> f64 {
         let last = self.beam.elements.len();
         let upper = (node < last).then(|| -self.end_stress(node, 0, false).1);
@@ -154,7 +155,8 @@ impl<'a> BeamView<'a> {
         self.bending_moment(node) * compliance.iter().sum::<f64>()
     }
 
-    /// Force [N] and moment [N m] of the beam on the point at one of its ends: its element's and its half node's.
+    /// Force [N] and moment [N m] of the beam on the point at one of its ends: those of its element and its half
+    /// node.
     pub fn end_action(&self, end: End, point: &PointState) -> (Vector3<f64>, Vector3<f64>) {
         let last = self.beam.elements.len();
         let (node, element, side) = match end {

@@ -121,7 +121,8 @@ fn clockwise() -> Vector3<f64> {
 
 const FREE: [[bool; 6]; 2] = [[false; 6]; 2];
 
-/// Flies for 10 s in steps of 0.1 s: after the load energy and momenta stay, and what the load gave is what the beam has.
+/// Flies for 10 s in steps of 0.1 s: after the load, energy and momenta are constant, and the work of the load equals
+/// the energy of the beam.
 fn assert_conserves(bending: f64, moment: Vector3<f64>) -> Flight {
     let mut flight = Flight::new(20, bending, moment);
     let (mut given, mut worst) = (0.0, 0.0_f64);

@@ -1,6 +1,8 @@
-//! Work given to and lost by a network that goes from rest to rest: that of the mean of the forces before and after a step.
+//! External work and dissipation of a network between two states of rest: those of the mean of the forces before and
+//! after a step.
 //!
-//! Valid for steps over which the forces change little beside their slopes: the mean is exact for forces in proportion to the way.
+//! Valid for steps over which the forces change little compared with their slopes: the mean is exact for forces in
+//! proportion to the displacement.
 
 use nalgebra::Vector3;
 
@@ -11,7 +13,7 @@ use crate::elements::{end_moment, end_moment_power, end_shear};
 use crate::model::{ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::statics::equilibrium::current::drag_at_rest;
 
-/// Work given to and lost by a network at rest before and after a step between two times [s], in [J].
+/// External work and dissipation of a network at rest before and after a step between two times [s], in [J].
 pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times: [f64; 2]) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
@@ -36,7 +38,7 @@ pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times
     flow
 }
 
-/// Work [J] of the mean of two forces [N] on the way between two places [m].
+/// Work [J] of the mean of two forces [N] on the path between two places [m].
 fn work(forces: [Vector3<f64>; 2], [from, to]: [Vector3<f64>; 2]) -> f64 {
     0.5 * (forces[0] + forces[1]).dot(&(to - from))
 }
@@ -89,7 +91,7 @@ fn current_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2
     nodes.map(on_node).sum()
 }
 
-/// Work [J] of the bed on a line: on the inner nodes, or along what lies of a closed-form catenary.
+/// Work [J] of the bed on a line: on the inner nodes, or along the part of a closed-form catenary that lies on it.
 fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
     let Some(contact) = &line.nodes.contact else {
         return 0.0;
@@ -117,8 +119,8 @@ fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
     (1..line.segment_count()).map(on_node).sum()
 }
 
-/// Work [J] along a bed at a height [m] of the friction by which the horizontal tension of closed-form catenaries grows: that of a
-/// segment acts on the one of its nodes that lies, or on both.
+/// Work [J] along a bed at a height [m] of the friction by which the horizontal tension of closed-form catenaries
+/// grows: that of a segment acts on the one of its nodes on the bed, or on both.
 fn friction_work(bed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm; 2]) -> f64 {
     let on_segment = |i: usize| {
         let force = |k: usize| {
@@ -151,8 +153,8 @@ fn point_bed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) -> 
     work(points.map(push), points.map(|at| at.position))
 }
 
-/// Force [N] of a line on a held point, without the weight of its own half node, whose energy is not held, unless the line is a
-/// closed-form catenary.
+/// Force [N] of a line on a held point, without the weight of the half node there, whose energy is excluded, unless
+/// the line is a closed-form catenary.
 fn force_of_line(
     line: &Line,
     shape: &LineState,

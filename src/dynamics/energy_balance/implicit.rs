@@ -1,16 +1,18 @@
-//! What a step of an implicit integrator gave to a network, what it took from it, and what the integrator itself did.
+//! External work, dissipation and algorithmic dissipation of a step of an implicit integrator.
 //!
-//! The scheme moves a network from r to r' by the forces F = (1 − α_f) f(t') + α_f f(t), which do the work F·(r' − r): so each force is
-//! booked. Its inertia (1 − α_m) M'a' + (α_m − α_f) M'a + α_f M a does what the energy of motion changes by, but for
+//! The scheme moves a network from r to r' by the forces F = (1 − α_f) f(t') + α_f f(t), which do the work F·(r' −
+//! r). The work of each force is recorded in this form. The work of the inertia (1 − α_m) M'a' + (α_m − α_f) M'a +
+//! α_f M a is the change of kinetic energy, except for
 //!
-//!   ¼ (v'ᵀ(M' − M)v' + vᵀ(M' − M)v),   which masses bring that turn with their line or dip into the water, and
+//!   ¼ (v'ᵀ(M' − M)v' + vᵀ(M' − M)v),   due to masses that turn with their line or enter the water, and
 //!   (r' − r)·inertia − ½ (v + v')·½(M + M')(v' − v),   the dissipation of the scheme.
 //!
-//! On each joint and weight that changes it dissipates (½ − α_f)(s' − s)·(r' − r), s being what that resists with: what its weights do beyond the
-//! mean of both. Segments pull by the discrete gradient of their energy in the place of that mean ([`crate::physics::stretch_step`]): what it does is
-//! held or taken to the last bit, and (½ − α_f)(N' q' − N q)·(d' − d) is dissipated. Over all of a linear system that nothing drives these
-//! sum to no less than nothing; of one that is driven they may have either sign. What the mean does on joints and surfaces beyond what is
-//! stored is the error of the integration.
+//! On each joint and weight that changes the scheme dissipates (½ − α_f)(s' − s)·(r' − r), with the resistance s: the
+//! work of its weights beyond the mean of both. Segments pull by the discrete gradient of their energy in place of
+//! that mean ([`crate::physics::stretch_step`]): its work is stored or dissipated to the last bit, and (½ − α_f)(N'
+//! q' − N q)·(d' − d) is algorithmic dissipation. Over all of a linear system without external work these sums are
+//! not negative; with external work they may have either sign. The work of the mean on joints and surfaces beyond the
+//! stored energy is the error of the integration.
 //!
 //! Source: the discrete balance of Newmark's approximations, as in Krenk (2006), Comput. Methods Appl. Mech. Eng. 195, 6110-6124.
 
@@ -29,20 +31,20 @@ use crate::physics::morison::drag;
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::slender::Slender;
 
-/// A step that an implicit integrator has made.
+/// Completed step of an implicit integrator.
 #[derive(Clone, Copy)]
 pub struct Passed<'a> {
-    /// The states around it.
+    /// States before and after the step.
     pub states: [&'a State; 2],
-    /// Their times [s].
+    /// Times of the states [s].
     pub times: [f64; 2],
-    /// How it was made.
+    /// Scheme of the step.
     pub scheme: &'a Scheme,
-    /// What it was made with: it knows over which penetrations the bed's dampers fade in.
+    /// Workspace of the step, which holds the ranges of penetration over which the bed's dampers fade in.
     pub work: &'a Workspace,
 }
 
-/// Energy [J] that crossed the border of a network in a step.
+/// Energy [J] that crossed the boundary of a network in a step.
 pub fn flow(model: &Model, network: &Network, passed: &Passed) -> Flow {
     let alpha_f = passed.scheme.alpha_f;
     let mut flow = Flow::default();
@@ -85,7 +87,7 @@ impl Passed<'_> {
         self.times[1] - self.times[0]
     }
 
-    /// The state that knows the waves of both times: the one before is a copy of the network alone.
+    /// State with the waves of both times: the one before is a copy of the network alone.
     fn sea(&self) -> &State {
         self.states[1]
     }
@@ -108,7 +110,7 @@ impl Passed<'_> {
         (after * before.inverse()).scaled_axis() / self.length()
     }
 
-    /// What masses of a line bring that change, and what the scheme's inertia dissipates [J].
+    /// Energy from masses of a line that change, and dissipation of the scheme's inertia [J].
     fn inertia(&self, model: &Model, index: usize) -> Flow {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
@@ -149,8 +151,8 @@ impl Passed<'_> {
         flow
     }
 
-    /// What a mass brings that changes, and what the scheme's inertia dissipates on it [J]: its velocities [m/s] and accelerations [m/s²] before and
-    /// after the step, and its mean velocity over it [m/s].
+    /// Energy from a mass that changes, and dissipation of the scheme's inertia on it [J]: its velocities [m/s] and
+    /// accelerations [m/s²] before and after the step, and its mean velocity over it [m/s].
     fn inertia_of(
         &self,
         [old, new]: [Mass; 2],
@@ -171,12 +173,13 @@ impl Passed<'_> {
         }
     }
 
-    /// What the scheme makes of a value before and after the step beyond the mean of both.
+    /// Weighted value of the scheme before and after the step, less the mean of both.
     fn beyond_mean(&self, [old, new]: [f64; 2]) -> f64 {
         (0.5 - self.scheme.alpha_f) * (new - old)
     }
 
-    /// What the springs of a line take from its held ends, what they do not keep, and what the scheme dissipates on them [J].
+    /// Work of a line's held ends on its springs, the part that the springs do not store, and the scheme's
+    /// dissipation on them [J].
     fn stretching(&self, model: &Model, index: usize) -> Flow {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
@@ -202,7 +205,7 @@ impl Passed<'_> {
         flow
     }
 
-    /// What the scheme dissipates on the joints of a line, and on the buoyancy that it lacks out of the water [J].
+    /// Dissipation of the scheme on the joints of a line, and on the buoyancy that is missing out of the water [J].
     fn weight_and_joint_dissipation(&self, model: &Model, index: usize) -> f64 {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
@@ -312,7 +315,7 @@ impl Side<'_> {
         flow
     }
 
-    /// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
+    /// Power that water, mass damping and seabed dissipate at a node, and the power of moving water on it [W].
     fn node_power(&self, index: usize, i: usize, water: WaterAlong) -> Flow {
         let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
         let (nodes, velocity, mean) = (
@@ -359,8 +362,8 @@ impl Side<'_> {
         flow
     }
 
-    /// Power of held ends on the buoyancy that they lack in calm water, and that of the buoyancy by which waves exceed it on the other
-    /// nodes [W].
+    /// Power of held ends on their missing buoyancy in calm water, and that of the additional buoyancy in waves on
+    /// the other nodes [W].
     fn surface_power(&self, index: usize, held: [bool; 2], water: WaterAlong) -> f64 {
         let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
         let Some(surface) = &line.surface else {
@@ -408,7 +411,7 @@ impl Side<'_> {
         }
     }
 
-    /// Power that moving water gives a free point, and that water and seabed take from it [W].
+    /// Power of moving water on a free point, and the power that water and seabed dissipate there [W].
     fn point_power(&self, free: &FreePoint, point: usize) -> Flow {
         let (model, state) = (self.model, &self.state.points[point]);
         let (z, velocity, mean) = (

@@ -1,28 +1,29 @@
-//! The polynomials through the newest samples, and the degree that is to be expected to predict best.
+//! Polynomials through the newest samples, and the degree with the least expected error.
 
 use super::extrapolation::{DEGREE_MAX, Extrapolation, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms};
 use crate::math::lanes::{LANES, Lanes};
 
-/// Error of another degree over that of the present one, below which it takes over [-]. On harmonic motions anything from 0.3 to 0.9 but
-/// ½, which symmetry makes exact, tells rounding from motion; 0.45 predicts them best.
+/// Error of another degree over that of the present one, below which it takes over [-]. On harmonic motions any value
+/// from 0.3 to 0.9 except ½, which symmetry makes exact, separates rounding from motion; 0.45 predicts them best.
 const BETTER: f64 = 0.45;
-/// The same to and from degree 0, so that what comes to rest, jumps or sets out is followed at once [-].
+/// Ratio of errors for a change to and from degree 0, so that a point that comes to rest, jumps or starts moving is
+/// followed at once [-].
 const BETTER_AT_REST: f64 = 0.9;
-/// What multiplies the errors of the degrees that are not kept: where degree 0 is, and where another [-].
+/// Factors on the errors of the degrees that are not kept: with degree 0 kept, and with another [-].
 const HANDICAPS: [Terms; 2] = [
     [1.0 / BETTER_AT_REST; DEGREE_MAX + 1],
     [1.0 / BETTER_AT_REST, 1.0 / BETTER, 1.0 / BETTER, 1.0 / BETTER],
 ];
-/// Step over the time between the first two samples, above which they make no line [-].
+/// Ratio of the step to the time between the first two samples, above which they do not determine a line [-].
 const UNJUDGED_MAX: f64 = 2.0;
 
-/// Divided differences of the samples that count.
+/// Divided differences of the samples in use.
 pub(super) struct Differences {
-    /// Of the newest samples, by order from 0 on.
+    /// Differences of the newest samples, by order from 0 on.
     newest: [Lanes; DEGREE_MAX + 1],
-    /// By how much polynomials of every degree through the samples before would have missed the newest ones.
+    /// Errors of polynomials of every degree through the samples before at the newest ones.
     miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
-    /// What that is to be multiplied by for the end of the step, where the host does not keep its step.
+    /// Factors on the errors for the end of the step, where the host does not keep its step.
     stretch: Option<[Terms; JUDGED]>,
 }
 
@@ -45,7 +46,7 @@ impl Differences {
         let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = extrapolation.reach;
         let miss = |next: Lanes, reach: f64| over(next, reach).abs();
         let newest = miss(ps, r3);
-        // where a sample is passed over, there is no other difference of fourth order
+        // where a sample is skipped, there is no other difference of fourth order
         let before = if extrapolation.all { miss(qt, s3) } else { newest };
         Differences {
             newest: [a, p, pq, pr],
@@ -57,8 +58,8 @@ impl Differences {
         }
     }
 
-    /// The degrees given, or the ones that are set instead, because they can be expected to predict clearly better; of the `known` newest
-    /// samples.
+    /// Degrees as given, or those that replace them because their expected error is clearly less; of the `known`
+    /// newest samples.
     #[inline(always)]
     pub(super) fn degree(&self, known: usize, degree: &mut Lanes) -> Lanes {
         if known < SAMPLES_MAX || self.stretch.is_some() {
@@ -75,7 +76,7 @@ impl Differences {
         let moves = above(kept, 1).choose(factor(BETTER), factor(BETTER_AT_REST));
         let other = error[1].min(error[2]).min(error[3]) * moves;
         let other = other.min(error[0] * factor(BETTER_AT_REST));
-        // another would have been better, or nothing moves and the degree says it does
+        // another would have been better, or nothing moves and the degree assumes motion
         let rests = kept - error[0] * Lanes::splat(f64::MAX);
         if (own - other).any_positive() || rests.any_positive() {
             (0..LANES).for_each(|axis| degree[axis] = self.judge(SAMPLES_MAX, kept[axis], axis));
@@ -88,7 +89,8 @@ impl Differences {
     #[inline(never)]
     fn degree_of_any(&self, known: usize, degree: &mut Lanes) -> Lanes {
         if known <= 2 {
-            // two samples can judge no line, but a host that moves a point goes on moving it, as far as that tells
+            // two samples cannot assess a line, but a host that moves a point usually keeps moving it, within that
+            // limit
             let far = |stretch: &[Terms; JUDGED]| stretch[0][0] > UNJUDGED_MAX;
             let line = known == 2 && !self.stretch.as_ref().is_some_and(far);
             return Lanes::splat(f64::from(u8::from(line)));
@@ -97,14 +99,14 @@ impl Differences {
         *degree
     }
 
-    /// The degree along an axis that can be expected to predict best, the present one being `degree`.
+    /// Degree along an axis with the least expected error, the present one being `degree`.
     #[cold]
     #[inline(never)]
     fn judge(&self, known: usize, degree: f64, axis: usize) -> f64 {
         let judged = JUDGED.min(known - 2);
         let highest = DEGREE_MAX.min(known - 1 - judged);
         let kept = degree as usize;
-        // what rests and jumps within a short step does not go on like that over a longer one
+        // a point at rest that jumps within a short step does not continue like that over a longer one
         let stretch = self.stretch.filter(|_| kept > 0);
         let stretch = stretch.unwrap_or([[1.0; DEGREE_MAX + 1]; JUDGED]);
         let error = |k: usize| -> f64 {
@@ -118,7 +120,7 @@ impl Differences {
         let handicaps = HANDICAPS[usize::from(kept > 0)];
         for (other, handicap) in handicaps.into_iter().enumerate().take(highest + 1) {
             let handicapped = error(other) * handicap;
-            // what rests has no degree to keep
+            // a point at rest has no degree to keep
             if handicapped < least || (other == 0 && handicapped == 0.0) {
                 (best, least) = (other, handicapped);
             }

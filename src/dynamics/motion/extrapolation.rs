@@ -1,4 +1,5 @@
-//! When a host spoke, and what that makes of predictions: the same for all that it moves.
+//! Times of a host's samples and the factors of predictions that follow from them, shared by all points that it
+//! moves.
 
 use std::array::from_fn;
 
@@ -9,45 +10,47 @@ use crate::scene::Reconstruction;
 
 /// Highest degree of the extrapolated polynomial [-].
 pub(super) const DEGREE_MAX: usize = 3;
-/// Samples that a degree is judged by: one alone can be met by chance, where the motion inflects.
+/// Samples by which a degree is assessed: one alone can be met by chance, where the motion inflects.
 pub(super) const JUDGED: usize = 2;
 /// Samples kept.
 pub(super) const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
-/// The longest step in sight over the distance of two samples, above which only one of them counts [-]. A step h makes ε(h/δ)ᵏ of noise ε in samples
-/// δ apart; but one sample less is one degree less. On `oc3_catenary`, 12 makes the error in tension up to four times as large where steps vary by
-/// a factor of 20; 100 gains nothing there, and shows three times as much of a noise of 1 µm in a step of 3 s after some of 0.05 s.
+/// Ratio of the longest step in the record to the distance of two samples, above which only one of them counts [-]. A
+/// step h makes ε(h/δ)ᵏ of noise ε in samples δ apart; but one sample less is one degree less. On `oc3_catenary`, 12
+/// makes the error in tension up to four times as large where steps vary by a factor of 20; 100 gains nothing there,
+/// and amplifies a noise of 1 µm three times as much in a step of 3 s after some of 0.05 s.
 const STEP_RATIO_MAX: f64 = 30.0;
-/// Samples that lie this many steps apart count in any case [-]: a host that goes on in short steps after a long one is soon known by these.
+/// Number of steps up to which samples that lie this far apart count in any case [-]: a host that continues in short
+/// steps after a long one then soon has a complete record.
 const STEPS_PASSED_MAX: f64 = 4.0;
 /// Rounding of a host's times over its steps [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Of four axes, newest first.
+/// Samples of four axes, newest first.
 pub(super) type Samples = [Lanes; SAMPLES_MAX];
 
-/// When a host spoke, as far back as predictions look: at the same times of all that it moves.
+/// Times of a host's samples, as far back as predictions need: the same for all that it moves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// Newest first; the first `count` are in use [s].
     times: [f64; SAMPLES_MAX],
     count: usize,
-    /// When all that was missed is to be made up [s].
+    /// Time by which all errors are removed [s].
     made_up: f64,
-    /// The time between two samples [s] that the `even` newest pairs of neighbours are apart, but for rounding.
+    /// Time between two samples [s] that the `even` newest pairs of neighbours are apart, but for rounding.
     gap: f64,
     even: usize,
 }
 
-/// What the time of a sample is to the samples before.
+/// Position of a sample's time relative to the samples before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Order {
     /// Later.
     After,
     /// Later, in place of the newest one before, which lies too close to the one before that.
     Instead,
-    /// The same instant again: the newer word counts.
+    /// The same instant again: the newer sample counts.
     Again,
-    /// Earlier: what came before is no history of it.
+    /// Earlier: the samples before are discarded.
     Before,
 }
 
@@ -64,7 +67,7 @@ impl Order {
 }
 
 impl Clock {
-    /// Begins at a time [s].
+    /// Clock that starts at a time [s].
     pub fn new(time: f64) -> Clock {
         Clock {
             times: [time; SAMPLES_MAX],
@@ -81,7 +84,8 @@ impl Clock {
         (self.count > 1 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
     }
 
-    /// A host speaks at a time [s] of a step from then on [s]: `extrapolation` becomes what all paths need to continue by it, whatever it was.
+    /// Adds a sample at a time [s] for a step that starts there [s]: `extrapolation` receives all that the paths need
+    /// to continue by it; its old contents are not read.
     pub fn tell(
         &mut self,
         time: f64,
@@ -103,7 +107,7 @@ impl Clock {
         extrapolation.renew(self, order, step, reconstruction);
     }
 
-    /// Takes in a time [s] that comes a step [s] after the newest, before another one [s].
+    /// Adds a time [s] that comes a step [s] after the newest, before another one [s].
     fn follow(&mut self, time: f64, last_step: f64, step: f64) -> Order {
         if self.crowds(last_step.max(step)) {
             (self.gap, self.even) = (time - self.times[1], 1);
@@ -118,7 +122,7 @@ impl Clock {
         Order::After
     }
 
-    /// Whether the newest two samples lie too close together for both to count in a step [s].
+    /// Returns whether the newest two samples lie too close together for both to count in a step [s].
     fn crowds(&self, step: f64) -> bool {
         if self.count < 2 || (self.even == SAMPLES_MAX - 1 && self.keeps(step)) {
             return false;
@@ -133,29 +137,31 @@ impl Clock {
         pairs.map(|pair| pair[0] - pair[1]).fold(step, f64::max)
     }
 
-    /// Whether a step [s] is as long as the ones before, but for rounding.
+    /// Returns whether a step [s] is as long as the ones before, but for rounding.
     fn keeps(&self, step: f64) -> bool {
         (step - self.gap).abs() <= ROUNDING * self.gap
     }
 }
 
-/// What the times of the samples make of a prediction, worked out once for all paths of a communication step.
+/// Factors of a prediction that follow from the times of the samples, evaluated once for all paths of a communication
+/// step.
 ///
-/// A host that keeps its step is taken at its word: its samples and the end of the step are evenly apart, whatever rounding says. What
-/// follows from that is then the same for every step.
+/// The samples of a host that keeps its step and the end of the step are taken as exactly equidistant, regardless of
+/// rounding. The factors are then the same for every step.
 #[derive(Debug, Clone)]
 pub struct Extrapolation {
     pub(super) order: Order,
     pub(super) reconstruction: Reconstruction,
     /// Start of the step [s], its length [s] and 1/length [1/s].
     pub(super) span: [f64; 3],
-    /// The times in which all that the path misses now is to be made up, at the soonest and at the latest [s], where these are more than the step.
+    /// Shortest and longest time in which the present error of the path is removed [s], where these are more than the
+    /// step.
     pub(super) late: Option<[f64; 2]>,
-    /// How many samples a degree can be judged by.
+    /// Number of samples by which a degree can be assessed.
     pub(super) count: usize,
-    /// Whether all samples count: else the second newest is passed over.
+    /// True if all samples count: else the second newest is skipped.
     pub(super) all: bool,
-    /// Whether the host keeps its step.
+    /// True if the host keeps its step.
     pub(super) even: bool,
     /// Unit of the times that follow [s], and its inverse [1/s]: the step where it is kept.
     pub(super) unit: [f64; 2],
@@ -172,7 +178,8 @@ pub struct Extrapolation {
     pub(super) integral: Terms,
 }
 
-/// 1/(t_i − t_{i+k}) by place i, for the orders k from 1 on. Written out, so that the compiler unrolls what is done with them.
+/// 1/(t_i − t_{i+k}) by place i, for the orders k from 1 on. Written out, so that the compiler unrolls the loops over
+/// them.
 #[derive(Debug, Clone)]
 pub(super) struct Reciprocals {
     pub(super) first: [f64; SAMPLES_MAX - 1],
@@ -182,7 +189,7 @@ pub(super) struct Reciprocals {
 }
 
 impl Reciprocals {
-    /// Of these times.
+    /// Reciprocals of these times.
     fn new(t: &[f64; SAMPLES_MAX]) -> Reciprocals {
         Reciprocals {
             first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
@@ -197,7 +204,7 @@ impl Reciprocals {
 pub(super) type Terms = [f64; DEGREE_MAX + 1];
 
 impl Extrapolation {
-    /// Of nothing, as it is before [`Clock::tell`].
+    /// Empty extrapolation, before the first sample.
     pub fn none() -> Extrapolation {
         let zeros = [0.0; DEGREE_MAX + 1];
         Extrapolation {
@@ -219,7 +226,8 @@ impl Extrapolation {
         }
     }
 
-    /// Of a step from a time [s] on whose end a host tells, so that nothing is predicted; its length is in [s].
+    /// Extrapolation of a step from a time [s] with a sample at its end, so that nothing is predicted; its length is
+    /// in [s].
     #[inline]
     pub fn reach(&mut self, start: f64, step: f64) {
         self.reconstruction = Reconstruction::Interpolate;
@@ -248,7 +256,7 @@ impl Extrapolation {
         self.count = self.usable(clock.count);
         let times = self.pick(&clock.times);
         let known = clock.count - usize::from(!self.all);
-        // what is not in use gets times that divide nothing by zero, and is not looked at
+        // unused entries get times that divide nothing by zero; they are not read
         let t: [f64; SAMPLES_MAX] = from_fn(|i| match i < known {
             true => times[i],
             false => times[known - 1] - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE),
@@ -256,7 +264,7 @@ impl Extrapolation {
         self.foresee(&t, start + step);
     }
 
-    /// From samples at the times `t` to an end.
+    /// Extrapolation from samples at the times `t` to an end.
     fn foresee(&mut self, t: &[f64; SAMPLES_MAX], end: f64) {
         self.inverse = Reciprocals::new(t);
         let [h, e1, e2, e3] = [end - t[0], end - t[1], end - t[2], end - t[3]];
@@ -281,7 +289,7 @@ impl Extrapolation {
         ];
     }
 
-    /// The samples that count; the last ones are not in use where there are fewer.
+    /// Samples that count; the last ones are not in use where there are fewer.
     pub(super) fn pick<T: Copy>(&self, &[a, b, c, d, e, f]: &[T; SAMPLES_MAX]) -> [T; SAMPLES_MAX] {
         match self.all {
             true => [a, b, c, d, e, f],
@@ -289,13 +297,14 @@ impl Extrapolation {
         }
     }
 
-    /// How many samples a degree can be judged by, where only the `newest` of all are known.
+    /// Number of samples by which a degree can be assessed, with only the `newest` of all available.
     #[inline(always)]
     pub(super) fn known(&self, newest: usize) -> usize {
         self.count.min(self.usable(newest))
     }
 
-    /// The same if there are no more. Where one of all is passed over, the highest degree is judged by one sample instead of two.
+    /// The same if there are no more. Where one of all is skipped, the highest degree is assessed by one sample
+    /// instead of two.
     fn usable(&self, newest: usize) -> usize {
         let passed_over = !self.all && (2..SAMPLES_MAX).contains(&newest);
         newest - usize::from(passed_over)

@@ -1,6 +1,6 @@
-//! The part of a line that makes it a beam.
+//! Construction of the beam properties of a line.
 //!
-//! What a line type leaves open of its section follows from `solid_section`, a circle of diameter d with Young's modulus E and
+//! Section properties that a line type leaves open follow from `solid_section`, a circle of diameter d with Young's modulus E and
 //! Poisson's ratio ν: EI = E π d⁴/64, GJ = E/(2(1 + ν)) π d⁴/32, GA = κ E/(2(1 + ν)) π d²/4 with κ = 6(1 + ν)/(7 + 6ν), rotary inertia
 //! m d²/16 about a diameter and m d²/8 about the axis. Fibres lower EI alone, by `fibre_law`.
 //!
@@ -25,7 +25,8 @@ struct Part {
     rotary_inertia: Vector3<f64>, // about the three directors [kg m]
 }
 
-/// What makes line `index` a beam; `None` where it is a cable. `laws` and the `lengths` of elements [m] are those of its sections.
+/// Beam properties of line `index`; `None` where it is a cable. `laws` and the `lengths` of elements [m] are those of
+/// its sections.
 pub(super) fn build(
     scene: &Scene,
     index: usize,
@@ -133,7 +134,7 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
     })
 }
 
-/// How many times more easily the section bends than a solid one [-].
+/// Ratio of a solid section's bending stiffness to that of the section [-].
 fn strands(line_type: &LineType) -> f64 {
     let fibres = line_type.fibres.unwrap_or(1) as f64;
     match line_type.fibre_law {

@@ -1,15 +1,16 @@
-//! Which lines could ever meet the seabed: the others are made without contact.
+//! Lines that can meet the seabed; the others are built without contact.
 //!
-//! Lines reach below the lowest point that holds one of their own ends by their length, stretched by half; those between free points below the lowest
-//! that holds any of the lines they hang together with, by the length of all of these. Vessels keep about their height. What else a host or a path moves, and what may come loose, can get
-//! anywhere.
+//! Lines reach below the lowest fixed point at their ends by their length, stretched by half. Lines between free
+//! points reach below the lowest fixed point of all lines connected to them, by the length of all of these. Vessels
+//! are assumed to keep their height. Other points that a host or a path moves, and lines that may be released, can
+//! reach any place.
 
 use crate::scene::{Line, Point, PointKind, Scene};
 
-/// Stretched over unstretched length that a line is taken to reach at most [-].
+/// Stretched over unstretched length assumed for the reach of a line [-].
 const STRETCH_MAX: f64 = 1.5;
 
-/// Whether a line could ever touch the bed.
+/// Returns whether a line could ever touch the bed.
 pub(super) fn may_touch_bed(scene: &Scene, line: &Line) -> bool {
     let Some(bed) = &scene.seabed else {
         return false;
@@ -30,7 +31,7 @@ pub(super) fn may_touch_bed(scene: &Scene, line: &Line) -> bool {
     !bed.is_level() || moves || reaches || tied.iter().any(parts)
 }
 
-/// Least heights of the points that hold lines at their ends [m]; none of one that may get anywhere.
+/// Least heights of the points at the ends of lines [m]; none for one that may reach any place.
 fn held_heights(scene: &Scene, lines: &[&Line]) -> Vec<Option<f64>> {
     let ends = lines.iter().flat_map(|line| [&line.from, &line.to]);
     let points = ends.filter_map(|name| scene.points.iter().find(|point| point.name == *name));
@@ -38,7 +39,8 @@ fn held_heights(scene: &Scene, lines: &[&Line]) -> Vec<Option<f64>> {
     held.map(|point| height(scene, point)).collect()
 }
 
-/// Least height of a point that is fixed or rides on a vessel, which keeps about its place [m]; none of one that may get anywhere.
+/// Least height of a point that is fixed, or carried by a vessel, which keeps its height [m]; none for one that may
+/// reach any place.
 fn height(scene: &Scene, point: &Point) -> Option<f64> {
     let [x, y, z] = point.position;
     match (&point.kind, &point.on) {
@@ -51,7 +53,7 @@ fn height(scene: &Scene, point: &Point) -> Option<f64> {
     }
 }
 
-/// A line and all that hang together with it by free points.
+/// Lines connected to a line by free points, itself included.
 fn tied<'a>(scene: &'a Scene, line: &'a Line) -> Vec<&'a Line> {
     let is_free = |name: &str| {
         let point = scene.points.iter().find(|point| point.name == name);

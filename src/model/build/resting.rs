@@ -1,18 +1,21 @@
-//! How deep a line rests in a bed whose contact is softened to the mesh.
+//! Depth at which a line rests in a bed whose contact is softened to the mesh.
 //!
-//! A line of weight w under the horizontal tension H on springs that give way by δ under its weight leaves the bed smoothly, over the length
-//! λ = √(Hδ/w). With u counted from where the springs let go, their level at z = δ above the line at rest, the free part is
+//! A line of weight w under the horizontal tension H on springs with the deflection δ under its weight leaves the bed
+//! smoothly, over the length λ = √(Hδ/w). With u counted from the point where the springs lose contact, their level
+//! at z = δ above the line at rest, the free part is
 //!
 //!   z = δ + (δ/λ)u + (w/2H)u² = (w/2H)(u + λ)² + δ/2:
 //!
-//! the catenary over a rigid bed that lies δ/2 above the line at rest. So a line rests δ/2 deep, and what hangs from the bed is right to
-//! the next order in the mesh; a line that rests on the bed hangs δ/2 too high, which costs 0.2 % of tension with 40 elements.
-//! Towards an end that is held on the bed the line comes up to it, over a length R of a few elements, so that the end is not pulled
-//! down: the line follows a smooth step as long as R > √3 λ, and λ is an element or less of the meshes in use. Three elements: with five
-//! the step reaches the touchdown of a line that lies on the bed for little of its length, and the error of tension is 1.4 times as great on
-//! oc3_catenary moved slowly (n = 14 to 40); with two it is hardly smaller. A line that bends follows the step only where that is longer than the
-//! length ℓ = (4EI/k)^¼ over which a beam on springs of k per length settles, and its curvature is that of the step: up to five elements, then, as ℓ comes to
-//! an element.
+//! the catenary over a rigid bed that lies δ/2 above the line at rest. A line therefore rests δ/2 deep, and its
+//! suspended part is right to the next order in the mesh; a line that rests on the bed surface hangs δ/2 too high,
+//! which costs 0.2 % of tension with 40 elements.
+//! Towards an end that is fixed on the bed the line rises to it, over a length R of a few elements, so that the end
+//! is not pulled down: the line follows a smooth step as long as R > √3 λ, and λ is an element or less of the meshes
+//! in use. R is three elements: with five the step reaches the touchdown of a line with a short part on the bed, and
+//! the error of tension is 1.4 times as great on oc3_catenary moved slowly (n = 14 to 40); with two it is hardly
+//! smaller. A line that bends follows the step only where that is longer than the length ℓ = (4EI/k)^¼ over which a
+//! beam on springs of k per length settles, and its curvature is that of the step. R then grows up to five elements,
+//! as ℓ approaches an element.
 //!
 //! Source: beam without bending stiffness on Winkler's foundation, here solved for the level; the tests below and
 //! `tests/statics/equilibrium.rs` hold the gain against the elastic catenary.
@@ -20,14 +23,15 @@
 use crate::model::{Contact, Line, Nodes, Point, Role};
 use crate::physics::seabed::REGULARISED_PENETRATION;
 
-/// Static compression that the line rests in the bed by [-].
+/// Static compression of the contact at which the line rests [-].
 const SUNK: f64 = 0.5;
-/// Elements over which the line comes up to a held end [-].
+/// Elements over which the line rises to a held end [-].
 const RISE: f64 = 3.0;
 /// The same over ℓ where the line bends, and at most over an element.
 const RISE_BENT: f64 = 5.0;
 
-/// Lowers the level from which softened contact pushes, from where a line would rest on the bed to where what hangs is right.
+/// Lowers the level from which softened contact pushes, from the one at which a line would rest on the bed to the one
+/// that makes its suspended part right.
 pub(super) fn sink(line: &mut Line, points: &[Point]) {
     if let Some(winch) = &mut line.winch {
         sink(winch.longest_mut(), points);
@@ -72,7 +76,7 @@ fn greatest_stiffness(line: &Line) -> f64 {
     cable.copied().chain(beam).fold(0.0, f64::max)
 }
 
-/// Whether a held point lies on the bed, as far as an element of `length` [m] tells.
+/// Returns whether a held point lies on the bed, to the resolution of an element of `length` [m].
 fn lies_on(contact: &Contact, point: &Point, length: f64) -> bool {
     let held = !matches!(point.role, Role::Free(_));
     let height = point.reference.z - contact.height_under(point.reference);

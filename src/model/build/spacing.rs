@@ -1,4 +1,5 @@
-//! What the mesh of a line depends on: the lines it is joined to, its clamps, and where it touches down as its ends move.
+//! Data on which the mesh of a line depends: the lines it is joined to, its clamps, and its touchdown as its ends
+//! move.
 
 use nalgebra::Vector3;
 
@@ -12,16 +13,17 @@ use crate::scene::{self, PointKind, Scene, percent};
 const ELEMENTS_PER_BEND: f64 = 2.0;
 /// Length that is finely meshed at a clamp and around the touchdown, over √(EI/T) [-].
 const BENDS: f64 = 2.0;
-/// Way of the touchdown to both sides where the motion of the ends is not known, over the length of the line [-].
+/// Displacement of the touchdown to both sides where the motion of the ends is not given, over the length of the line
+/// [-].
 const TOUCHDOWN_SHARE: f64 = 0.025;
-/// Moments at which a known motion is looked at [-].
+/// Moments at which a given motion is evaluated [-].
 const MOMENTS: usize = 400;
 
 /// Parts of the length of a line below which two arc lengths are one [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Elements that every line is to have [-]: those of a line alone for the longest of lines that meet at free points, shares by length
-/// for the others.
+/// Elements of every line [-]: those of a line alone for the longest of lines that meet at free points, shares by
+/// length for the others.
 pub(super) fn elements(scene: &Scene) -> Vec<f64> {
     let alone = alone(scene);
     let pairs = lengths(scene).into_iter().zip(longest(scene));
@@ -94,7 +96,7 @@ fn alone(scene: &Scene) -> f64 {
     given.unwrap_or_else(|| line_elements(solver.tolerance))
 }
 
-/// Where a line that bends needs short elements, as far as its closed-form catenary tells.
+/// Places where a line that bends needs short elements, according to its closed-form catenary.
 pub(super) fn refinements(
     scene: &Scene,
     line: &scene::Line,
@@ -176,7 +178,8 @@ fn bed_below(scene: &Scene) -> impl Fn(Vector3<f64>) -> Option<Bed> {
     }
 }
 
-/// The catenaries that `hang` gives between the ends of a line at the reference and in the course of the scene's motion, and whether that is known.
+/// Closed-form catenaries by `hang` between the ends of a line at the reference and in the course of the scene's motion, and whether a motion
+/// is given.
 fn shapes(
     scene: &Scene,
     ends: [&Point; 2],
@@ -194,7 +197,7 @@ fn shapes(
     (shapes.into_iter().flatten().collect(), known)
 }
 
-/// Places of a point [m] in the course of the scene's motion; only its reference where none is known.
+/// Places of a point [m] in the course of the scene's motion; only its reference where none is given.
 fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
     let place = |t: f64| match &point.role {
         Role::Coupled { motion: Some(motion) } | Role::Prescribed(motion) => {
@@ -227,7 +230,7 @@ fn hang(line: &scene::Line, laws: &[LineLaw], bed: Option<Bed>, chord: Vector3<f
     catenary::solve(&sections, chord.xy().norm(), chord.z, bed).ok()
 }
 
-/// Ranges of arc length [m] over which the ends of what lies on the bed wander; the ends of the line are none.
+/// Ranges of arc length [m] over which the ends of the part on the bed move, excluding the ends of the line.
 fn touchdowns(shapes: &[Catenary], total: f64) -> Vec<[f64; 2]> {
     let mut ranges: Vec<[f64; 2]> = Vec::new();
     for shape in shapes {
@@ -257,7 +260,7 @@ fn section_at<'a>(line: &scene::Line, laws: &'a [LineLaw], s: f64) -> &'a LineLa
     &laws[at.unwrap_or(laws.len() - 1)]
 }
 
-/// How many elements of which lengths the lines of a scene have, and why: one sentence a line.
+/// Number and lengths of the elements of a scene's lines with the reasons: one sentence a line.
 pub(super) fn in_words(scene: &Scene, model: &Model) -> Vec<String> {
     let shares = elements(scene);
     let lines = scene.lines.iter().zip(&model.lines).zip(shares);

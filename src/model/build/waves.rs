@@ -1,4 +1,4 @@
-//! The waves of the water, and how heavy the water is that they froude_krylov on lines.
+//! Waves of the water, and the masses of the Froude-Krylov force on lines.
 
 use std::f64::consts::TAU;
 

@@ -16,7 +16,7 @@ pub struct Series {
     pub pairs: Vec<[f64; 2]>,
 }
 
-/// The figure as SVG; `quantity` names what is measured and its unit. `None` without values.
+/// Figure as SVG; `quantity` names the measured quantity and its unit. `None` without values.
 pub fn agreement(title: &str, quantity: &str, series: &[Series]) -> Option<String> {
     let values = || series.iter().flat_map(|one| one.pairs.iter().flatten());
     let low = values().copied().fold(f64::INFINITY, f64::min);

@@ -9,7 +9,7 @@ const TICKS: f64 = 7.0;
 /// A range narrower than this part of its values is drawn as flat: it is round-off or convergence, not motion.
 const FLAT: f64 = 1e-5;
 
-/// How values stand on an axis.
+/// Scale of an axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Scale {
     /// In proportion.
@@ -24,7 +24,7 @@ pub enum Scale {
 pub struct Axis {
     /// Name and unit.
     pub label: String,
-    /// How values stand on it.
+    /// Scale of the values.
     pub scale: Scale,
     /// Lower end, in the label's unit.
     pub min: f64,
@@ -85,7 +85,7 @@ impl Axis {
         self.max += missing;
     }
 
-    /// Round values on the axis, and the digits behind the point that tell them apart.
+    /// Round values on the axis, and the digits behind the point that distinguish them.
     pub fn ticks(&self) -> (Vec<f64>, usize) {
         if self.scale == Scale::Decades {
             return (decade_ticks(self.min, self.max), 0);
@@ -198,7 +198,7 @@ pub fn force_unit(greatest: f64) -> (&'static str, f64) {
     }
 }
 
-/// A number for a label, with at most three digits behind the point and none that say nothing.
+/// Number for a label, with at most three digits behind the point and no trailing zeros.
 pub fn plain(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_string()

@@ -28,7 +28,7 @@ const LEGEND_ROW: u32 = 20;
 const SAMPLE: u32 = 26;
 /// Size of text [px].
 const TEXT: u32 = 13;
-/// Text size of words beside points [px].
+/// Text size of labels at points [px].
 const LABEL: f64 = 12.0;
 /// Mean width of a letter over the text size, generous [-].
 const LETTER: f64 = 0.58;
@@ -36,10 +36,11 @@ const LETTER: f64 = 0.58;
 const POINTS_MAX: usize = 2400;
 /// Least and greatest height of a chart to scale, without title and legend [px].
 const TO_SCALE_HEIGHTS: [f64; 2] = [150.0, 560.0];
-/// The plotting library rounds layout to the size it was given: its text size is this much more than the SVG's.
+/// Ratio of the text size in the plotting library, which rounds layout to the size it is given, to that in the SVG.
+/// SVG.
 const TEXT_SCALE: f64 = 1.24;
 
-/// How a curve is drawn.
+/// Stroke of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// A full line.
@@ -67,7 +68,7 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
     /// Name in the legend; none where empty.
     pub name: String,
-    /// Words beside the points; none where empty.
+    /// Labels at the points; none where empty.
     labels: Vec<String>,
     behind: bool,
     colour: [u8; 3],
@@ -93,7 +94,7 @@ impl Curve {
         self
     }
 
-    /// The same with words beside its points, in their order.
+    /// Returns the curve with labels at its points, in their order.
     pub fn labelled(mut self, labels: Vec<String>) -> Curve {
         self.labels = labels;
         self
@@ -173,7 +174,7 @@ impl Chart {
         self.curves.iter().filter(|curve| !curve.name.is_empty())
     }
 
-    /// Where every entry of the legend stands: left edge [px] and row.
+    /// Places of the legend's entries: left edge [px] and row.
     fn legend(&self) -> Vec<(&Curve, u32, u32)> {
         entries(self.named(), self.width)
     }
@@ -259,7 +260,8 @@ impl Chart {
         self.draw_labels(area, &frame, |point| place(point).into())
     }
 
-    /// Words beside points, within a frame and clear of each other, of marks and, where there is room, of bold curves.
+    /// Draws labels at points, within a frame and clear of each other, of marks and, where there is room, of bold
+    /// curves.
     fn draw_labels(&self, area: &Area, frame: &Patch, place: impl Fn(&[f64; 2]) -> [i32; 2]) -> DrawResult {
         let marks = self.curves.iter().filter(|c| c.stroke == Stroke::Marks);
         let marks = marks.flat_map(|curve| &curve.points);
@@ -312,7 +314,7 @@ fn draw_label(area: &Area, label: &str, colour: [u8; 3], patch: &Patch) -> DrawR
     area.draw_text(label, &text, (low.0 + fine(1), middle))
 }
 
-/// Where every entry of a legend of this width [px] stands: left edge [px] and row.
+/// Places of the entries of a legend of this width [px]: left edge [px] and row.
 fn entries<'a>(curves: impl Iterator<Item = &'a Curve>, wide: u32) -> Vec<(&'a Curve, u32, u32)> {
     let (mut left, mut row) = (LABELS_LEFT, 0);
     let mut places = Vec::new();
@@ -329,8 +331,8 @@ fn entries<'a>(curves: impl Iterator<Item = &'a Curve>, wide: u32) -> Vec<(&'a C
 }
 
 impl Curve {
-    /// Without what is not finite, and with so few points that a figure stays small: of every group of neighbours the first,
-    /// the least, the greatest and the last are kept, in their order.
+    /// Returns the curve without values that are not finite, and with few points, so that a figure stays small: of
+    /// every group of neighbours the first, the least, the greatest and the last are kept, in their order.
     fn thinned(mut self) -> Curve {
         self.points.retain(|[x, y]| x.is_finite() && y.is_finite());
         if self.points.len() <= POINTS_MAX {
@@ -391,7 +393,7 @@ pub fn stacked_svg(charts: &[Chart]) -> String {
     grid_svg(&[], charts, 1)
 }
 
-/// Charts of one size in rows of so many, below the legend that they share, as one SVG document.
+/// Charts of one size in `columns` columns, below the legend that they share, as one SVG document.
 pub fn grid_svg(legend: &[Curve], charts: &[Chart], columns: usize) -> String {
     let rows = || charts.chunks(columns.max(1));
     let sum = |row: &[Chart]| row.iter().map(|chart| chart.width).sum();

@@ -1,16 +1,16 @@
-//! Curves that are compared: histories of several runs, closed forms beside them, shapes; charts one below the other.
+//! Curves that are compared: histories of several runs, closed forms, shapes; charts one below the other.
 
 use super::axis::Axis;
 use super::chart::{Chart, Curve, Stroke, stacked_svg};
 use super::{DARK, HISTORY_HEIGHT, WIDTH, colour};
 
-/// How a series is drawn.
+/// Style of a series.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Look {
-    /// A full line in a colour of its own.
+    /// A full line in a separate colour.
     #[default]
     Line,
-    /// Dashes in dark grey: what the others are held against.
+    /// Dashes in dark grey: the reference of the comparison.
     Reference,
     /// Discs in a colour of their own.
     Discs,
@@ -25,7 +25,7 @@ pub struct Series {
     pub name: String,
     /// Points, in the units of the panel's axes.
     pub points: Vec<[f64; 2]>,
-    /// How it is drawn.
+    /// Style of the series.
     pub look: Look,
 }
 
@@ -36,7 +36,7 @@ pub struct Panel {
     pub title: String,
     /// Names and units of the horizontal and the vertical axis.
     pub axes: [String; 2],
-    /// Whether both axes have one scale.
+    /// True if both axes have one scale.
     pub to_scale: bool,
     /// Curves.
     pub series: Vec<Series>,

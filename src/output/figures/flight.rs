@@ -1,4 +1,4 @@
-//! Beams in free flight: stroboscopic shapes, and what such a flight keeps.
+//! Beams in free flight: stroboscopic shapes, and the conserved quantities of such a flight.
 
 use super::axis::{Axis, plain};
 use super::chart::{self, Chart, Curve, Stroke};
@@ -14,7 +14,7 @@ const AXES: [&str; 3] = ["x [m]", "y [m]", "z [m]"];
 
 /// Shapes at equal intervals of time, from pale to dark, with the paths of both ends, in every pair of axes that the flight spreads in, two at
 /// most. `None` where nothing flies.
-pub fn shapes(record: &Record) -> Option<String> {
+pub(super) fn shapes(record: &Record) -> Option<String> {
     record.flight.first()?;
     let spread = [0, 1, 2].map(|axis| {
         let nodes = record.frames.iter().flat_map(|f| f.lines.iter().flatten());
@@ -77,7 +77,7 @@ fn mixed(share: f64) -> [u8; 3] {
 }
 
 /// Energy by kind and angular momentum in time. `None` where nothing flies.
-pub fn balance(record: &Record) -> Option<String> {
+pub(super) fn balance(record: &Record) -> Option<String> {
     record.flight.first()?;
     let energy = [
         history(record, "total", 6, |row| {

@@ -1,11 +1,12 @@
-//! Where words beside points stand, so that none covers other words or a mark.
+//! Placement of labels at points, so that none covers another label or a mark.
 //!
-//! Every label tries the places right and left of its point, then above and below it, farther and farther off, and takes the first that is free
-//! and inside the frame; where none is, the one that covers least. Those before it stay.
+//! The places right and left of the point are tried first, then those above and below it, at increasing distance. A
+//! label takes the first place that is free and inside the frame; where none is, the one that covers least. Labels
+//! placed before it stay.
 
 /// A rectangle: its least and its greatest x and y [px].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Patch {
+pub(super) struct Patch {
     /// Upper left corner.
     pub low: [i32; 2],
     /// Lower right corner.
@@ -14,7 +15,7 @@ pub struct Patch {
 
 impl Patch {
     /// Around a point, so far to either side.
-    pub fn around(point: [i32; 2], half: [i32; 2]) -> Patch {
+    pub(super) fn around(point: [i32; 2], half: [i32; 2]) -> Patch {
         Patch {
             low: [point[0] - half[0], point[1] - half[1]],
             high: [point[0] + half[0], point[1] + half[1]],
@@ -40,15 +41,15 @@ impl Patch {
 
 /// Words and the point that they belong to.
 #[derive(Debug, Clone, Copy)]
-pub struct Label {
+pub(super) struct Label {
     /// The point [px].
     pub point: [i32; 2],
     /// Width and height of the words [px].
     pub size: [i32; 2],
 }
 
-/// Patches that cover a curve through points [px], so far to either side of it.
-pub fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
+/// Patches that cover a curve through points [px], to this distance on either side of it.
+pub(super) fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
     points.windows(2).flat_map(move |ends| {
         let [from, to] = [ends[0], ends[1]];
         let longest = (to[0] - from[0]).abs().max((to[1] - from[1]).abs());
@@ -63,8 +64,8 @@ pub fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
 /// Rows that a label may move away from its point.
 const ROWS: i32 = 6;
 
-/// Where labels stand in a frame, `gap` [px] off their points and clear of `marks`.
-pub fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
+/// Placement of labels in a frame, `gap` [px] off their points and clear of `marks`.
+pub(super) fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
     let mut taken = marks.to_vec();
     for label in labels {
         let cover = |place: &Patch| {

@@ -1,5 +1,5 @@
-//! Figures of a run as SVG: profile against the static catenary, plan, tension, end force and bending in time; of beams in free flight their shapes
-//! and what they keep.
+//! Figures of a run as SVG: profile against the static catenary, plan, tension, end force and bending in time; of
+//! beams in free flight their shapes and conserved quantities.
 //!
 //! Text is left to the viewer's sans-serif font: no font files are needed to draw.
 
@@ -27,7 +27,8 @@ const LEVELS_MAX: usize = 3;
 /// A system wider than this part of its length across its principal direction gets a plan [-].
 const PLAN_RATIO: f64 = 0.01;
 
-/// Okabe and Ito's palette without its yellow, which is too pale for a line: told apart with every kind of colour vision.
+/// Okabe and Ito's palette without its yellow, which is too pale for a line: distinguishable with every kind of
+/// colour vision.
 /// Source: Okabe & Ito 2008, "Color Universal Design".
 const PALETTE: [[u8; 3]; 7] = [
     [0, 114, 178],
@@ -38,7 +39,7 @@ const PALETTE: [[u8; 3]; 7] = [
     [86, 180, 233],
     [0, 0, 0],
 ];
-/// Colour of what other curves are held against.
+/// Colour of the reference of a comparison.
 pub const DARK: [u8; 3] = [40, 40, 40];
 const SEABED: [u8; 3] = [139, 110, 70];
 const WATER: [u8; 3] = [86, 140, 190];

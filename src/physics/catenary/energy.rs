@@ -1,11 +1,12 @@
-//! Energy of a line on its elastic catenary: of its stretch, and of its weight above end A.
+//! Energy of a line on its elastic catenary: strain energy, and potential energy of its weight above end A.
 //!
 //! Of a flight of length h that starts at a height z₀ with the upward part V₀ of its tension, V₁ = V₀ + wh, and the horizontal part H,
 //!
 //!   ∫ T²/2EA ds = h (H² + (V₀² + V₀V₁ + V₁²)/3) / 2EA,
 //!   w ∫ z ds    = w z₀ h + (∫ T ds − T₀ h) + w h² (2V₀ + V₁)/6EA,
 //!
-//! as w dz = dT + V dV/EA along it: nothing is divided by a weight, which may be none. On the bed T = T₀ + g s at one height.
+//! as w dz = dT + V dV/EA along it: nothing is divided by the weight, which may be zero. On the bed T = T₀ + g s at
+//! one height.
 //!
 //! Source: integrals of the elastic catenary, derived here, checked by sums and by the work of the ends. Valid as the catenary is.
 
@@ -14,12 +15,12 @@ use std::iter::Sum;
 use super::flight::Flight;
 use super::shape::{Kind, Piece};
 
-/// What a line on its catenary holds.
+/// Energy of a line on its catenary.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CatenaryEnergy {
-    /// Of its stretch, ∫ T²/2EA ds [J].
+    /// Strain energy, ∫ T²/2EA ds [J].
     pub axial: f64,
-    /// Of its weight, ∫ w z ds with z from end A up [J].
+    /// Potential energy of the weight, ∫ w z ds with z from end A up [J].
     pub gravitational: f64,
 }
 
@@ -33,8 +34,8 @@ impl Sum for CatenaryEnergy {
 }
 
 impl Piece {
-    /// What this piece holds.
-    pub fn energy(&self) -> CatenaryEnergy {
+    /// Energy of this piece.
+    pub(super) fn energy(&self) -> CatenaryEnergy {
         match self.kind {
             Kind::Flight(flight) => flight.energy(self.z),
             Kind::Laid {
@@ -59,7 +60,7 @@ impl Piece {
 }
 
 impl Flight {
-    /// What this flight holds where it starts at a height [m] above end A.
+    /// Energy of this flight, which starts at a height [m] above end A.
     fn energy(&self, start: f64) -> CatenaryEnergy {
         let (h, ea, w) = (self.length, self.axial_stiffness, self.weight);
         let (v0, v1) = (self.vertical, self.vertical_end());
@@ -72,7 +73,7 @@ impl Flight {
     }
 }
 
-/// Mean of the squares of what grows evenly from one value to another.
+/// Mean square of a quantity that grows linearly from one value to another.
 fn mean_square(from: f64, to: f64) -> f64 {
     (from * from + from * to + to * to) / 3.0
 }

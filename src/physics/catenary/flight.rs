@@ -1,15 +1,15 @@
-//! A stretch of uniform line in free flight: nothing acts on it between its ends but its own weight.
+//! A stretch of uniform line in free flight, loaded between its ends by its own weight only.
 //!
 //! With H the horizontal tension, V₀ the vertical tension at the start, W = wℓ, Vₘ = V₀ + W/2, σ the mean of the two end
 //! tensions and ε = W/2σ (derived in the module above, section "One stretch"):
 //!
 //! x = Hℓ (α/σ + 1/EA),   z = Vₘℓ (1/σ + 1/EA),   α = atanh(ε)/ε,   ∫T ds = ½ℓ (σ + (Vₘ² + αH²)/σ)
 //!
-//! No term subtracts nearly equal numbers; W = 0 and W < 0 need no case of their own, and H = 0 is the vertical line.
+//! No term subtracts nearly equal numbers; W = 0 and W < 0 need no separate case, and H = 0 is the vertical line.
 
 use super::Section;
 
-/// Below this ε the formula tanh λ = ε is used for λ, above it the one for sinh λ, which does not see 1 − ε.
+/// Value of ε below which λ follows from tanh λ = ε; above it sinh λ is used, whose formula is free of 1 − ε.
 const STEEP: f64 = 0.75;
 
 /// A stretch of uniform line in free flight.
@@ -40,7 +40,7 @@ pub(super) struct Rise {
 
 impl Flight {
     /// Flight of `length` metres of `section`.
-    pub fn of(section: &Section, length: f64, horizontal: f64, vertical: f64) -> Self {
+    pub(super) fn of(section: &Section, length: f64, horizontal: f64, vertical: f64) -> Self {
         Flight {
             horizontal,
             vertical,
@@ -51,7 +51,7 @@ impl Flight {
     }
 
     /// Vertical tension at the end [N].
-    pub fn vertical_end(&self) -> f64 {
+    pub(super) fn vertical_end(&self) -> f64 {
         self.vertical + self.weight * self.length
     }
 
@@ -64,7 +64,7 @@ impl Flight {
         (tension(self.vertical), tension(self.vertical_end()))
     }
 
-    /// α = λ/ε: how much longer than Hℓ/σ the geometric span is.
+    /// α = λ/ε: ratio of the geometric span to Hℓ/σ.
     fn alpha(&self, tension_a: f64, tension_b: f64, sigma: f64) -> f64 {
         let epsilon = (0.5 * self.weight * self.length / sigma).abs();
         if epsilon < 1e-4 {
@@ -85,7 +85,7 @@ impl Flight {
     }
 
     /// Position of the end relative to the start, x and z [m].
-    pub fn advance(&self) -> (f64, f64) {
+    pub(super) fn advance(&self) -> (f64, f64) {
         let (ta, tb) = self.tensions();
         let sigma = 0.5 * (ta + tb);
         if sigma == 0.0 {
@@ -103,7 +103,7 @@ impl Flight {
     }
 
     /// Rise of the end above the start, with its slopes in V and H.
-    pub fn rise(&self) -> Rise {
+    pub(super) fn rise(&self) -> Rise {
         let (ta, tb) = self.tensions();
         let sigma = 0.5 * (ta + tb);
         let flexibility = 1.0 / self.axial_stiffness;
@@ -126,7 +126,7 @@ impl Flight {
     }
 
     /// Elongation ∫T/EA ds [m].
-    pub fn elongation(&self) -> f64 {
+    pub(super) fn elongation(&self) -> f64 {
         let (ta, tb) = self.tensions();
         let sigma = 0.5 * (ta + tb);
         if sigma == 0.0 {
@@ -142,13 +142,13 @@ impl Flight {
     }
 
     /// Distance along the unstretched line at which the vertical tension is `vertical` [m]; None if it is not on this stretch.
-    pub fn where_vertical_is(&self, vertical: f64) -> Option<f64> {
+    pub(super) fn where_vertical_is(&self, vertical: f64) -> Option<f64> {
         let at = (vertical - self.vertical) / self.weight;
         (at.is_finite() && at > 0.0 && at < self.length).then_some(at)
     }
 
     /// The first `length` metres of this flight.
-    pub fn first(&self, length: f64) -> Self {
+    pub(super) fn first(&self, length: f64) -> Self {
         Flight { length, ..*self }
     }
 }

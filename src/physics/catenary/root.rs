@@ -3,16 +3,16 @@
 /// Bound on the steps of any search: bisection of the whole double range needs fewer.
 const STEPS_MAX: usize = 200;
 
-/// Every so many steps a bracket is halved whatever Newton says: it may cycle.
+/// Number of steps after which a bracket is halved regardless of Newton's method, which may cycle.
 const HALVE_EVERY: usize = 12;
 
-/// Steps towards a root below the start before its existence is asked.
+/// Steps towards a root below the start before its existence is checked.
 const STEPS_DOWN_MAX: usize = 4;
 
-/// A root and what it cost.
+/// Root with its cost.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Root {
-    /// Where the function is zero, in the unit of its argument [-].
+    /// Argument at which the function is zero, in the unit of the argument [-].
     pub at: f64,
     /// Evaluations of the function [-].
     pub steps: usize,
@@ -20,8 +20,8 @@ pub(super) struct Root {
 
 /// Root of `function` (value, slope), increasing over (lower, upper), which may be infinite: Newton within the bracket.
 ///
-/// The function bends on the scale `bend` about 0, so brackets are halved on asinh(x/bend); `reach` is the longest step from a
-/// point that is believed; `tolerance` the value that counts as zero.
+/// The function bends on the scale `bend` about 0, so brackets are halved on asinh(x/bend); `reach` is the longest
+/// step from a point that is accepted; `tolerance` is the value that counts as zero.
 pub(super) fn increasing(
     mut function: impl FnMut(f64) -> (f64, f64),
     start: f64,
@@ -48,14 +48,14 @@ pub(super) fn increasing(
             upper = at
         }
         let reach = reach(at);
-        // rounding may turn a vanishing slope around; the sign of the value is what counts
+        // rounding may invert a vanishing slope; the sign of the value decides
         let step = if slope > 0.0 {
             (-value / slope).clamp(-reach, reach)
         } else {
             -reach.copysign(value)
         };
         let (mut next, close) = (at + step, 2.0 * f64::EPSILON * at.abs());
-        // a bracket that hardly shrinks is halved: Newton may viscoelastic along a kink
+        // a bracket that hardly shrinks is halved: Newton's method may advance slowly along a kink
         let width = upper - lower;
         if step.abs() <= close || width <= close {
             return Root {

@@ -1,11 +1,11 @@
 //! A line of several sections, with or without a bed under it: a march from A to B, nested in one scalar search.
 //!
-//! Given the horizontal tension at A the line is laid out piece by piece. From A (or from the bed) it flies on; the one free number
-//! of a flight, its vertical tension at A or the weight left on the bed before it lifts off, is the greatest for which
-//! it runs nowhere below the bed and ends nowhere below B: a monotone function, one root. The first
-//! constraint that holds with equality says where the flight ends: at B, or touching down (V = 0) in the section concerned,
-//! from which it lies until it lifts off again. This is gift wrapping, so any number of sections may float or sink and any number
-//! of stretches may lie on the bed.
+//! Given the horizontal tension at A the line is laid out piece by piece, starting with a flight from A (or from the
+//! bed). The one free number of a flight, its vertical tension at A or the weight left on the bed before it lifts
+//! off, is the greatest for which it runs nowhere below the bed and ends nowhere below B: a monotone function, one
+//! root. The first constraint that holds with equality determines the end of the flight: at B, or touching down (V =
+//! 0) in the section concerned, from which it lies until it lifts off again. This is gift wrapping, so any number of
+//! sections may float or sink and any number of stretches may lie on the bed.
 //!
 //! The span that results grows with the tension at A, which is found on a logarithmic scale. With friction and no
 //! tension left at A, the number searched is instead the material point s₀ up to which the bed holds all tension.
@@ -26,7 +26,7 @@ const LIMP_SHARE: f64 = 1e-40;
 /// Tension that counts as none, over the weights of the sections [-].
 const NOTHING_SHARE: f64 = 1e-30;
 
-/// Weight of a section that no other feels, over the weights of all: it is taken for weightless [-].
+/// Weight of a section below which it is treated as weightless, over the weights of all [-].
 const UNFELT_SHARE: f64 = 1e-22;
 
 /// Position error that counts as none, over the unstretched length [-].
@@ -38,7 +38,8 @@ const JUMP: f64 = 1e-9;
 /// Bound on the halvings of friction: the last is below rounding.
 const FRICTION_HALVINGS_MAX: usize = 60;
 
-/// Where the vertical tension at a section's end is below this share of the unknown one, it becomes the unknown [-].
+/// Ratio of the vertical tension at a section's end to the unknown one below which the former becomes the unknown
+/// [-].
 const REFERENCE_SHARE: f64 = 1e-3;
 
 /// Bound on the unknowns that a flight is solved for in turn.
@@ -70,19 +71,19 @@ struct Departure {
     horizontal: f64,
     /// Vertical tension at the start of section `reference` [N], the end of the line being the last.
     vertical: f64,
-    /// Chosen where the vertical tension is small, so that it is known there to all its digits.
+    /// Section at which the vertical tension is small, so that it is resolved there to all its digits.
     reference: usize,
-    /// Whether it leaves the bed: there V = 0.
+    /// True if the flight leaves the bed: there V = 0.
     from_bed: bool,
 }
 
-/// How a flight ends: None at B, else touching down in a section, at a distance from its start [m].
+/// End of a flight: None at B, else touching down in a section, at a distance from its start [m].
 type Touch = Option<(usize, f64)>;
 
 /// The tightest constraint of a flight.
 #[derive(Debug, Clone, Copy)]
 struct Flown {
-    /// Height to spare over it [m].
+    /// Clearance of the constraint [m].
     gap: f64,
     /// ∂gap/∂V [m/N].
     by_vertical: f64,
@@ -91,22 +92,22 @@ struct Flown {
     touch: Touch,
 }
 
-/// A stretch of sections that do not float, after a touchdown in the first of them.
+/// Stretch of sections that do not float, after a touchdown in the first of them.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     /// Section after the last one.
     end: usize,
-    /// Weight before the touchdown, which tells it as a place [N].
+    /// Weight before the touchdown, which identifies its place [N].
     first: f64,
     /// Weight before the end [N].
     last: f64,
-    /// Section in which tension begins.
+    /// First section with tension.
     tight: usize,
     /// Length from there to the end of that section [m].
     rest: f64,
 }
 
-/// What the outer search changes.
+/// Variables of the outer search.
 #[derive(Debug, Clone, Copy)]
 struct Hold {
     /// Horizontal tension at A [N].
@@ -119,7 +120,7 @@ struct Hold {
 type Memory = Vec<Option<(f64, usize)>>;
 
 impl Sections {
-    pub fn new(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Self {
+    pub(super) fn new(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Self {
         let weights: f64 = sections.iter().map(|s| s.weight.abs() * s.length).sum();
         let felt = |s: &Section| s.weight.abs() * s.length > UNFELT_SHARE * weights;
         let unweighted = |s: &Section| Section { weight: 0.0, ..*s };
@@ -149,7 +150,7 @@ impl Sections {
     ///
     /// With sections that float, strong friction can leave a span without a state that uses friction in full. Coulomb's
     /// law is an inequality: the line then uses the greatest tried share of it, halved until the ends meet.
-    pub fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> EndForces {
+    pub(super) fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> EndForces {
         let mut steps = 0;
         for _ in 0..FRICTION_HALVINGS_MAX {
             steps += self.search(guess, shape);
@@ -227,7 +228,7 @@ impl Sections {
             from_bed: self.bed.is_some_and(|bed| bed.height >= 0.0) && self.sections[0].weight >= 0.0,
         };
         departure.from_bed = departure.from_bed && self.fly(&departure).gap >= 0.0;
-        // every touchdown lies beyond the lift-off before it, in a section of its own
+        // every touchdown lies beyond the lift-off before it, in a separate section
         for flight in 0..=self.sections.len() {
             if memory.len() <= flight {
                 memory.push(None);
@@ -341,7 +342,7 @@ impl Sections {
         }
     }
 
-    /// What may lie from the touchdown `from` on.
+    /// Stretch that may lie on the bed from the touchdown `from` on.
     fn run(&self, from: &Departure, tight_from: f64) -> Run {
         let sections = self.sections[from.section..].iter();
         let heavy = sections.take_while(|section| section.weight >= 0.0);
@@ -395,7 +396,8 @@ impl Sections {
         (best.1 != flight.reference && best.0.abs() < REFERENCE_SHARE * flight.vertical.abs()).then_some(best)
     }
 
-    /// Where tension begins on the bed after the touchdown `from`: a section and the length between there and its end [m].
+    /// Start of tension on the bed after the touchdown `from`: a section and the length between there and its end
+    /// [m].
     fn tight_place(&self, tight_from: f64, from: &Departure, run_end: usize) -> (usize, f64) {
         let whole = (from.section, self.sections[from.section].length - from.offset);
         if from.horizontal > self.limp() {
@@ -429,7 +431,7 @@ impl Sections {
         (run_end - 1, self.sections[run_end - 1].length)
     }
 
-    /// Appends what lies between a touchdown and the lift-off after it.
+    /// Appends the pieces between a touchdown and the lift-off after it.
     fn lay(&self, from: &Departure, to: &Departure, tight_from: f64, shape: &mut Shape) {
         let friction = self.friction();
         let (mut tension, mut offset) = (from.horizontal, from.offset);

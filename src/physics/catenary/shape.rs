@@ -1,12 +1,12 @@
-//! A solved line as a chain of pieces, and what can be read from it: a point, the sag, lengths.
+//! A solved line as a chain of pieces, and the quantities read from it: a point, the sag, lengths.
 
 use super::flight::Flight;
 use super::{Point, Section};
 
-/// What carries a piece.
+/// Support of a piece.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
-    /// Its ends only.
+    /// Support at both ends only.
     Flight(Flight),
     /// The bed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
     Laid {
@@ -24,7 +24,7 @@ pub(super) enum Kind {
     },
 }
 
-/// A piece of the line with what carries it and where it starts.
+/// Piece of the line with its support and start.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
     /// Unstretched arc length at the start, from end A [m].
@@ -55,12 +55,12 @@ impl Piece {
         }
     }
 
-    pub fn on_bed(&self) -> bool {
+    pub(super) fn on_bed(&self) -> bool {
         matches!(self.kind, Kind::Laid { .. } | Kind::Slack { on_bed: true, .. })
     }
 
     /// Stretched less unstretched length [m].
-    pub fn elongation(&self) -> f64 {
+    pub(super) fn elongation(&self) -> f64 {
         match self.kind {
             Kind::Flight(flight) => flight.elongation(),
             Kind::Laid { .. } => self.advance(self.length).0 - self.length,
@@ -68,7 +68,7 @@ impl Piece {
         }
     }
 
-    /// What carries it, from its end to its start.
+    /// Support, from the piece's end to its start.
     fn kind_reversed(&self) -> Kind {
         match self.kind {
             Kind::Flight(flight) => Kind::Flight(Flight {
@@ -116,19 +116,19 @@ impl Piece {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shape {
     pub pieces: Vec<Piece>,
-    /// Where the last piece ends: s, x, z [m].
+    /// End of the last piece: s, x, z [m].
     pub end: (f64, f64, f64),
 }
 
 impl Shape {
-    /// Forgets the pieces, keeps their memory.
-    pub fn clear(&mut self) {
+    /// Removes the pieces and keeps their allocation.
+    pub(super) fn clear(&mut self) {
         self.pieces.clear();
         self.end = (0.0, 0.0, 0.0);
     }
 
     /// Appends `length` metres carried by `kind`; nothing if there is no length.
-    pub fn push(&mut self, length: f64, kind: Kind) {
+    pub(super) fn push(&mut self, length: f64, kind: Kind) {
         if length <= 0.0 {
             return;
         }
@@ -146,7 +146,7 @@ impl Shape {
     }
 
     /// Appends a flight over `length` metres of `section` that starts under H and V.
-    pub fn fly(&mut self, section: &Section, length: f64, horizontal: f64, vertical: f64) {
+    pub(super) fn fly(&mut self, section: &Section, length: f64, horizontal: f64, vertical: f64) {
         self.push(
             length,
             Kind::Flight(Flight::of(section, length, horizontal, vertical)),
@@ -154,7 +154,7 @@ impl Shape {
     }
 
     /// Appends `length` metres of `section` on the bed.
-    pub fn lay(&mut self, section: &Section, length: f64, tension: f64, growth: f64) {
+    pub(super) fn lay(&mut self, section: &Section, length: f64, tension: f64, growth: f64) {
         if tension == 0.0 && growth == 0.0 {
             self.push(
                 length,
@@ -179,7 +179,7 @@ impl Shape {
     }
 
     /// The same line from B to A.
-    pub fn reversed(&self) -> Shape {
+    pub(super) fn reversed(&self) -> Shape {
         let mut reversed = Shape::default();
         for piece in self.pieces.iter().rev() {
             reversed.push(piece.length, piece.kind_reversed());
@@ -188,7 +188,7 @@ impl Shape {
     }
 
     /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones where they are, and horizontal tension up to it into none.
-    pub fn relax(&mut self, nothing: f64) {
+    pub(super) fn relax(&mut self, nothing: f64) {
         for piece in &mut self.pieces {
             let (x, z) = piece.advance(piece.length);
             let (x, z) = (x / piece.length, z / piece.length);
@@ -226,7 +226,7 @@ impl Shape {
     }
 
     /// Draws the slack pieces together so that the line ends at `x` [m].
-    pub fn close(&mut self, x: f64) {
+    pub(super) fn close(&mut self, x: f64) {
         let advance = |piece: &Piece| match piece.kind {
             Kind::Slack { x, .. } => x * piece.length,
             _ => 0.0,
@@ -253,14 +253,14 @@ impl Shape {
     }
 
     /// The material point at `s` metres of unstretched length from A; beyond an end, that end.
-    pub fn at(&self, s: f64) -> Point {
+    pub(super) fn at(&self, s: f64) -> Point {
         let next = self.pieces.partition_point(|piece| piece.s <= s);
         let piece = &self.pieces[next.saturating_sub(1)];
         piece.point((s - piece.s).clamp(0.0, piece.length))
     }
 
     /// Greatest vertical distance below the chord from (0, 0) to (`span`, `rise`) [m]; below the lower end where the span is 0.
-    pub fn sag(&self, span: f64, rise: f64) -> f64 {
+    pub(super) fn sag(&self, span: f64, rise: f64) -> f64 {
         let below = |point: Point| {
             let chord = if span > 0.0 {
                 rise * (point.x / span)

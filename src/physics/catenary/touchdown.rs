@@ -4,8 +4,8 @@
 //!
 //! T − H + V²/2EA = wD   ⇒   V² = 2wD(wD + 2H) / (1 + c/EA + √(1 + 2c/EA + H²/EA²)),   c = wD + H
 //!
-//! What the flight is longer than its geometric span is E(H) = (H/w)(sinh β − β), sinh β = V/H. The ends are the right span
-//! apart where
+//! The excess of the flight's length over its geometric span is E(H) = (H/w)(sinh β − β), sinh β = V/H. The ends are
+//! the right span apart where
 //!
 //! Σ E(H) + (X − L) = ∫ H ds / EA
 //!
@@ -22,7 +22,7 @@ use super::uniform::{EndForces, Uniform, sinh_less};
 /// Horizontal tension taken for zero, over the weight of the line [-].
 const HORIZONTAL_SHARE_MIN: f64 = 1e-40;
 
-/// Where a line that touches down is held.
+/// Ends of a line that touches down.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touchdown {
     /// Horizontal distance of the ends [m].
@@ -88,8 +88,8 @@ impl Uniform {
         }
     }
 
-    /// End forces of the line, which is known to touch the bed.
-    pub fn touch_down(&self, at: &Touchdown) -> EndForces {
+    /// End forces of the line, which must touch the bed.
+    pub(super) fn touch_down(&self, at: &Touchdown) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let hanging = (
             self.lift(0.0, at.height_a).vertical,

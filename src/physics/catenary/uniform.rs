@@ -1,4 +1,4 @@
-//! The uniform line held at its two ends, nothing else touching it: one scalar equation for every case.
+//! The uniform line held at its two ends, in contact with nothing else: one scalar equation for every case.
 //!
 //! With W = wL, κ = |W|/2EA and the unknown λ > 0 (half the difference of asinh(V/H) between the ends):
 //!
@@ -48,8 +48,8 @@ pub(super) struct EndForces {
 }
 
 impl EndForces {
-    /// Those of the same line whose ends have changed names.
-    pub fn reversed(self) -> Self {
+    /// End forces of the same line with its ends exchanged.
+    pub(super) fn reversed(self) -> Self {
         EndForces {
             horizontal_a: self.horizontal_b,
             horizontal_b: self.horizontal_a,
@@ -106,7 +106,7 @@ pub(super) fn weightless_tension(x: f64, z: f64, l: f64, flexibility: f64) -> f6
 
 impl Uniform {
     /// End forces of the line between ends `span` and `rise` apart [m], touching nothing.
-    pub fn suspend(&self, span: f64, rise: f64) -> EndForces {
+    pub(super) fn suspend(&self, span: f64, rise: f64) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let weight_half = 0.5 * w * l;
         if w == 0.0 {
@@ -159,7 +159,8 @@ struct Balance {
 }
 
 impl Balance {
-    /// ln(what grows with λ / what falls), zero where G is, and nearly linear in ln λ (λ < 1) or λ; with its slope in ln λ.
+    /// ln of the terms that grow with λ over those that fall, zero where G is, and nearly linear in ln λ (λ < 1) or
+    /// λ; with its slope in ln λ.
     fn at(&self, lambda: f64) -> (f64, f64) {
         let (sinh, tanh) = (lambda.sinh(), lambda.tanh());
         let (y, q) = (lambda / sinh, self.kappa / sinh);

@@ -1,5 +1,5 @@
-//! Tables over strain, height and place that a simulation leaves: tension-strain curves, current profiles, soundings. Tables in time are known
-//! beforehand: [`crate::scene::Scene::notes`].
+//! Tables over strain, height and place whose range a simulation leaves: tension-strain curves, current profiles,
+//! soundings. Tables in time are checked beforehand: [`crate::scene::Scene::notes`].
 
 use std::collections::BTreeSet;
 
@@ -149,7 +149,7 @@ fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -
     ))
 }
 
-/// A note on a line that lies on the seabed outside the soundings, whose least and greatest x and y [m] are given.
+/// Note on a line that lies on the seabed outside the soundings, whose least and greatest x and y [m] are given.
 fn beside_soundings(simulation: &Simulation, line: usize, soundings: [[f64; 2]; 2]) -> Option<String> {
     let of = &simulation.model.lines[line];
     let contact = of.nodes.contact.as_ref()?;

@@ -6,10 +6,10 @@ use approx::assert_relative_eq;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// Stiffness so high beside bending that the elastica's closed form holds.
+/// Axial and shear stiffness so high compared with bending that the elastica's closed form holds.
 const STIFF: f64 = 1e8;
 
-/// A weightless beam on given sections, free of stress there.
+/// Weightless beam on given sections, free of stress there.
 struct Bench {
     elements: Vec<BeamElement>,
     sections: Vec<Section>,
@@ -125,7 +125,7 @@ fn a_cantilever_under_a_dead_load_tends_to_the_elastica_at_second_order() {
 
 #[test]
 fn an_end_moment_rolls_a_cantilever_up_to_a_circle_at_the_sixth_order_of_its_curvature() {
-    // An arc is what the elements' strains are corrected for: nothing else is wrong here.
+    // The strains of elements are corrected for an arc: no other error remains here.
     let length = 10.0;
     let ei = 100.0;
     assert_order(6.0, &[16, 32, 64, 128], |n| {

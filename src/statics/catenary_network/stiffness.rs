@@ -12,7 +12,7 @@
 //! ∫ H²/T³ ds = (1/w) [V/T],   ∫ HV/T³ ds = −(H/w) [1/T],   ∫ V²/T³ ds = (1/w) [asinh(V/H) − V/T].
 //!
 //! Source: derived here. Valid for any weights, H = 0 included: there a folded line has no stiffness across and w/2 along.
-//! A line that touches the seabed is solved again with its ends moved a little instead.
+//! A line that touches the seabed is solved again with its ends slightly displaced instead.
 
 use nalgebra::{Matrix2, Vector2};
 

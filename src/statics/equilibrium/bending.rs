@@ -34,7 +34,7 @@ const TURN_MAX: f64 = 0.5;
 const RELAX_SOLVES_MAX: usize = 1000;
 /// Longest step of a relaxation, over the longest line [-].
 const RELAX_STEP_MAX: f64 = 0.05;
-/// Anchoring over forces per length at which a relaxation is given up [-].
+/// Ratio of anchoring to forces per length at which a relaxation is stopped [-].
 const RELAXATION_MAX: f64 = 1e20;
 /// Amplitude of the wave that leaves an unstable equilibrium, over the line's length [-].
 const WAVE: f64 = 1e-3;
@@ -111,7 +111,8 @@ impl Problem<'_> {
     }
 
     /// Relaxes the lines from a small wave on their shape: Newton's method with predicted tensions, whose anchoring
-    /// springs follow the nodes and fade only as fast as the exact tangent stays positive definite, so that what is unstable grows.
+    /// springs follow the nodes and fade only as fast as the exact tangent stays positive definite, so that unstable
+    /// deflections grow.
     fn relax(&self, state: &mut State, work: &mut Workspace) -> bool {
         self.wave(state);
         self.remember_shape(state, work);

@@ -1,11 +1,12 @@
 //! Equilibrium in a current.
 //!
-//! The drag of the current on a node depends on where the node is and on how the line lies there, so that it is part of what is sought.
-//! The drag F of all nodes is kept while the network finds its equilibrium as under any dead load; the drag G(F) of the
-//! shape found so takes its place until both agree, F = G(F), accelerated by [`Anderson`], without which light lines in a
-//! strong current would wander about. Where that does not settle, the current is raised in parts.
+//! The drag of the current on a node depends on the node's place and on the direction of the line there, so it is
+//! part of the solution. The drag F of all nodes is kept while the network finds its equilibrium as under any dead
+//! load. The drag G(F) of the resulting shape then replaces it until both agree, F = G(F), accelerated by
+//! [`Anderson`]; without acceleration light lines in a strong current would oscillate. Where the iteration does not
+//! converge, the current is raised in parts.
 //!
-//! Accepted is a difference of the size of the residual that the equilibrium itself is accepted with, on every node.
+//! The iteration is accepted at a difference of the size of the equilibrium's accepted residual on every node.
 //!
 //! Source: the iteration is derived here; its acceleration by Walker & Ni (2011), SIAM J. Numer. Anal. 49(4), 1715-1735.
 

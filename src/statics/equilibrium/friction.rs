@@ -1,19 +1,21 @@
 //! Equilibrium with the friction of the seabed.
 //!
-//! The friction of a line at rest depends on how it was laid. As the closed-form catenary does, this takes every line as laid from end A without tension and hauled at
-//! end B, or from B where only that lies on the bed: the network first finds its equilibrium without friction; there every node gets an anchor, where it would lie if the line
-//! lay on the same path without stretch,
+//! The friction of a line at rest depends on the way it was laid. As in the closed-form catenary, every line is taken
+//! as laid from end A without tension and hauled at end B, or from B where only that lies on the bed. The network
+//! first finds its equilibrium without friction; there every node gets an anchor, its place on the same path if the
+//! line lay there without stretch,
 //!
 //!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i,
 //!
-//! and friction then pulls it towards that anchor: fully where the line slid there, T falling by μw per metre towards A, and not at
-//! all beyond the point where no tension is left. The stiffness of sticking is raised little by little on the way. Free
-//! points have their anchors where they rest without friction.
+//! and friction then pulls it towards that anchor: fully where the line slid, T falling by μw per metre towards A,
+//! and not at all beyond the point where no tension is left. The stiffness of sticking is raised in small steps. Free
+//! points have their anchors at their positions of rest without friction.
 //!
-//! Newton's method may go round between nodes that stick and nodes that slide: a change of one node's normal force changes what its
-//! neighbours hold. Where it does, the normal forces that limit friction are kept for a while. Friction then has the potential
-//! ∫ |f| d|r − a|, which is convex like that of springs, weight and seabed, and the sum of all is minimised with steps along which it falls; the
-//! normal forces follow, and Newton's method ends the search.
+//! Newton's method may cycle between nodes that stick and nodes that slide: a change of one node's normal force
+//! changes the forces of its neighbours. In that case the normal forces that limit friction are kept constant for a
+//! number of steps. Friction then has the potential ∫ |f| d|r − a|, which is convex like that of springs, weight and
+//! seabed, and the sum of all is minimised with steps along which it falls. The normal forces are then updated, and
+//! Newton's method ends the search.
 //!
 //! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5; the problem with kept normal forces is that of
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
@@ -24,8 +26,8 @@ use crate::model::{LineState, State};
 use crate::physics::catenary::is_laid_from_b;
 use crate::statics::StaticsError;
 
-/// Part of the stiffness of sticking that is tried first, and how fast it is raised: friction then grows from nothing to what the
-/// displacement mobilises, and no node that slides is ever without a taut neighbour to hold it [-].
+/// First part of the stiffness of sticking, and the factor by which it is raised: friction then grows from nothing to
+/// the value that the displacement mobilises, and no sliding node is without a taut neighbour to hold it [-].
 const SOFTEST: f64 = 1e-6;
 const GROWTH: f64 = 3.0;
 /// Rounds of normal forces and friction.
@@ -58,8 +60,8 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// Minimises the potential energy that the network has under kept normal forces, which are then those of what was found, until Newton's
-    /// method finds the equilibrium from there; returns true where it did.
+    /// Minimises the potential energy of the network under constant normal forces and updates them from the result,
+    /// until Newton's method finds the equilibrium from there; returns true where it did.
     fn settle_pressure(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
         let mut found = std::mem::take(&mut work.trial);

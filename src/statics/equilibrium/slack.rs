@@ -1,15 +1,17 @@
 //! Equilibrium of slack lines.
 //!
-//! A slack segment pulls at nothing, so that a line with little or no tension in part of it has no stiffness across there, and Newton's
-//! method throws its nodes about, the more of them the finer the mesh. Such a network is therefore found as the limit of networks that are taut everywhere: the tension T
-//! of a segment and what it lacks to the strain that T gives it are complementary, and their product is set to a small force m,
+//! A slack segment exerts no force, so that a line with little or no tension in part of it has no stiffness across
+//! there. Newton's method then moves its nodes far, the more of them the finer the mesh. Such a network is therefore
+//! found as the limit of networks that are taut everywhere: the tension T of a segment and its excess over the
+//! tension of its strain are complementary, and their product is set to a small force m,
 //!
 //!   T ≥ 0,  T − N(ε) ≥ 0,  T (T − N(ε)) = m EA,
 //!
-//! which makes T(ε) smooth and the energy of the network convex with one minimum only. m is the tension of a segment that is shortened to
-//! nothing. For m as great as all loads together the lines are pulled straight. From there m falls to nothing, by as much at once as
-//! Newton's method on positions and tensions together allows, and with it the breadth of the water's surface, over which a line that floats
-//! gains its buoyancy. What is left where the equilibrium is not the only one is that whose segments are shortened most evenly.
+//! which makes T(ε) smooth and the energy of the network convex with one minimum only. m is the tension of a segment
+//! that is shortened to nothing. For m as great as all loads together the lines are pulled straight. From there m is
+//! reduced to zero, at the rate that Newton's method on positions and tensions together allows, along with the
+//! breadth of the water's surface, over which a line that floats gains its buoyancy. Where the equilibrium is not
+//! unique, the result is the one whose segments are shortened most evenly.
 //!
 //! Source: the primal-dual interior point method, Nocedal & Wright (2006), Numerical Optimization, 2nd ed., sections 16.6 and 19.1, with the
 //! segments' tensions as multipliers; the elimination of the tensions is derived in `elements/line.rs`.
@@ -22,7 +24,7 @@ use crate::model::State;
 const TAUTEST: f64 = 1.0;
 /// Last m, over the sum of the loads, where an equilibrium that is not accepted by then will not be [-].
 const SLACKEST: f64 = 1e-26;
-/// One m over the one before: at first, at least, and so near to one that it is given up [-].
+/// Ratio of successive m: the first, the least, and the value close to one at which the method stops [-].
 const FALL: f64 = 0.3;
 const FALL_MIN: f64 = 0.01;
 const FALL_MAX: f64 = 0.9;
@@ -75,8 +77,9 @@ impl Problem<'_> {
         balanced
     }
 
-    /// From a soft network with a broad water surface, whose energy is minimised, to lines that become thinner and thinner; returns true where it converged.
-    /// Where the end of a floating line is free and weighs next to nothing, no m leaves its last segment a direction, and this finds the equilibrium.
+    /// Reduces the breadth of the water surface from a soft network, whose energy is minimised, to thin lines;
+    /// returns true where it converged. Where the end of a floating line is free and weighs next to nothing, no m
+    /// gives its last segment a direction, and this method finds the equilibrium.
     pub(super) fn thin_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
         let lines = self.network.lines.iter();
         let surfaces = lines.filter_map(|&line| self.model.lines[line].surface.as_ref());

@@ -171,8 +171,8 @@ impl Walk<'_> {
         self.miss((point.x - self.x).hypot(point.z - self.z), self.length_scale());
         let force = (point.horizontal - self.h).hypot(point.vertical - self.v);
         self.miss(force, self.force_scale());
-        // what is within the tolerance is taken over: far from A, or beyond a heavy section, a part may carry less than the
-        // rounding of V at A or of s times w
+        // residuals within the tolerance are ignored: far from A, or beyond a heavy section, a part may carry less
+        // than the rounding of V at A or of s times w
         if force < 1e-12 * self.force_scale() {
             self.v = point.vertical;
         }

@@ -1,7 +1,9 @@
-//! Hard cases: where cable solvers lose energy, accuracy, steps or themselves. Every case states what must hold: how far the energy balance may be
-//! from closing, how far tension or place from a closed form or a converged run, and how many internal steps it may take.
+//! Hard cases: scenes in which cable solvers lose energy, accuracy or convergence. Every case states its bounds: the
+//! error of the energy balance, the distance of tension or place from a closed form or a converged run, and the
+//! number of internal steps.
 //!
-//! The scenes are those of the example `hard_cases`, which draws the figures of `docs/hard-cases.md`. `--nocapture` prints what is found.
+//! The scenes are those of the example `hard_cases`, which draws the figures of `docs/hard-cases.md`. `--nocapture`
+//! prints the results.
 
 #[allow(dead_code)] // the example uses what the tests do not
 #[path = "../../../examples/hard_cases/run.rs"]

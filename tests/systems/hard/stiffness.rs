@@ -17,7 +17,8 @@ fn stiff(integrator: Integrator, factor: f64) -> Run {
     Run::of(&by(scene, integrator, 0.02), 40.0, 0.05)
 }
 
-/// That line when it hardly stretches: the mean tension of runs that differ by their steps alone, whose shocks are not alike.
+/// The same line with hardly any stretch: the mean tension of runs that differ by their steps alone, whose shocks are
+/// not alike.
 fn inextensible() -> Run {
     let [mut mean, others @ ..] = [0.005, 0.0025, 0.00125, 0.000625].map(|step| {
         let scene = stiffer(shipped("oc3_catenary"), 1e4);
