@@ -62,6 +62,7 @@
 //! assert!(x < 0.0 && z < 0.0); // the line pulls the fairlead back and down
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![warn(unreachable_pub)]
 #![forbid(unsafe_code)]
 
 pub mod discretisation;
@@ -79,6 +80,7 @@ pub mod statics;
 #[cfg(test)]
 extern crate self as moorline; // tests build scenes and compare texts as those in `tests` do
 #[cfg(test)]
+#[expect(unreachable_pub, reason = "a file of the outer tests")]
 #[path = "../tests/common/draft.rs"]
 mod draft;
 #[cfg(test)]

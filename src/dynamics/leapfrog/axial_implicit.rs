@@ -86,11 +86,11 @@ pub(super) type AxialLine = LeapfrogLine<AxialImplicit>;
 
 /// Weights of T^{n+1}, T^n, T^{n−1}, T^{n−2} in T̄.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Weights([f64; 4]);
+pub(super) struct Weights([f64; 4]);
 
 impl Weights {
     /// For the spectral radius ρ [-] at infinite frequency, ½ to 1.
-    pub fn new(rho: f64) -> Weights {
+    pub(super) fn new(rho: f64) -> Weights {
         let b = (1.0 - rho) / (2.0 * rho);
         let n = (1.0 + rho) * (1.0 + rho) * (1.0 + b);
         Weights([1.0, 2.0 * rho + b, rho * (rho + 2.0 * b), rho * rho * b].map(|weight| weight / n))

@@ -22,7 +22,7 @@ use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
 use ground::ContactArrays;
 use handover::padded_positions;
-pub use water::Water;
+pub(super) use water::Water;
 pub(super) use water::{CurrentNow, WaveArrays, water_flow};
 
 /// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the bed would else go on to squares that are

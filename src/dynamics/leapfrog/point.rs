@@ -15,7 +15,7 @@ use crate::physics::slender::Slender;
 
 /// Loads and mass of a free point, of its own or of the half node of a line that is tied to it.
 #[derive(Debug, Clone, Copy)]
-pub struct PointLoad {
+pub(super) struct PointLoad {
     /// Force without contact [N].
     pub force: Vector3<f64>,
     /// Part of it by the resistance of water and damping [N].
@@ -216,7 +216,7 @@ impl ContactSpring {
 
 impl PointLoad {
     /// No load and no mass.
-    pub fn none() -> PointLoad {
+    pub(super) fn none() -> PointLoad {
         let zero = Vector3::zeros();
         PointLoad {
             force: zero,
@@ -229,7 +229,7 @@ impl PointLoad {
         }
     }
 
-    pub fn add(&mut self, other: &PointLoad) {
+    pub(super) fn add(&mut self, other: &PointLoad) {
         self.force += other.force;
         self.resistance += other.resistance;
         self.froude_krylov += other.froude_krylov;
@@ -310,7 +310,7 @@ pub(super) struct SeabedBelow<'a> {
 }
 
 impl SeabedBelow<'_> {
-    pub fn under(model: &Model, place: Vector3<f64>) -> SeabedBelow<'_> {
+    pub(super) fn under(model: &Model, place: Vector3<f64>) -> SeabedBelow<'_> {
         match model.bottom.as_deref() {
             None => SeabedBelow {
                 height: place.z,
@@ -365,7 +365,7 @@ pub(super) struct Sliding {
 }
 
 impl Sliding {
-    pub fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
+    pub(super) fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
         let Axes { along, across, .. } = Axes::new(normal, normal);
         let axes = [along, across];
         let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
@@ -379,7 +379,12 @@ impl Sliding {
     }
 
     /// What must be added to the impulse `friction` so that the point stops, or the impulse is at its limit [N s]; `velocity` [m/s] is without any.
-    pub fn friction(&self, velocity: Vector3<f64>, friction: Vector3<f64>, limit: f64) -> Vector3<f64> {
+    pub(super) fn friction(
+        &self,
+        velocity: Vector3<f64>,
+        friction: Vector3<f64>,
+        limit: f64,
+    ) -> Vector3<f64> {
         let slides = Vector2::from_fn(|i, _| self.axes[i].dot(&velocity));
         let wanted = -self.mass * slides;
         let size = wanted.norm();

@@ -31,7 +31,7 @@ pub(super) struct NormalContact {
 
 impl NormalContact {
     /// None.
-    pub fn none() -> NormalContact {
+    pub(super) fn none() -> NormalContact {
         let zero = Lanes::splat(0.0);
         NormalContact {
             penetration: zero,
@@ -43,7 +43,7 @@ impl NormalContact {
 
     /// A bed of stiffness k [N/m] and damping c [N s/m] under nodes that left it at `rise` [m/s] in the last step and yield to it by n·M⁻¹n [1/kg].
     #[inline(always)]
-    pub fn new(
+    pub(super) fn new(
         [stiffness, damping]: [Lanes; 2],
         penetration: Lanes,
         rise: Lanes,
@@ -80,13 +80,13 @@ impl NormalContact {
 
     /// Impulse [N s] on nodes that leave the bed at `rise` [m/s], were it to pull as well.
     #[inline(always)]
-    pub fn push(&self, rise: Lanes) -> Lanes {
+    pub(super) fn push(&self, rise: Lanes) -> Lanes {
         self.spring - self.resistance * rise
     }
 
     /// What is > 0 where the bed pushes nodes that leave it at `rise` [m/s].
     #[inline(always)]
-    pub fn pushes(&self, rise: Lanes) -> Lanes {
+    pub(super) fn pushes(&self, rise: Lanes) -> Lanes {
         (self.penetration - self.ahead * rise).where_positive(self.push(rise))
     }
 }

@@ -54,7 +54,7 @@ impl SeabedRow {
     }
 
     /// Nodes without a seabed.
-    pub fn new() -> SeabedRow {
+    pub(super) fn new() -> SeabedRow {
         let zero = Lanes::splat(0.0);
         SeabedRow::off(
             Vectors::zero(),

@@ -15,21 +15,21 @@ const SHORTEST: f64 = -0.2;
 /// What springs pull by: kinds of them.
 pub(super) mod springs {
     /// Engineering strain.
-    pub const LINEAR: u8 = 0;
+    pub(crate) const LINEAR: u8 = 0;
     /// Another measure of strain, or a table.
-    pub const CURVED: u8 = 1;
+    pub(crate) const CURVED: u8 = 1;
     /// Viscoelastic.
-    pub const VISCOELASTIC: u8 = 2;
+    pub(crate) const VISCOELASTIC: u8 = 2;
 }
 
 /// What is under the nodes.
 pub(super) mod under {
     /// No bed.
-    pub const NOTHING: u8 = 0;
+    pub(crate) const NOTHING: u8 = 0;
     /// A level bed without friction.
-    pub const LEVEL: u8 = 1;
+    pub(crate) const LEVEL: u8 = 1;
     /// a seabed with a slope, soundings or friction.
-    pub const ROUGH: u8 = 2;
+    pub(crate) const ROUGH: u8 = 2;
 }
 
 /// Sizes of a step, in every lane.
@@ -95,7 +95,7 @@ pub(super) struct SegmentRow {
 
 impl SegmentRow {
     /// Row `at` of a line.
-    pub fn new(line: &Layout, at: usize) -> SegmentRow {
+    pub(super) fn new(line: &Layout, at: usize) -> SegmentRow {
         let zero = Lanes::splat(0.0);
         let inverse = line.inverse_length.load(at);
         SegmentRow {
@@ -123,7 +123,7 @@ impl SegmentRow {
     /// Writes the equations T̄ − r q·(v_{i+1} − v_i) = known with the velocities that the nodes' momentum gives them: from what the loose
     /// velocities [m/s] of the nodes differ by, and from the forms of both.
     #[inline(always)]
-    pub fn assemble(
+    pub(super) fn assemble(
         &mut self,
         relative: Vectors,
         [[_, to_before, low], [high, to_after, _]]: [[Lanes; 3]; 2],
@@ -145,7 +145,7 @@ impl SegmentRow {
 
     /// Slope of T̄ with the stretching velocity [N s/m].
     #[inline(always)]
-    pub fn rate_slope(&self, sizes: &Sizes) -> Lanes {
+    pub(super) fn rate_slope(&self, sizes: &Sizes) -> Lanes {
         let damping = self.damping * sizes.damping[0];
         self.taut.choose(self.stiffness + damping, sizes.push * damping)
     }
@@ -153,7 +153,7 @@ impl SegmentRow {
     /// Lays the springs along the tangent of their curve where a stretching velocity [m/s] takes them in a step of `drift` [s], `share` being b₁ and
     /// `inverse` 1/L [1/m]. Returns their force there [N].
     #[inline(always)]
-    pub fn follow(
+    pub(super) fn follow(
         &mut self,
         law: &StretchLaw,
         along: Lanes,
@@ -176,13 +176,13 @@ impl SegmentRow {
 
     /// Force of the springs in T̄ [N] at a stretching velocity [m/s].
     #[inline(always)]
-    pub fn spring(&self, along: Lanes) -> Lanes {
+    pub(super) fn spring(&self, along: Lanes) -> Lanes {
         self.elastic + self.curvature + self.stiffness * along
     }
 
     /// Stretching velocity that the damper acts on in a step that ends with one [m/s].
     #[inline(always)]
-    pub fn rate(&self, along: Lanes, sizes: &Sizes) -> Lanes {
+    pub(super) fn rate(&self, along: Lanes, sizes: &Sizes) -> Lanes {
         sizes.damping[0] * along + sizes.damping[1] * self.along
     }
 
@@ -202,7 +202,7 @@ impl SegmentRow {
 
     /// Part that the springs up to t_n have in T̄ where none of them pushes [N].
     #[inline(always)]
-    pub fn all_remembered(&self, sizes: &Sizes) -> Lanes {
+    pub(super) fn all_remembered(&self, sizes: &Sizes) -> Lanes {
         let [_, h0, h1, h2] = sizes.weights;
         let [now, last, before] = self.history;
         h0 * now + h1 * last + h2 * before
@@ -210,7 +210,7 @@ impl SegmentRow {
 
     /// Remembers the springs up to t_n with the damper at a stretching velocity [m/s].
     #[inline(always)]
-    pub fn remember(&mut self, rate: Lanes, sizes: &Sizes) {
+    pub(super) fn remember(&mut self, rate: Lanes, sizes: &Sizes) {
         let pull = (Lanes::splat(1.0) - sizes.push) * self.axial_damping * rate;
         let [memory, share] = self.remembered(pull, sizes);
         self.elastic = self.elastic + (memory - self.memory);
@@ -227,21 +227,21 @@ impl SegmentRow {
 
     /// < 0 where T̄ has other springs up to t_n than are remembered, the damper pulling with `pull` [N].
     #[inline(always)]
-    pub fn margin(&self, pull: Lanes) -> Lanes {
+    pub(super) fn margin(&self, pull: Lanes) -> Lanes {
         let [less, more] = self.margins;
         (less + pull).min(more - pull)
     }
 
     /// What the damper adds, at a stretching velocity [m/s], to what tells whether the segment is taut [N].
     #[inline(always)]
-    pub fn pull(&self, rate: Lanes, sizes: &Sizes) -> Lanes {
+    pub(super) fn pull(&self, rate: Lanes, sizes: &Sizes) -> Lanes {
         (Lanes::splat(1.0) - sizes.push) * self.damping * rate
     }
 
     /// What is > 0 where the segment is taut at a stretching velocity [m/s], and by how much more T̄ has of springs up to t_n and of the damper than is
     /// remembered [N].
     #[inline(always)]
-    pub fn total(&self, along: Lanes, sizes: &Sizes) -> [Lanes; 2] {
+    pub(super) fn total(&self, along: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let (zero, rate) = (Lanes::splat(0.0), self.rate(along, sizes));
         let pull = self.pull(rate, sizes);
         let total = self.spring(along) + pull;
@@ -292,7 +292,7 @@ pub(super) struct NodeRow {
 
 impl NodeRow {
     /// Padding, which stays where it is.
-    pub fn new() -> NodeRow {
+    pub(super) fn new() -> NodeRow {
         let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
         NodeRow {
             mass_normal: one,
@@ -316,7 +316,7 @@ impl NodeRow {
 
     /// b t_z, which makes s = a ẑ + b t_z t over a level bed [1/kg].
     #[inline(always)]
-    pub fn lift(&self) -> Lanes {
+    pub(super) fn lift(&self) -> Lanes {
         self.excess * self.tangent.z
     }
 
@@ -334,7 +334,7 @@ impl NodeRow {
 
     /// M⁻¹ x.
     #[inline(always)]
-    pub fn inverse_mass<const BED: u8>(&self, x: Vectors) -> Vectors {
+    pub(super) fn inverse_mass<const BED: u8>(&self, x: Vectors) -> Vectors {
         let [rise, along] = self.shares::<BED>(x);
         let (across, along) = (x.scale(self.across), self.excess * along);
         if BED == under::NOTHING {
@@ -351,7 +351,7 @@ impl NodeRow {
 
     /// Finds the forms of the unit vectors q and q′ of the segments before and after.
     #[inline(always)]
-    pub fn weigh<const BED: u8>(&mut self, q: Vectors, other: Vectors) {
+    pub(super) fn weigh<const BED: u8>(&mut self, q: Vectors, other: Vectors) {
         let [rise, along] = self.shares::<BED>(q);
         let [other_rise, other_along] = self.shares::<BED>(other);
         let (excess, other_excess) = (self.excess * along, self.excess * other_along);
@@ -382,7 +382,7 @@ pub(super) struct CurrentRow {
 }
 
 impl CurrentRow {
-    pub fn new() -> CurrentRow {
+    pub(super) fn new() -> CurrentRow {
         CurrentRow {
             flow: Vectors::zero(),
             froude_krylov: Vectors::zero(),
@@ -401,7 +401,7 @@ pub(super) struct Rows {
 
 impl Rows {
     /// T̄ q of a segment [N].
-    pub fn pull(&self, at: Slot) -> Vector3<f64> {
+    pub(super) fn pull(&self, at: Slot) -> Vector3<f64> {
         let segment = &self.segments[at.row - 1];
         segment.tension[at.lane] * segment.direction.get(at.lane)
     }

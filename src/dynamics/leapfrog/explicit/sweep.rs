@@ -25,21 +25,21 @@ use crate::physics::stretch::{StretchLaw, total_tension};
 /// Water around the nodes.
 mod around {
     /// None.
-    pub const DRY: u8 = 0;
+    pub(super) const DRY: u8 = 0;
     /// At rest, or damping in proportion to mass.
-    pub const STILL: u8 = 1;
+    pub(super) const STILL: u8 = 1;
     /// In motion.
-    pub const FLOWING: u8 = 2;
+    pub(super) const FLOWING: u8 = 2;
 }
 
 /// Seabed under the nodes.
 mod under {
     /// None.
-    pub const NOTHING: u8 = 0;
+    pub(super) const NOTHING: u8 = 0;
     /// Level and without friction.
-    pub const LEVEL: u8 = 1;
+    pub(super) const LEVEL: u8 = 1;
     /// With a slope, soundings or friction.
-    pub const ROUGH: u8 = 2;
+    pub(super) const ROUGH: u8 = 2;
 }
 
 /// [`ExplicitLine::pull`] for the vector unit of the machine.

@@ -47,7 +47,7 @@ pub(super) struct WinchWork {
 
 impl WinchWork {
     /// For a line on a winch.
-    pub fn new(line: &Line) -> Option<Box<WinchWork>> {
+    pub(super) fn new(line: &Line) -> Option<Box<WinchWork>> {
         line.winch.as_ref()?;
         Some(Box::new(WinchWork {
             line: line.clone(),
