@@ -84,5 +84,6 @@ extern crate self as moorline; // tests build scenes and compare texts as those 
 #[path = "../tests/common/draft.rs"]
 mod draft;
 #[cfg(test)]
+#[expect(unreachable_pub, reason = "a file of the outer tests")]
 #[path = "../tests/common/text.rs"]
 mod text;

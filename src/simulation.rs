@@ -92,9 +92,24 @@ impl Simulation {
     /// # Errors
     /// Mistakes in the scene, or an equilibrium that does not exist.
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
-        let model = Arc::new(Model::new(scene)?);
+        Simulation::start(Model::new(scene)?, start::Shapes::AsGiven)
+    }
+
+    /// Builds the discrete model of a scene and solves its static equilibrium alone: the result of [`Simulation::new`] and then
+    /// [`Simulation::in_equilibrium`].
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn at_rest(scene: &Scene) -> Result<Simulation, Error> {
+        let mut model = Model::new(scene)?;
+        settle(&mut model);
+        Simulation::start(model, start::Shapes::Equilibrium)
+    }
+
+    fn start(model: Model, shapes: start::Shapes) -> Result<Simulation, Error> {
+        let model = Arc::new(model);
         let inputs = Inputs::new(&model);
-        let (snapshot, work) = start::begin(&model, 0.0, inputs, false, start::Shapes::AsGiven)?;
+        let (snapshot, work) = start::begin(&model, 0.0, inputs, false, shapes)?;
         let lines = model.lines.iter();
         Ok(Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
@@ -116,12 +131,7 @@ impl Simulation {
     pub fn in_equilibrium(&self) -> Result<Simulation, Error> {
         let mut still = self.clone();
         still.snapshot.inputs = Inputs::new(&self.model);
-        let model = Arc::make_mut(&mut still.model);
-        model.waves = None;
-        // the initial shape of a beam may be the one free of bending moments, and is the start of its search
-        for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
-            line.initial = InitialShape::Static;
-        }
+        settle(Arc::make_mut(&mut still.model));
         still.begin(0.0, false, start::Shapes::Equilibrium)?;
         Ok(still)
     }
@@ -287,6 +297,15 @@ impl Simulation {
             balance.flow.dissipation += free - held;
         }
         Some(before)
+    }
+}
+
+/// Removes waves and initial shapes, for an equilibrium.
+fn settle(model: &mut Model) {
+    model.waves = None;
+    // the initial shape of a beam may be the one free of bending moments, and is the start of its search
+    for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
+        line.initial = InitialShape::Static;
     }
 }
 

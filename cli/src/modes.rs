@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use moorline::discretisation;
 use moorline::output::figures;
 use moorline::output::modes::{Mode, NaturalModes, natural_modes, write};
 use moorline::output::report::rounded;
@@ -14,7 +13,7 @@ use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::summary::Table;
-use crate::terminal::{discretise, print, read_scene, simulate};
+use crate::terminal::{at_rest, print, read_scene};
 
 /// Digits of periods and frequencies [-].
 const DIGITS: usize = 6;
@@ -40,10 +39,7 @@ pub(crate) fn modes(input: &Input, shown: &Shown) -> Result<(), Failure> {
         loaded.scene.solver.integrator = Integrator::Leapfrog; // elements at rest, not catenaries
     }
     let folder = shown.output.map(Folder::open).transpose()?;
-    discretise(&mut loaded, discretisation::select_at_rest);
-    let simulation = simulate(&loaded)?
-        .in_equilibrium()
-        .map_err(|error| Failure::of_simulation(error, &loaded))?;
+    let simulation = at_rest(&mut loaded)?;
     let found =
         natural_modes(&loaded.scene.title, &simulation, shown.count).map_err(|error| match error {
             ModesError::Beam { .. } | ModesError::NoMass { .. } => Failure::Argument(error.to_string()),

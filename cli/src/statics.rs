@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use moorline::discretisation;
 use moorline::output::{collect, json};
 use moorline::scene::{InitialShape, Note};
 use moorline::simulation::Watch;
@@ -10,7 +9,7 @@ use moorline::simulation::Watch;
 use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::summary::{Table, static_table};
-use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
+use crate::terminal::{at_rest, print, read_scene, remark_all};
 
 /// Solves the equilibrium and prints it.
 pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
@@ -18,10 +17,7 @@ pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
     if let Some(water) = &mut loaded.scene.water {
         water.waves = None; // an equilibrium is that of the sea at rest
     }
-    discretise(&mut loaded, discretisation::select_at_rest);
-    let simulation = simulate(&loaded)?
-        .in_equilibrium()
-        .map_err(|error| Failure::of_simulation(error, &loaded))?;
+    let simulation = at_rest(&mut loaded)?;
     remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));
     for (index, line) in loaded.scene.lines.iter().enumerate() {
         if line.initial != InitialShape::Static {

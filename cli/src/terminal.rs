@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use moorline::discretisation::Discretisation;
+use moorline::discretisation::{self, Discretisation};
 use moorline::scene::{LoadedScene, Note, Scene};
 use moorline::simulation::Simulation;
 use moorline_decks::{Supplement, load_with};
@@ -41,9 +41,23 @@ pub(crate) fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
 /// Gives a scene the mesh, integrator and step that it leaves open, once for all that a command does with it. Remarks where they are not
 /// expected to keep the tolerance.
 pub(crate) fn discretise(loaded: &mut LoadedScene, select: fn(&Scene) -> Option<Discretisation>) {
-    let Some(found) = select(&loaded.scene) else {
-        return;
-    };
+    if let Some(found) = select(&loaded.scene) {
+        take(loaded, found);
+    }
+}
+
+/// Gives a scene the mesh that its equilibrium needs, and solves that; remarks as [`discretise`].
+pub(crate) fn at_rest(loaded: &mut LoadedScene) -> Result<Simulation, Failure> {
+    match discretisation::at_rest(&loaded.scene) {
+        Ok((found, simulation)) => {
+            found.into_iter().for_each(|found| take(loaded, found));
+            Ok(simulation)
+        }
+        Err(error) => Err(Failure::of_simulation(error, loaded)),
+    }
+}
+
+fn take(loaded: &mut LoadedScene, found: Discretisation) {
     let notes = found.shortfalls().into_iter();
     let notes = notes.map(|text| Note::new("solver.tolerance".to_string(), text));
     remark_all(loaded, notes.collect());

@@ -115,14 +115,12 @@ type Reader = for<'s> fn(&str, &'s Supplement) -> Draft<'s>;
 
 /// The reader of a deck; `None` of TOML and of texts that are no decks.
 fn reader(text: &str) -> Option<Reader> {
+    let reader = match map::is_deck(text) {
+        true => Some(map::read as Reader),
+        false => moordyn::is_deck(text).then_some(moordyn::read as Reader),
+    };
     // Banners of dashes stand in comments and strings of scenes too.
-    if is_toml(text) {
-        None
-    } else if map::is_deck(text) {
-        Some(map::read)
-    } else {
-        moordyn::is_deck(text).then_some(moordyn::read as Reader)
-    }
+    reader.filter(|_| !is_toml(text))
 }
 
 /// Reads the files that a deck names and checks the scene as every scene is checked. Returns notes on the scene.

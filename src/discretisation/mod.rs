@@ -34,6 +34,7 @@ use std::borrow::Cow;
 use crate::model::mesh::line_elements;
 use crate::model::{Model, line_shares};
 use crate::scene::{Integrator, Line, Scene, percent};
+use crate::simulation::{self, Simulation};
 use search::Search;
 
 pub use expense::expense;
@@ -196,22 +197,41 @@ pub fn select(scene: &Scene) -> Option<Discretisation> {
         return None;
     }
     let networks = Networks::of(scene)?;
-    tried_in_motion(scene, &networks).or_else(|| tried_at_rest(scene, &networks))
+    tried_in_motion(scene, &networks).or_else(|| {
+        let simulation = Simulation::new(scene).ok()?;
+        Some(tried_at_rest(scene, &networks, &simulation, Simulation::new)?.0)
+    })
 }
 
-/// Selects the mesh for an equilibrium, without trials of motion.
-pub fn select_at_rest(scene: &Scene) -> Option<Discretisation> {
-    if !is_open(scene) {
-        return None;
+/// Solves the equilibrium of a scene ([`Simulation::at_rest`]) on a mesh selected for it, without trials of a motion. Returns the mesh too
+/// where it is not that of the rule.
+///
+/// # Errors
+/// As [`Simulation::at_rest`].
+pub fn at_rest(scene: &Scene) -> Result<(Option<Discretisation>, Simulation), simulation::Error> {
+    let simulation = Simulation::at_rest(scene)?;
+    if !is_open(scene) || scene.solver.integrator == Integrator::QuasiStatic {
+        return Ok((None, simulation));
     }
-    tried_at_rest(scene, &Networks::of(scene)?)
+    let networks = Networks::new(scene, simulation.model());
+    match tried_at_rest(scene, &networks, &simulation, Simulation::at_rest) {
+        None => Ok((None, simulation)),
+        Some((found, Some(refined))) => Ok((Some(found), refined)),
+        Some((found, None)) => {
+            let simulation = Simulation::at_rest(&found.scene)?;
+            Ok((Some(found), simulation))
+        }
+    }
 }
 
 fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     let mut search = Search::new(scene, networks)?;
     let mut meshes = search.meshes()?;
-    rest::refine(scene, networks, &mut meshes);
-    let elements: Vec<usize> = meshes.iter().map(|mesh| mesh.elements).collect();
+    let start = |scene: &Scene| Simulation::new(scene).ok();
+    if let Some(simulation) = start(&networks.with_elements(scene, &elements_of(&meshes))) {
+        rest::refine(scene, networks, &mut meshes, &simulation, start);
+    }
+    let elements = elements_of(&meshes);
     let settled = if networks.open(&meshes).all(|mesh| mesh.tried) {
         search.with_integrator(&elements)
     } else {
@@ -227,12 +247,23 @@ fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation>
     })
 }
 
-/// Scene with more elements than the rule gives, where it needs them at rest.
-fn tried_at_rest(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
+/// Elements of a line alone in every network [-].
+fn elements_of(meshes: &[Mesh]) -> Vec<usize> {
+    meshes.iter().map(|mesh| mesh.elements).collect()
+}
+
+/// The scene with more elements than the rule gives, where it needs them at rest, and its simulation where that was started; `by_rule` is a
+/// simulation on the mesh of the rule.
+fn tried_at_rest(
+    scene: &Scene,
+    networks: &Networks,
+    by_rule: &Simulation,
+    start: fn(&Scene) -> Result<Simulation, simulation::Error>,
+) -> Option<(Discretisation, Option<Simulation>)> {
     if scene.solver.integrator == Integrator::QuasiStatic {
         return None;
     }
-    let by_rule = |lines: &Vec<usize>| Mesh {
+    let mesh = |lines: &Vec<usize>| Mesh {
         lines: lines.clone(),
         trials: Vec::new(),
         elements: line_elements(scene.solver.tolerance).round() as usize,
@@ -240,15 +271,15 @@ fn tried_at_rest(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
         tried: true,
         rest: None,
     };
-    let mut meshes: Vec<Mesh> = networks.lines.iter().map(by_rule).collect();
-    rest::refine(scene, networks, &mut meshes);
+    let mut meshes: Vec<Mesh> = networks.lines.iter().map(mesh).collect();
+    let refined = rest::refine(scene, networks, &mut meshes, by_rule, |scene| start(scene).ok());
     meshes.iter().find_map(|mesh| mesh.rest)?;
-    let elements: Vec<usize> = meshes.iter().map(|mesh| mesh.elements).collect();
-    Some(Discretisation {
-        scene: networks.with_elements(scene, &elements),
+    let found = Discretisation {
+        scene: networks.with_elements(scene, &elements_of(&meshes)),
         meshes: networks.open(&meshes).cloned().collect(),
         duration: 0.0,
-    })
+    };
+    Some((found, refined))
 }
 
 /// Scene with its discretisation: as [`select`] finds it, or unchanged where nothing is left open.
@@ -290,14 +321,19 @@ struct Networks {
 
 impl Networks {
     fn of(scene: &Scene) -> Option<Networks> {
-        let networks = Model::new(scene).ok()?.networks;
-        let lines: Vec<Vec<usize>> = networks.into_iter().map(|network| network.lines).collect();
+        Some(Networks::new(scene, &Model::new(scene).ok()?))
+    }
+
+    /// Those of a model of the scene.
+    fn new(scene: &Scene, model: &Model) -> Networks {
+        let networks = model.networks.iter();
+        let lines: Vec<Vec<usize>> = networks.map(|network| network.lines.clone()).collect();
         let is_open = |lines: &Vec<usize>| lines.iter().any(|&line| scene.lines[line].is_open());
-        Some(Networks {
+        Networks {
             open: lines.iter().map(is_open).collect(),
             shares: line_shares(scene),
             lines,
-        })
+        }
     }
 
     /// Values of one number a network for those whose elements are open.

@@ -9,14 +9,20 @@ use super::search::driven;
 /// Part of an error at rest that the most elements must take away to be worth it, where they do not keep the tolerance [-].
 const GAIN: f64 = 0.5;
 
-/// Adds elements to the meshes whose tension at rest does not keep the tolerance; none where more do not help.
-pub(super) fn refine(scene: &Scene, networks: &Networks, meshes: &mut [Mesh]) {
+/// Adds elements to the meshes whose tension at rest does not keep the tolerance; none where more do not help. `given` is a simulation on
+/// these meshes. Returns one on the finer meshes, where it was started.
+pub(super) fn refine(
+    scene: &Scene,
+    networks: &Networks,
+    meshes: &mut [Mesh],
+    given: &Simulation,
+    start: impl Fn(&Scene) -> Option<Simulation>,
+) -> Option<Simulation> {
     let aim = AIM * scene.solver.tolerance;
     let mut elements: Vec<usize> = meshes.iter().map(|mesh| mesh.elements).collect();
-    let Some(first) = errors(scene, networks, &elements) else {
-        return;
-    };
+    let first = errors(scene, networks, given)?;
     let mut now = first.clone();
+    let mut finest = None;
     let lacks = |elements: usize, error: f64| error > aim && (elements as f64) < ELEMENTS_MAX;
     while let wanting = elements.iter().zip(&now).zip(&networks.open)
         && wanting
@@ -28,10 +34,9 @@ pub(super) fn refine(scene: &Scene, networks: &Networks, meshes: &mut [Mesh]) {
                 *n = (2.0 * *n as f64).min(ELEMENTS_MAX) as usize;
             }
         }
-        match errors(scene, networks, &elements) {
-            Some(errors) => now = errors,
-            None => return,
-        }
+        let finer = start(&networks.with_elements(scene, &elements))?;
+        now = errors(scene, networks, &finer)?;
+        finest = Some(finer);
     }
     for (i, mesh) in meshes.iter_mut().enumerate() {
         let helps = now[i] <= aim || now[i] <= (1.0 - GAIN) * first[i];
@@ -43,12 +48,13 @@ pub(super) fn refine(scene: &Scene, networks: &Networks, meshes: &mut [Mesh]) {
             mesh.elements = elements[i];
         }
     }
+    let same = meshes.iter().zip(&elements).all(|(mesh, &n)| mesh.elements == n);
+    finest.filter(|_| same)
 }
 
 /// Greatest error of the tension at the driven ends of the lines of every network at rest against their closed-form catenaries [-], 0 where no
 /// line of a network has one; none where no line at all has one.
-fn errors(scene: &Scene, networks: &Networks, elements: &[usize]) -> Option<Vec<f64>> {
-    let simulation = Simulation::new(&networks.with_elements(scene, elements)).ok()?;
+fn errors(scene: &Scene, networks: &Networks, simulation: &Simulation) -> Option<Vec<f64>> {
     let model = simulation.model();
     let of_line = |line: usize| {
         let (built, exact) = (&model.lines[line], simulation.catenary(line)?);

@@ -30,7 +30,7 @@ use crate::physics::viscoelastic::Viscoelastic;
 use crate::physics::weight::submerged_weight;
 use crate::scene::channel::LineEnd;
 use crate::scene::{
-    self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
+    self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, Names, PointKind, RestShape, Scene,
     SceneError, Strain,
 };
 
@@ -49,11 +49,12 @@ impl Model {
     /// The mistakes that [`Scene::check`] finds, and names that do not exist.
     pub fn new(scene: &Scene) -> Result<Model, SceneError> {
         scene.check()?;
+        let names = Names::of(scene);
         let vessels: Vec<Vessel> = scene.vessels.iter().map(|v| vessel(scene, v)).collect();
         let mut points: Vec<Point> = scene
             .points
             .iter()
-            .map(|point| build_point(scene, &vessels, point))
+            .map(|point| build_point(scene, &names, &vessels, point))
             .collect();
         let bottom = scene.seabed.as_ref().and_then(bottom).map(Arc::new);
         let mut lines = Vec::with_capacity(scene.lines.len());
@@ -61,7 +62,7 @@ impl Model {
         let damped = spacing::damping_lengths(scene);
         for (index, line) in scene.lines.iter().enumerate() {
             let sizes = (elements[index], &damped[index][..]);
-            let mut built = build_line(scene, index, line, (&points, &vessels), sizes)?;
+            let mut built = build_line((scene, &names), index, line, (&points, &vessels), sizes)?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
             lay_on(&mut built, bottom.as_ref());
             resting::sink(&mut built, &points);
@@ -181,12 +182,9 @@ fn vessel(scene: &Scene, vessel: &scene::Vessel) -> Vessel {
     )
 }
 
-fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point {
+fn build_point(scene: &Scene, names: &Names, vessels: &[Vessel], point: &scene::Point) -> Point {
     let place = Vector3::from(point.position);
-    let carrier = point
-        .on
-        .as_ref()
-        .and_then(|name| vessels.iter().position(|vessel| vessel.name == *name));
+    let carrier = point.on.as_ref().and_then(|name| names.vessel_index(name));
     let role = match (point.kind, carrier) {
         (PointKind::Coupled, Some(vessel)) => Role::Carried { vessel, arm: place },
         (PointKind::Coupled, None) => Role::Coupled {
@@ -200,7 +198,7 @@ fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point
             .motion
             .as_ref()
             .map_or(Role::Fixed, |m| Role::Prescribed(Motion::new(m))),
-        (PointKind::Free, _) => Role::Free(free_point(scene, point)),
+        (PointKind::Free, _) => Role::Free(free_point(scene, names, point)),
     };
     Point {
         name: point.name.clone(),
@@ -211,7 +209,7 @@ fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point
         own: (point.kind != PointKind::Free && has_mass_or_water(point)).then(|| FreePoint {
             axes: [false; 3],
             contact: None,
-            ..free_point(scene, point)
+            ..free_point(scene, names, point)
         }),
         attached: Vec::new(),
     }
@@ -223,7 +221,7 @@ fn has_mass_or_water(point: &scene::Point) -> bool {
     sizes.iter().flatten().any(|size| *size > 0.0)
 }
 
-fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {
+fn free_point(scene: &Scene, names: &Names, point: &scene::Point) -> FreePoint {
     let axes = match &point.free {
         None => [true; 3],
         Some(free) => [Axis::X, Axis::Y, Axis::Z].map(|axis| free.contains(&axis)),
@@ -241,17 +239,22 @@ fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {
         mass,
         weight: submerged_weight(mass, density * volume, scene.gravity),
         sphere: Sphere::new(of_water, density, scene.gravity),
-        contact: point_contact(scene, point, axes, mass * scene.gravity),
+        contact: point_contact((scene, names), point, axes, mass * scene.gravity),
     }
 }
 
 /// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its
 /// lines' ends.
-fn point_contact(scene: &Scene, point: &scene::Point, axes: [bool; 3], dry: f64) -> Option<PointContact> {
+fn point_contact(
+    (scene, names): (&Scene, &Names),
+    point: &scene::Point,
+    axes: [bool; 3],
+    dry: f64,
+) -> Option<PointContact> {
     let bed = scene.seabed.as_ref()?;
     let in_reach = scene.lines.iter().any(|line| {
         let tied = line.from == point.name || line.to == point.name;
-        tied && may_touch_bed(scene, line)
+        tied && may_touch_bed(scene, names, line)
     });
     if !axes[2] || dry == 0.0 || bed.stiffness <= 0.0 || !in_reach {
         return None;
@@ -401,14 +404,14 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
 /// Line of the scene with this number of elements [-] where the scene leaves them open; damping ratios refer to
 /// segments of the lengths `damped` [m], one per section.
 fn build_line(
-    scene: &Scene,
+    (scene, names): (&Scene, &Names),
     index: usize,
     line: &scene::Line,
     (points, vessels): (&[Point], &[Vessel]),
     (elements, damped): (f64, &[f64]),
 ) -> Result<Line, SceneError> {
     let point = |key: &str, name: &str| {
-        scene.points.iter().position(|p| p.name == *name).ok_or_else(|| {
+        names.point_index(name).ok_or_else(|| {
             SceneError::new(
                 format!("lines[{index}].{key}"),
                 format!("there is no point \"{name}\""),
@@ -442,7 +445,7 @@ fn build_line(
         name: line.name.clone(),
         ends,
         segments: segments(&parts),
-        nodes: nodes(scene, &parts, may_touch_bed(scene, line)),
+        nodes: nodes(scene, &parts, may_touch_bed(scene, names, line)),
         bending: None,
         surface: None,
         sections: sections.collect(),
@@ -456,7 +459,7 @@ fn build_line(
         return on_winch(index, built, segments, winch);
     }
     built.bending = line_bending(index, line, &parts, &built)?;
-    if scene.meets_surface(line) {
+    if scene.meets_surface_between(line, names.ends(line)) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
     built.linear_load = [End::A, End::B].map(|end| built.has_linear_load(end));

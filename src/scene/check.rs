@@ -11,6 +11,7 @@ mod winch;
 
 use std::collections::BTreeMap;
 
+use super::names::Names;
 use super::nearest::suggestion;
 use super::plausibility::degrees;
 use super::table::{Rule, check_table};
@@ -34,8 +35,9 @@ impl Scene {
         check_table(self, "", &mut findings);
         surroundings::check(self, &mut findings);
         line_types::check(self, &mut findings);
-        points::check(self, &mut findings);
-        lines::check(self, &mut findings);
+        let names = Names::of(self);
+        points::check(self, &names, &mut findings);
+        lines::check(self, &names, &mut findings);
         settings::check(self, &mut findings);
         findings.mistakes
     }

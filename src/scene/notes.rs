@@ -7,6 +7,7 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::check::{number, quantity, rules};
+use super::names::Names;
 use super::path::quoted;
 use super::table_ends;
 use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
@@ -50,8 +51,9 @@ impl Scene {
         for (name, line_type) in &self.line_types {
             note_line_type(self, name, line_type, &mut notes);
         }
+        let names = Names::of(self);
         for (i, point) in self.points.iter().enumerate() {
-            note_point(self, &format!("points[{i}]"), point, &mut notes);
+            note_point((self, &names), &format!("points[{i}]"), point, &mut notes);
         }
         for (i, line) in self.lines.iter().enumerate() {
             let is_loop = chord(self, line).is_some_and(|chord| chord <= ENDS_APART * line.length());
@@ -146,15 +148,20 @@ pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3
 
 /// Distance between the ends of a line [m], where both are known.
 pub(super) fn chord(scene: &Scene, line: &Line) -> Option<f64> {
-    let position = |name: &str| reference_position(scene, scene.point(name)?);
-    let (a, b) = (position(&line.from)?, position(&line.to)?);
+    chord_between(scene, [&line.from, &line.to].map(|name| scene.point(name)))
+}
+
+/// Distance between two points [m], where both are known.
+pub(super) fn chord_between(scene: &Scene, ends: [Option<&Point>; 2]) -> Option<f64> {
+    let [a, b] = ends.map(|end| reference_position(scene, end?));
+    let (a, b) = (a?, b?);
     Some((0..3).map(|i| (b[i] - a[i]).powi(2)).sum::<f64>().sqrt())
 }
 
 /// Depth below a seabed that is not level from which a point is noted [m].
 const BURIED: f64 = 0.01;
 
-fn note_point(scene: &Scene, at: &str, point: &Point, notes: &mut Vec<Note>) {
+fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: &mut Vec<Note>) {
     let mut joined = scene
         .lines
         .iter()
@@ -167,7 +174,7 @@ fn note_point(scene: &Scene, at: &str, point: &Point, notes: &mut Vec<Note>) {
     let water = scene
         .water
         .as_ref()
-        .filter(|_| joined.any(|line| !scene.meets_surface(line)));
+        .filter(|_| joined.any(|line| !scene.meets_surface_between(line, names.ends(line))));
     let open = water.is_some_and(|water| water.surface.is_none());
     let everywhere =
         "but the water is taken to fill all space for its lines, so that they are submerged there too";

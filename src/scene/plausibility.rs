@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::check::{Findings, number, quantity, rules};
 use super::motion_file::AXES;
-use super::notes::{Note, chord, reference_position};
+use super::names::Names;
+use super::notes::{Note, chord_between, reference_position};
 use super::path::quoted;
 use super::table::check_table;
 use super::table_ends::motions;
@@ -340,9 +341,11 @@ fn is_guessed(scene: &Scene, line: &Line) -> bool {
 
 /// Lines that are too long; without water a scene is a bench test, and ends at one place make a loop.
 fn line_length(scene: &Scene, notes: &mut Vec<Note>) {
+    let names = Names::of(scene);
     for (i, line) in scene.lines.iter().enumerate().filter(|_| scene.water.is_some()) {
         let length = line.length();
-        let chord = chord(scene, line).filter(|chord| *chord > 0.0 && !is_guessed(scene, line));
+        let chord =
+            chord_between(scene, names.ends(line)).filter(|chord| *chord > 0.0 && !is_guessed(scene, line));
         let far = chord.filter(|chord| length > LENGTH_OVER_CHORD * chord);
         rules! { notes, "lines";
             "[{i}]" if length > LENGTH => "{} long: less than 20 km is usual", quantity(length, "m");
@@ -354,13 +357,14 @@ fn line_length(scene: &Scene, notes: &mut Vec<Note>) {
 }
 
 fn line_strain(scene: &Scene, notes: &mut Vec<Note>) {
+    let names = Names::of(scene);
     for (i, line) in scene.lines.iter().enumerate() {
         let length = line.length();
         let strain_max = match is_guessed(scene, line) {
             true => FIRST_GUESS_STRAIN.max(scene.usual_strain(line)),
             false => scene.usual_strain(line),
         };
-        let chord = chord(scene, line).unwrap_or(0.0);
+        let chord = chord_between(scene, names.ends(line)).unwrap_or(0.0);
         rules! { notes, "lines";
             "[{i}]" if chord > (1.0 + strain_max) * length =>
                 "its ends are {} m apart, and it is {} m long unstretched: it is strained by at least {:.0} %",
@@ -396,8 +400,9 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(seabed) = &scene.seabed else {
         return;
     };
+    let names = Names::of(scene);
     for (i, line) in scene.lines.iter().enumerate() {
-        let (Some(a), Some(b)) = (scene.point(&line.from), scene.point(&line.to)) else {
+        let [Some(a), Some(b)] = names.ends(line) else {
             continue;
         };
         let (Some(from), Some(to)) = (reference_position(scene, a), reference_position(scene, b)) else {

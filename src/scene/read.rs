@@ -139,8 +139,8 @@ pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
 /// All mistakes in it.
 pub fn load_text(path: &Path, text: String) -> Result<LoadedScene, LoadError> {
     match scene_of(&text, folder_of(path)) {
-        Ok(scene) => Ok(LoadedScene {
-            notes: with_lines(&text, scene.notes()),
+        Ok((scene, notes)) => Ok(LoadedScene {
+            notes,
             scene,
             text,
             path: path.to_path_buf(),
@@ -160,13 +160,16 @@ pub fn is_toml(text: &str) -> bool {
     Document::parse(text).is_ok()
 }
 
-fn scene_of(text: &str, folder: &Path) -> Result<Scene, Vec<SceneError>> {
+/// The scene of a text and the notes on it.
+fn scene_of(text: &str, folder: &Path) -> Result<(Scene, Vec<Note>), Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
     let mut scene = document.read::<Scene>().map_err(|mistake| vec![mistake])?;
     let of_files = scene.read_files(folder);
     let mistakes = scene.mistakes_with(of_files);
     if mistakes.is_empty() {
-        Ok(scene)
+        let mut notes = scene.notes();
+        place_in_lines(&document, text, &mut notes);
+        Ok((scene, notes))
     } else {
         Err(document.place(mistakes))
     }
@@ -175,15 +178,20 @@ fn scene_of(text: &str, folder: &Path) -> Result<Scene, Vec<SceneError>> {
 /// Notes on a scene with the lines of its text where their keys stand.
 fn with_lines(text: &str, mut notes: Vec<Note>) -> Vec<Note> {
     if let Ok(document) = Document::parse(text) {
-        for note in &mut notes {
-            if let Some(file) = path::file_of(&document.root, &note.at) {
-                note.at = file;
-            }
-            let span = path::locate(&document.root, &note.at);
-            note.line = span.map(|span| path::line_column(text, span.start).0);
-        }
+        place_in_lines(&document, text, &mut notes);
     }
     notes
+}
+
+/// Gives notes the lines where their keys stand in the text of a document.
+fn place_in_lines(document: &Document, text: &str, notes: &mut [Note]) {
+    for note in notes {
+        if let Some(file) = path::file_of(&document.root, &note.at) {
+            note.at = file;
+        }
+        let span = path::locate(&document.root, &note.at);
+        note.line = span.map(|span| path::line_column(text, span.start).0);
+    }
 }
 
 /// The folder that a scene's files stand in.

@@ -10,21 +10,23 @@ impl Scene {
     /// Returns whether a line meets the water's surface: as `water.surface` says; else where one of its ends lies above z = 0, or above the troughs of waves, in the reference
     /// configuration, or where it is buoyant or hangs on a free point that floats, and long enough to come up. Beams never do.
     pub fn meets_surface(&self, line: &Line) -> bool {
+        self.meets_surface_between(line, [&line.from, &line.to].map(|name| self.point(name)))
+    }
+
+    /// [`Scene::meets_surface`] of a line between the points at its ends, as far as the scene has them.
+    pub(crate) fn meets_surface_between(&self, line: &Line, ends: [Option<&Point>; 2]) -> bool {
         let Some(water) = &self.water else {
             return false;
         };
         if self.is_beam(line) {
             return false;
         }
-        water.surface.unwrap_or_else(|| self.comes_up(line))
+        water.surface.unwrap_or_else(|| self.comes_up(line, ends))
     }
 
-    fn comes_up(&self, line: &Line) -> bool {
-        let end = |name: &str| {
-            let point = self.point(name)?;
-            Some((reference_position(self, point)?[2], self.floats(point)))
-        };
-        let (Some((a, a_floats)), Some((b, b_floats))) = (end(&line.from), end(&line.to)) else {
+    fn comes_up(&self, line: &Line, ends: [Option<&Point>; 2]) -> bool {
+        let end = |point: Option<&Point>| Some((reference_position(self, point?)?[2], self.floats(point?)));
+        let [Some((a, a_floats)), Some((b, b_floats))] = ends.map(end) else {
             return false;
         };
         let length = line.length();

@@ -431,14 +431,13 @@ impl<T: Table> Value for T {
 
 /// Adds the mistakes that each value of a table has by itself, and keys of which only one can be given.
 pub(super) fn check_table<T: Table>(table: &T, at: &str, findings: &mut Findings) {
-    for (key, value) in table.entries() {
+    for (key, value) in table.entries().filter(|(_, value)| !value.is_absent()) {
         let at = match at {
             "" => key.name().to_string(),
             _ => format!("{at}.{}", key.name()),
         };
         value.check(&at, key, findings);
-        let given =
-            |name: &&&str| !value.is_absent() && table.get(name).is_some_and(|other| !other.is_absent());
+        let given = |name: &&&str| table.get(name).is_some_and(|other| !other.is_absent());
         if let Some(other) = key.rule.excluded.iter().find(given) {
             findings.say(at, format!("`{other}` is given too: give one of them"));
         }

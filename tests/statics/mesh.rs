@@ -4,7 +4,8 @@ use crate::common::*;
 use approx::assert_relative_eq;
 use moorline::discretisation;
 use moorline::model::Model;
-use moorline::scene::Scene;
+use moorline::scene::{InitialShape, Scene};
+use moorline::simulation::Simulation;
 
 #[test]
 fn lines_that_meet_share_elements_by_length_and_lines_alone_have_all_of_them() {
@@ -99,6 +100,26 @@ fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
     let mut still = open(shipped("oc3_catenary"));
     still.motion.clear();
     assert!(discretisation::select(&still).is_none());
+    let (found, at_rest) = discretisation::at_rest(&scene).unwrap();
+    assert_eq!(found, Some(settled.clone()));
+    assert_eq!(at_rest.snapshot(), start(&settled.scene).snapshot());
+}
+
+#[test]
+fn an_equilibrium_alone_is_that_found_after_the_start() {
+    for (name, initial) in [
+        ("oc3_catenary", InitialShape::Static),
+        ("bridle", InitialShape::Static),
+        ("bridle", InitialShape::Straight),
+        ("power_cable", InitialShape::Static),
+    ] {
+        let mut scene = shipped(name);
+        scene.lines[0].initial = initial;
+        let found = start(&scene).in_equilibrium().unwrap();
+        let alone = Simulation::at_rest(&scene).unwrap();
+        assert_eq!(alone.snapshot(), found.snapshot(), "{name}");
+        assert_eq!(alone.tension_b(0), found.tension_b(0), "{name}");
+    }
 }
 
 /// Claims that the axial damping of every segment of a rope of 100 m with a damping ratio of 0.1 is that of `elements`: ζ L/n √(EA m) [N s].

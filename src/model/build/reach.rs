@@ -5,48 +5,48 @@
 //! are assumed to keep their height. Other points that a host or a path moves, and lines that may be released, can
 //! reach any place.
 
-use crate::scene::{Line, Point, PointKind, Scene};
+use crate::scene::{Line, Names, Point, PointKind, Scene};
 
 /// Stretched over unstretched length assumed for the reach of a line [-].
 const STRETCH_MAX: f64 = 1.5;
 
 /// Returns whether a line could ever touch the bed.
-pub(super) fn may_touch_bed(scene: &Scene, line: &Line) -> bool {
+pub(super) fn may_touch_bed(scene: &Scene, names: &Names, line: &Line) -> bool {
     let Some(bed) = &scene.seabed else {
         return false;
     };
-    let tied = tied(scene, line);
-    let own = held_heights(scene, &[line]);
+    let tied = tied(scene, names, line);
+    let own = held_heights(names, &[line]);
     let (held, length) = match own.is_empty() {
         false => (own, length_max(line)),
         true => {
             let length = tied.iter().map(|line| length_max(line)).sum();
-            (held_heights(scene, &tied), length)
+            (held_heights(names, &tied), length)
         }
     };
     let lowest = held.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    let moves = held_heights(scene, &tied).contains(&None);
+    let moves = held_heights(names, &tied).contains(&None);
     let parts = |line: &&Line| line.release.is_some() || line.failure.is_some();
     let reaches = held.is_empty() || lowest - STRETCH_MAX * length <= -bed.depth;
     !bed.is_level() || moves || reaches || tied.iter().any(parts)
 }
 
 /// Least heights of the points at the ends of lines [m]; none for one that may reach any place.
-fn held_heights(scene: &Scene, lines: &[&Line]) -> Vec<Option<f64>> {
+fn held_heights(names: &Names, lines: &[&Line]) -> Vec<Option<f64>> {
     let ends = lines.iter().flat_map(|line| [&line.from, &line.to]);
-    let points = ends.filter_map(|name| scene.points.iter().find(|point| point.name == *name));
+    let points = ends.filter_map(|name| names.point(name));
     let held = points.filter(|point| point.kind != PointKind::Free);
-    held.map(|point| height(scene, point)).collect()
+    held.map(|point| height(names, point)).collect()
 }
 
 /// Least height of a point that is fixed, or carried by a vessel, which keeps its height [m]; none for one that may
 /// reach any place.
-fn height(scene: &Scene, point: &Point) -> Option<f64> {
+fn height(names: &Names, point: &Point) -> Option<f64> {
     let [x, y, z] = point.position;
     match (&point.kind, &point.on) {
         (PointKind::Fixed, _) => Some(z),
         (_, Some(name)) => {
-            let vessel = scene.vessels.iter().find(|vessel| vessel.name == *name)?;
+            let vessel = names.vessel(name)?;
             Some(vessel.position[2] - x.hypot(y).hypot(z))
         }
         _ => None,
@@ -54,9 +54,9 @@ fn height(scene: &Scene, point: &Point) -> Option<f64> {
 }
 
 /// Lines connected to a line by free points, itself included.
-fn tied<'a>(scene: &'a Scene, line: &'a Line) -> Vec<&'a Line> {
+fn tied<'a>(scene: &'a Scene, names: &Names, line: &'a Line) -> Vec<&'a Line> {
     let is_free = |name: &str| {
-        let point = scene.points.iter().find(|point| point.name == name);
+        let point = names.point(name);
         point.is_some_and(|point| point.kind == PointKind::Free)
     };
     let mut tied = vec![line];
@@ -103,7 +103,7 @@ mod tests {
     }
 
     fn touches(scene: &Scene) -> bool {
-        may_touch_bed(scene, &scene.lines[0])
+        may_touch_bed(scene, &Names::of(scene), &scene.lines[0])
     }
 
     const FIXED: [&str; 2] = ["fixed", ""];
@@ -129,7 +129,7 @@ mod tests {
     fn a_line_reaches_as_far_as_those_it_hangs_together_with_and_what_a_winch_pays_out() {
         let joined = hung(["free", ""], "", "").free("low", [5.0, 0.0, -20.0]);
         let scene = joined.line("other", ["end", "low"], "rope", 50.0, None).scene();
-        assert!(!touches(&scene) && may_touch_bed(&scene, &scene.lines[1]));
+        assert!(!touches(&scene) && may_touch_bed(&scene, &Names::of(&scene), &scene.lines[1]));
         let winch = "winch = { end = 'b', length_max = 60.0 }";
         assert!(touches(&hung(FIXED, winch, "").scene()));
     }

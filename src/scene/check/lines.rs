@@ -1,31 +1,32 @@
 //! Lines, their sections, their start, and their support.
 
 use super::{Findings, below, rules, unknown};
+use crate::scene::names::Names;
 use crate::scene::{
     InitialShape, Integrator, Line, LineModel, LineType, PointKind, RestShape, Scene, Section,
 };
 
-pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+pub(super) fn check(scene: &Scene, names: &Names, findings: &mut Findings) {
     rules! { findings, "lines";
         "" if scene.lines.is_empty() => "no line: a scene needs at least one `[[lines]]`";
     }
     for (i, line) in scene.lines.iter().enumerate() {
         let at = format!("lines[{i}]");
-        check_ends(findings, &at, line, scene);
+        check_ends(findings, &at, line, (scene, names));
         check_sections(findings, &at, line, scene);
-        check_start(findings, &format!("{at}.initial"), line, scene);
+        check_start(findings, &format!("{at}.initial"), line, names);
         check_clamps(findings, &at, line, scene);
         check_release(findings, &at, line, scene);
         super::winch::check(findings, &at, line, scene);
     }
-    check_held(scene, findings);
+    check_held(scene, names, findings);
 }
 
-fn check_ends(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
-    let points = scene.points.iter().map(|point| point.name.as_str());
+fn check_ends(findings: &mut Findings, at: &str, line: &Line, (scene, names): (&Scene, &Names)) {
     for (key, name) in [("from", &line.from), ("to", &line.to)] {
-        if points.clone().all(|point| point != name) {
-            findings.say(below(at, key), unknown("point", "points", name, points.clone()));
+        if names.point(name).is_none() {
+            let points = scene.points.iter().map(|point| point.name.as_str());
+            findings.say(below(at, key), unknown("point", "points", name, points));
         }
     }
     rules! { findings, at;
@@ -76,8 +77,8 @@ fn check_release(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) 
     }
 }
 
-fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
-    let ends = [&line.from, &line.to].map(|name| scene.point(name).map(|point| point.position));
+fn check_start(findings: &mut Findings, at: &str, line: &Line, names: &Names) {
+    let ends = [&line.from, &line.to].map(|name| names.point(name).map(|point| point.position));
     let settles = matches!(line.initial, InitialShape::Static | InitialShape::Catenary);
     let straight = line.initial == InitialShape::Straight && line.from != line.to;
     rules! { findings, at;
@@ -152,8 +153,7 @@ fn flies(line: &Line, scene: &Scene) -> bool {
 }
 
 /// Every line must hang, over other lines, on something that does not just fall.
-fn check_held(scene: &Scene, findings: &mut Findings) {
-    let place = |name: &str| scene.points.iter().position(|point| point.name == name);
+fn check_held(scene: &Scene, names: &Names, findings: &mut Findings) {
     let mut held: Vec<bool> = scene
         .points
         .iter()
@@ -162,7 +162,7 @@ fn check_held(scene: &Scene, findings: &mut Findings) {
     let joins: Vec<Option<(usize, usize)>> = scene
         .lines
         .iter()
-        .map(|line| place(&line.from).zip(place(&line.to)))
+        .map(|line| names.point_index(&line.from).zip(names.point_index(&line.to)))
         .collect();
     // Each pass but the last reaches at least one more point.
     for _ in 0..scene.points.len() {

@@ -1,12 +1,13 @@
 //! Points, their loads and their motions.
 
 use super::{Findings, below, check_names, quantity, rules, unknown};
+use crate::scene::names::Names;
 use crate::scene::path::quoted;
 use crate::scene::table::{Choice, Table};
 use crate::scene::{LineType, Point, PointKind, Scene, Section};
 use std::collections::BTreeMap;
 
-pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+pub(super) fn check(scene: &Scene, names: &Names, findings: &mut Findings) {
     let mut taken = BTreeMap::new();
     let points = scene.points.iter().map(|point| point.name.as_str());
     check_names(findings, &mut taken, "points", points);
@@ -18,7 +19,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         let at = format!("points[{i}]");
         check_place(findings, &at, point, scene);
         check_freedom(findings, &at, point);
-        check_carrier(findings, &at, point, scene);
+        check_carrier(findings, &at, point, (scene, names));
         check_load(findings, &at, point, scene);
         check_own_motion(findings, &at, point);
     }
@@ -66,10 +67,10 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
 }
 
 /// The vessel that a point rides on.
-fn check_carrier(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
+fn check_carrier(findings: &mut Findings, at: &str, point: &Point, (scene, names): (&Scene, &Names)) {
     let Some(carrier) = &point.on else { return };
-    let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
-    if vessels.clone().all(|vessel| vessel != carrier) {
+    if names.vessel(carrier).is_none() {
+        let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
         findings.say(below(at, "on"), unknown("vessel", "vessels", carrier, vessels));
     }
     rules! { findings, at;
@@ -156,9 +157,9 @@ fn check_own_motion(findings: &mut Findings, at: &str, point: &Point) {
 
 fn check_unconnected(scene: &Scene, findings: &mut Findings) {
     for (i, point) in scene.points.iter().enumerate() {
-        let connected = scene.lines.iter().any(|line| line.joins(&point.name));
+        let connected = || scene.lines.iter().any(|line| line.joins(&point.name));
         rules! { findings, "points";
-            "[{i}]" if point.kind == PointKind::Free && !connected =>
+            "[{i}]" if point.kind == PointKind::Free && !connected() =>
                 "no line ends at this free point, so nothing holds it";
         }
     }

@@ -1,0 +1,60 @@
+//! Look-up of points and vessels by name, for loops over all of them.
+
+use std::collections::HashMap;
+
+use super::{Line, Point, Scene, Vessel};
+
+/// Points and vessels of a scene by name: the first ones where names are taken twice.
+pub(crate) struct Names<'s> {
+    scene: &'s Scene,
+    points: HashMap<&'s str, usize>,
+    vessels: HashMap<&'s str, usize>,
+}
+
+impl<'s> Names<'s> {
+    /// Those of a scene.
+    pub(crate) fn of(scene: &'s Scene) -> Names<'s> {
+        let points = scene.points.iter().map(|point| &point.name[..]);
+        let vessels = scene.vessels.iter().map(|vessel| &vessel.name[..]);
+        Names {
+            scene,
+            points: by_name(points),
+            vessels: by_name(vessels),
+        }
+    }
+
+    /// Index of the point of a name.
+    pub(crate) fn point_index(&self, name: &str) -> Option<usize> {
+        self.points.get(name).copied()
+    }
+
+    /// The point of a name.
+    pub(crate) fn point(&self, name: &str) -> Option<&'s Point> {
+        Some(&self.scene.points[self.point_index(name)?])
+    }
+
+    /// The points at the ends of a line.
+    pub(crate) fn ends(&self, line: &Line) -> [Option<&'s Point>; 2] {
+        [&line.from, &line.to].map(|name| self.point(name))
+    }
+
+    /// Index of the vessel of a name.
+    pub(crate) fn vessel_index(&self, name: &str) -> Option<usize> {
+        self.vessels.get(name).copied()
+    }
+
+    /// The vessel of a name.
+    pub(crate) fn vessel(&self, name: &str) -> Option<&'s Vessel> {
+        Some(&self.scene.vessels[self.vessel_index(name)?])
+    }
+}
+
+fn by_name<'s>(
+    names: impl DoubleEndedIterator<Item = &'s str> + ExactSizeIterator,
+) -> HashMap<&'s str, usize> {
+    names
+        .enumerate()
+        .rev()
+        .map(|(index, name)| (name, index))
+        .collect()
+}
