@@ -62,8 +62,8 @@ impl Drop for Folder {
     }
 }
 
-/// Refuses a file for results that is the one which is read.
-pub fn check_apart(input: &Path, target: &Path) -> Result<(), Failure> {
+/// Refuses to write results to the file that is read.
+pub(crate) fn check_apart(input: &Path, target: &Path) -> Result<(), Failure> {
     let [read, written] = [input, target].map(|path| fs::canonicalize(path).ok());
     if read.is_some() && read == written {
         let text = format!(

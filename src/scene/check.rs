@@ -71,13 +71,19 @@ pub(super) fn below(at: &str, key: &str) -> String {
     }
 }
 
-/// Adds the findings of a table of rules: a key below a path, the condition, and the sentence if it holds. The rules of a table are independent.
+/// Adds the findings of a table of rules: a key below a path, the condition, and the sentence if it holds; or, after `given`, the value that the
+/// sentence is about, where there is one. The rules of a table are independent.
 macro_rules! rules {
-    ($report:expr, $at:expr; $($key:literal if $holds:expr => $text:literal $(, $part:expr)*;)+) => {
-        $(if $holds {
+    ($report:expr, $at:expr;) => {};
+    ($report:expr, $at:expr; $key:literal if $holds:expr => $text:literal $(, $part:expr)*; $($rest:tt)*) => {
+        rules!($report, $at; $key given () = $holds.then_some(()) => $text $(, $part)*; $($rest)*);
+    };
+    ($report:expr, $at:expr; $key:literal given $found:pat = $value:expr => $text:literal $(, $part:expr)*; $($rest:tt)*) => {
+        if let Some($found) = $value {
             let at = $crate::scene::check::below($at, &format!($key));
             $crate::scene::check::Report::add($report, at, format!($text $(, $part)*));
-        })+
+        }
+        rules!($report, $at; $($rest)*);
     };
 }
 pub(super) use rules;
@@ -235,9 +241,9 @@ pub fn name_problem(name: &str) -> Option<String> {
 
 /// Checks a name.
 fn check_name(findings: &mut Findings, at: &str, name: &str) {
-    findings
-        .mistakes
-        .extend(name_problem(name).map(|problem| SceneError::new(at, problem)));
+    if let Some(problem) = name_problem(name) {
+        findings.say(at, problem);
+    }
 }
 
 /// Checks the names of points, lines and vessels, which share the name space of the FMU's variables.

@@ -56,13 +56,14 @@ impl Scene {
             note_point((self, &names), &format!("points[{i}]"), point, &mut notes);
         }
         for (i, line) in self.lines.iter().enumerate() {
-            let is_loop = chord(self, line).is_some_and(|chord| chord <= ENDS_APART * line.length());
+            let is_loop = chord_between(self, names.ends(line))
+                .is_some_and(|chord| chord <= ENDS_APART * line.length());
             rules! { &mut notes, &format!("lines[{i}]");
                 "" if is_loop => "both ends are at one place: it hangs in a loop";
             }
         }
         note_names(self, &mut notes);
-        note_twins(self, &mut notes);
+        note_twins(self, &names, &mut notes);
         if let Some(waves) = self.waves() {
             note_waves(self, waves, &mut notes);
         }
@@ -202,10 +203,10 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
 const ENDS_APART: f64 = 1e-6;
 
 /// Notes lines of the same sections between the same places, to a micrometre: a row that is written or repeated twice makes them.
-fn note_twins(scene: &Scene, notes: &mut Vec<Note>) {
+fn note_twins(scene: &Scene, names: &Names, notes: &mut Vec<Note>) {
     let mut known: BTreeMap<[[i64; 3]; 2], &Line> = BTreeMap::new();
     for (i, line) in scene.lines.iter().enumerate() {
-        let ends = [&line.from, &line.to].map(|name| reference_position(scene, scene.point(name)?));
+        let ends = names.ends(line).map(|end| reference_position(scene, end?));
         let [Some(a), Some(b)] = ends else { continue };
         let micrometres = |x: f64| (1e6 * x).round() as i64;
         let first = known
@@ -218,7 +219,7 @@ fn note_twins(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Notes names of points, lines and vessels that differ in small and great letters alone.
+/// Notes names of points, lines and vessels that differ in upper and lower case alone.
 fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
     let points = scene.points.iter().map(|point| &point.name).enumerate();
     let lines = scene.lines.iter().map(|line| &line.name).enumerate();
@@ -230,7 +231,7 @@ fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
     for (at, name) in points.chain(lines).chain(vessels) {
         let first = known.entry(name.to_lowercase()).or_insert(name);
         rules! { notes, &at;
-            "name" if *first != name => "\"{name}\" and \"{first}\" differ in small and great letters alone";
+            "name" if *first != name => "\"{name}\" and \"{first}\" differ in upper and lower case alone";
         }
     }
 }

@@ -96,20 +96,13 @@ fn current(scene: &Scene, notes: &mut Vec<Note>) {
     let speed = |[_, x, y]: &[f64; 3]| x.hypot(*y);
     let fast = rows.iter().position(|row| speed(row) > SPEED_USUAL);
     let high = rows.iter().position(|row| row[0] > CURRENT_HEIGHT);
-    for (row, is_fast) in fast
-        .map(|row| (row, true))
-        .into_iter()
-        .chain(high.map(|row| (row, false)))
-    {
-        let (speed, height) = (significant(speed(&rows[row])), rows[row][0]);
-        rules! { notes, "water.current";
-            "profile[{row}]" if is_fast =>
-                "{} is unusual: less than {SPEED_USUAL} m/s is usual, with rows of z [m], vx and vy [m/s]",
-                quantity(speed, "m/s");
-            "profile[{row}]" if !is_fast =>
-                "{} above the water: heights count upwards from the surface, and depths are negative",
-                quantity(height, "m");
-        }
+    rules! { notes, "water.current";
+        "profile[{row}]" given row = fast =>
+            "{} is unusual: less than {SPEED_USUAL} m/s is usual, with rows of z [m], vx and vy [m/s]",
+            quantity(significant(speed(&rows[row])), "m/s");
+        "profile[{row}]" given row = high =>
+            "{} above the water: heights count upwards from the surface, and depths are negative",
+            quantity(rows[row][0], "m");
     }
     let [x, y, _] = current.velocity.unwrap_or_default();
     let fastest = rows.iter().map(speed).fold(x.hypot(y), f64::max);
@@ -262,7 +255,7 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
         "diameter" if light =>
             "a mass of {} and a diameter of {} make {density:.3} kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m",
             quantity(significant(mass), "kg/m"), quantity(diameter, "m");
-        "diameter" if heavy.is_some() => "{}", heavy.unwrap_or_default();
+        "diameter" given heavy = heavy => "{heavy}";
     }
 }
 
@@ -346,12 +339,12 @@ fn line_length(scene: &Scene, notes: &mut Vec<Note>) {
         let length = line.length();
         let chord =
             chord_between(scene, names.ends(line)).filter(|chord| *chord > 0.0 && !is_guessed(scene, line));
-        let far = chord.filter(|chord| length > LENGTH_OVER_CHORD * chord);
+        let near = chord.filter(|chord| length <= LENGTH && length > LENGTH_OVER_CHORD * chord);
         rules! { notes, "lines";
             "[{i}]" if length > LENGTH => "{} long: less than 20 km is usual", quantity(length, "m");
-            "[{i}]" if length <= LENGTH && far.is_some() =>
+            "[{i}]" given chord = near =>
                 "it is {} long, and its ends are {} apart: less than 20 times their distance is usual, with lengths and positions in m",
-                quantity(length, "m"), quantity(significant(far.unwrap_or_default()), "m");
+                quantity(length, "m"), quantity(significant(chord), "m");
         }
     }
 }
@@ -469,12 +462,11 @@ fn sines(scene: &Scene, notes: &mut Vec<Note>) {
             let phase = phases.find_map(|phase| degrees(*phase));
             let mut periods = sines.iter().filter_map(|sine| sine.get(1));
             let short = periods.find(|period| **period < PERIOD);
-            let period = *short.unwrap_or(&PERIOD);
             rules! { notes, &at;
-                "{name}" if phase.is_some() => "phase: {}", phase.unwrap_or_default();
-                "{name}" if short.is_some() =>
+                "{name}" given phase = phase => "phase: {phase}";
+                "{name}" given period = short =>
                     "a period of {} is unusual: {PERIOD} s and more is usual, and a frequency of {} Hz is a period of {}",
-                    quantity(period, "s"), number(period), quantity(significant(1.0 / period), "s");
+                    quantity(*period, "s"), number(*period), quantity(significant(1.0 / period), "s");
             }
         }
     }

@@ -75,7 +75,7 @@ pub enum StaticsError {
     },
     /// A moment on the end of a beam has a part along it, and no end is clamped.
     #[error(
-        "line \"{line}\": no equilibrium: the moment on its ends has a part of {torque:.3e} N m along the beam, which spins about itself, since \
+        "line \"{line}\": no equilibrium was found: the moment on its ends has a part of {torque:.3e} N m along the beam, which turns it about its axis, since \
          neither end is clamped; clamp one, give a moment across the beam, or `run` it from its `initial` shape"
     )]
     BeamSpins {

@@ -352,7 +352,7 @@ fn a_moment_along_a_beam_that_no_end_holds_is_why_there_is_no_equilibrium() {
     let about_z = "moment = { z = -80.0 }";
     let error = Simulation::new(&scene(about_z, "")).unwrap_err().to_string();
     assert!(
-        error.contains("N m along the beam, which spins about itself"),
+        error.contains("N m along the beam, which turns it about its axis"),
         "{error}"
     );
     for (moment, keys) in [

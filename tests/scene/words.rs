@@ -102,7 +102,7 @@ fn rows_that_look_written_twice_or_closed_by_mistake_are_noted() {
     let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
     let wanted = [
         "lines[3]: both ends are at one place: it hangs in a loop",
-        "points[1].name: \"A\" and \"a\" differ in small and great letters alone",
+        "points[1].name: \"A\" and \"a\" differ in upper and lower case alone",
         "lines[1]: lies where one does, with the same sections: their forces add up",
     ];
     for part in wanted {

@@ -28,17 +28,17 @@
 //! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`contact`); flags of slack, memory and contact are checked after
 //! the solve and the step repeated until they hold.
 //!
-//! A held end moves by the secant of its path, which so is its v_{n+½}. Only where it sets out, at rest or after a jump, v_{n−½} is
-//! V − ½Δt A of its path.
+//! A prescribed end moves by the secant of its path, which is its v_{n+½}. Only at the start, at rest or after a jump, v_{n−½} is V − ½Δt A of
+//! its path.
 //!
-//! A step goes over the rows of the folded line ([`crate::math::striping`]) once for each thing it finds out: geometry,
-//! segments, drag, inverse masses, contact (`prepare`), couplings; then, until the assumptions hold, the equations, T̄ by
-//! [`crate::math::striped_tridiagonal`], velocities and what they say about the assumptions (`solve`). Each sweep has little to do in a
-//! row, and keeps in memory what the next one goes on with: the processor, which waits for roots, quotients and sums, then works on several rows at
-//! once, and the compiler finds whole vectors, which it loses where much waits for much, or is carried from row to row.
+//! A step passes over the rows of the striped line ([`crate::math::striping`]) once per stage: geometry, segments, drag, inverse masses and
+//! contact (`prepare`), and couplings; then, until the assumptions hold, the equations, T̄ by [`crate::math::striped_tridiagonal`], and the
+//! velocities with the check of the assumptions (`solve`). Each sweep computes little per row and stores the input of the next one: the
+//! processor, which waits for roots, quotients and sums, then overlaps several rows, and the compiler finds whole vectors, which it does not
+//! where values depend on the row before.
 //!
-//! All of it is of second order in the step. What is left of the error of tension are axial waves that a line sends out when it snaps taut: in steps
-//! much longer than theirs they run late by (ωΔt)²/12, as with every scheme of second order that is stable whatever ωΔt, and reach up to where
+//! The scheme is of second order in the step. The remaining error of the tension is that of axial waves which a line emits when it snaps taut: in
+//! steps much longer than their periods they run late by (ωΔt)²/12, as with every scheme of second order that is stable whatever ωΔt, and reach up to where
 //! that is a turn, so that the RMS error falls with Δt^1.2 to Δt^1.6.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
@@ -348,7 +348,7 @@ impl AxialLine {
         ENDS.into_iter().filter(move |&end| !open[end as usize])
     }
 
-    /// What is under the nodes.
+    /// Kind of seabed under the nodes.
     #[inline(always)]
     fn bed_under(&self) -> u8 {
         match (&self.layout.contact, self.kernel.seabed.is_empty()) {

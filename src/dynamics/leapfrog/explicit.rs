@@ -300,7 +300,7 @@ impl ExplicitLine {
         }
     }
 
-    /// What the end brings to a free point, after [`Self::pull`]; `velocity` [m/s] is the point's at t_n.
+    /// Load and mass of the half node at an end that a free point carries, after [`Pull`]; `velocity` [m/s] is the point's at t_n.
     pub(super) fn end_load(&self, end: End, velocity: Vector3<f64>) -> PointLoad {
         let line = &self.layout;
         let (at, other) = (line.end_slot(end), line.end_neighbour(end));
@@ -342,7 +342,7 @@ impl ExplicitLine {
         }
     }
 
-    /// How much stiffer than the limit of the step expects the stiffest segment is [-], at least 1.
+    /// Stiffness of the stiffest segment over the one that the step limit assumes [-], at least 1.
     pub(super) fn stiffening(&self) -> f64 {
         let line = &self.layout;
         if line.law == StretchLaw::Engineering {

@@ -35,9 +35,9 @@ pub(super) const LENGTH2_MIN: f64 = 1e-200;
 #[derive(Debug, Clone)]
 pub struct Layout {
     pub segment_count: usize,
-    /// Where the last node and the last segment stand.
+    /// Slots of the last node and the last segment.
     last: [Slot; 2],
-    /// Where nodes and segments stand.
+    /// Slots of nodes and segments.
     pub striping: Striping,
     /// The vectors of the machine that kernels run with; results do not depend on it.
     pub vector_unit: Arch,
@@ -45,7 +45,7 @@ pub struct Layout {
     few_rows: usize,
     pub law: StretchLaw,
     pub negative_tension: bool,
-    /// Whether the scene asks for the energy balance.
+    /// True if the energy balance is evaluated.
     pub energy_balance: bool,
     /// True for ends A and B at prescribed points, also if released from them.
     pub tied: [bool; 2],
@@ -208,12 +208,12 @@ impl Layout {
         self.last = [count, count - 1].map(|i| self.striping.slot(i));
     }
 
-    /// Where node `i` and segment `i` stand.
+    /// Slot of node `i` and segment `i`.
     pub fn slot(&self, i: usize) -> Slot {
         self.striping.slot(i)
     }
 
-    /// Where the nodes stand, in their order.
+    /// Slots of the nodes, in their order.
     pub fn nodes(&self) -> impl Iterator<Item = Slot> + use<> {
         self.striping.slots().take(self.segment_count + 1)
     }
@@ -239,7 +239,7 @@ impl Layout {
         }
     }
 
-    /// Where a node was `lag` [s] ago by its velocity [m].
+    /// Position of a node `lag` [s] ago, extrapolated by its velocity [m].
     pub fn place_before(&self, at: Slot, lag: f64) -> Vector3<f64> {
         self.position.get(at) - lag * self.velocity.get(at)
     }
@@ -270,13 +270,13 @@ impl Layout {
         }
     }
 
-    /// Whether a node has a row, or stands behind the last one.
+    /// Returns whether a node has a row; one without stands behind the last row.
     #[inline(always)]
     pub fn has_row(&self, at: Slot) -> bool {
         at.row <= self.striping.rows()
     }
 
-    /// Where the node at an end stands.
+    /// Slot of the node at an end.
     pub fn end_slot(&self, end: End) -> Slot {
         match end {
             End::A => Slot { row: 1, lane: 0 },
@@ -284,7 +284,7 @@ impl Layout {
         }
     }
 
-    /// Where the segment at an end stands, and what the sign of its pull on the end is.
+    /// Slot of the segment at an end, and the sign of its pull on the end.
     pub fn end_segment(&self, end: End) -> (Slot, f64) {
         match end {
             End::A => (self.end_slot(End::A), 1.0),
@@ -292,7 +292,7 @@ impl Layout {
         }
     }
 
-    /// Where the neighbour of the node at an end stands.
+    /// Slot of the neighbour of the node at an end.
     pub fn end_neighbour(&self, end: End) -> Slot {
         match end {
             End::A => self.slot(1),
@@ -422,8 +422,8 @@ impl Layout {
     }
 }
 
-/// Whether nothing is worked out for the node at end B of a line where a point holds it: it does not part, and neither winch nor water's surface,
-/// rough bed or memory know it.
+/// Returns whether the node at end B of a line needs no row where its point is prescribed: it is never released, and no winch, water's surface,
+/// uneven seabed or viscoelastic memory acts on it.
 fn is_plain_at_b(line: &Line) -> bool {
     let parts = line.release.is_some_and(|[_, b]| b.may_release());
     let knows = line.surface.is_some() || line.bottom().is_some() || line.winch.is_some();

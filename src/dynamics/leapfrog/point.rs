@@ -24,7 +24,7 @@ pub(super) struct PointLoad {
     pub froude_krylov: Vector3<f64>,
     /// Power of the drag on the velocity of the water [W].
     pub current_power: f64,
-    /// Its loss with the change of velocity over the step [N].
+    /// Loss of that power with the change of velocity over the step [N].
     pub current_power_loss: Vector3<f64>,
     /// Mass matrix [kg], with the part of the resistance that is implicit.
     pub mass: Matrix3<f64>,
@@ -208,7 +208,7 @@ impl ContactSpring {
         (self.lands(rise, step) && force > 0.0).then_some(force)
     }
 
-    /// Whether the point would be in the bed after a step with the velocity ż [m/s].
+    /// Returns whether the point would be in the seabed after a step with the velocity ż [m/s].
     fn lands(&self, velocity: f64, step: Step) -> bool {
         self.push - self.stiffness * step.drift * velocity > 0.0
     }
@@ -292,7 +292,7 @@ impl PointLoad {
 /// Rounds of push and friction on a point in a step.
 const ROUNDS_MAX: usize = 50;
 
-/// What a point leaves a step with.
+/// Velocity and friction of a point after a step.
 pub(super) struct Kicked {
     /// v_{n+½} [m/s].
     pub velocity: Vector3<f64>,
@@ -356,7 +356,7 @@ fn pushed(
     impulse
 }
 
-/// How a point slides along the bed.
+/// Response of a point along the plane of the seabed.
 pub(super) struct Sliding {
     /// Axes of the plane of the bed, along those of the point that are free.
     axes: [Vector3<f64>; 2],
@@ -378,7 +378,7 @@ impl Sliding {
         }
     }
 
-    /// What must be added to the impulse `friction` so that the point stops, or the impulse is at its limit [N s]; `velocity` [m/s] is without any.
+    /// Change of the impulse `friction` that stops the point, or brings the impulse to its limit [N s]; `velocity` [m/s] is the one without friction.
     pub(super) fn friction(
         &self,
         velocity: Vector3<f64>,

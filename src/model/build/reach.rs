@@ -1,7 +1,7 @@
 //! Lines that can meet the seabed; the others are built without contact.
 //!
-//! Lines reach below the lowest fixed point at their ends by their length, stretched by half. Lines between free
-//! points reach below the lowest fixed point of all lines connected to them, by the length of all of these. Vessels
+//! Lines reach below the lowest point at their ends that is not free, by their length, stretched by half. Lines between free
+//! points reach below the lowest such point of all lines connected to them, by the length of all of these. Vessels
 //! are assumed to keep their height. Other points that a host or a path moves, and lines that may be released, can
 //! reach any place.
 
@@ -31,7 +31,7 @@ pub(super) fn may_touch_bed(scene: &Scene, names: &Names, line: &Line) -> bool {
     !bed.is_level() || moves || reaches || tied.iter().any(parts)
 }
 
-/// Least heights of the points at the ends of lines [m]; none for one that may reach any place.
+/// Least heights of the points at the ends of lines that are not free [m]; none for one that may reach any place.
 fn held_heights(names: &Names, lines: &[&Line]) -> Vec<Option<f64>> {
     let ends = lines.iter().flat_map(|line| [&line.from, &line.to]);
     let points = ends.filter_map(|name| names.point(name));

@@ -34,9 +34,8 @@ fn check_mass(findings: &mut Findings, at: &str, line_type: &LineType, scene: &S
             "no mass: give `mass` [kg/m], or `weight` [N/m] (the mass is then weight/gravity)";
         "weight" if weight.is_some() && weightless =>
             "the mass would be weight/gravity, but gravity is 0: give `mass` [kg/m] too";
-        "weight" if !weightless && weight.is_some_and(|weight| weight <= 0.0) =>
-            "the mass would be weight/gravity, and {} is not positive: give `mass` [kg/m] too",
-            quantity(weight.unwrap_or_default(), "N/m");
+        "weight" given weight = weight.filter(|weight| !weightless && *weight <= 0.0) =>
+            "the mass would be weight/gravity, and {} is not positive: give `mass` [kg/m] too", quantity(weight, "N/m");
     }
 }
 
@@ -73,7 +72,7 @@ const VISCOELASTIC: [&str; 4] = [
     "dynamic_damping",
 ];
 
-/// Refusal of what a viscoelastic rope does not have.
+/// Refusal of a key that a viscoelastic rope does not have.
 const ROPE: &str = "a viscoelastic rope stretches by `static_stiffness`, `dynamic_stiffness` and the damping of each: leave this out";
 
 /// The axial force follows from a stiffness, a table, or two stiffnesses with dampers.

@@ -179,13 +179,13 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
             findings.say(at, nothing_driven(name, coupled.clone(), vessels.clone()));
             continue;
         };
-        let (is_coupled, carrier) = (point.kind == PointKind::Coupled, point.on.as_deref());
+        let is_coupled = point.kind == PointKind::Coupled;
         rules! { findings, &at;
             "" if !is_coupled =>
                 "`{name}` is {}, and [motion] moves coupled points and vessels only", point.kind.word();
-            "" if is_coupled && carrier.is_some() =>
-                "`{name}` rides on the vessel `{}`: write the motion of that", carrier.unwrap_or_default();
-            "" if is_coupled && carrier.is_none() && motion.turns() => "{TURNS}";
+            "" given carrier = point.on.as_ref().filter(|_| is_coupled) =>
+                "`{name}` rides on the vessel `{carrier}`: write the motion of that";
+            "" if is_coupled && point.on.is_none() && motion.turns() => "{TURNS}";
         }
     }
 }

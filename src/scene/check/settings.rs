@@ -17,18 +17,18 @@ fn check_solver(scene: &Scene, findings: &mut Findings) {
     let solver = &scene.solver;
     let (integrator, word) = (solver.integrator, solver.integrator.word());
     if let Some(radius) = solver.spectral_radius {
-        let (damped, free) = (
-            Integrator::AxialImplicit,
-            [Integrator::Auto, Integrator::GeneralisedAlpha],
-        );
-        let least = if integrator == damped {
-            AXIAL_RADIUS_MIN
-        } else {
-            0.0
+        let least = match integrator {
+            Integrator::AxialImplicit => AXIAL_RADIUS_MIN,
+            _ => 0.0,
         };
+        let takes_radius = [
+            Integrator::Auto,
+            Integrator::AxialImplicit,
+            Integrator::GeneralisedAlpha,
+        ];
         findings.number("solver.spectral_radius", radius, Bounds::Within(least, 1.0), "-");
         rules! { findings, "solver";
-            "spectral_radius" if integrator != damped && !free.contains(&integrator) =>
+            "spectral_radius" if !takes_radius.contains(&integrator) =>
                 "the integrator is \"{word}\", and a spectral radius belongs to \"generalised_alpha\" and \"axial_implicit\"";
         }
     }

@@ -62,9 +62,8 @@ fn check_profile(rows: &[[f64; 3]], findings: &mut Findings) {
         findings.row(&format!("{at}[{i}]"), row, &[(height, "m"), speed, speed]);
         let twin = rows[..i].iter().position(|row| row[0] == *z);
         rules! { findings, at;
-            "[{i}][0]" if height.accepts(*z) && twin.is_some() =>
-                "row {} is at {} too: every height has one velocity; put the heights of a jump 1 mm apart",
-                twin.unwrap_or_default(), quantity(*z, "m");
+            "[{i}][0]" given twin = twin.filter(|_| height.accepts(*z)) =>
+                "row {twin} is at {} too: every height has one velocity; put the heights of a jump 1 mm apart", quantity(*z, "m");
         }
     }
 }

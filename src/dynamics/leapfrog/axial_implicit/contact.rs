@@ -17,7 +17,7 @@
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::Lanes;
 
-/// How nodes meet the bed in a step.
+/// Normal contact of nodes with the seabed in a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NormalContact {
     /// Penetration p [m].
@@ -84,7 +84,7 @@ impl NormalContact {
         self.spring - self.resistance * rise
     }
 
-    /// What is > 0 where the bed pushes nodes that leave it at `rise` [m/s].
+    /// Number that is positive where the seabed pushes nodes that leave it at `rise` [m/s].
     #[inline(always)]
     pub(super) fn pushes(&self, rise: Lanes) -> Lanes {
         (self.penetration - self.ahead * rise).where_positive(self.push(rise))

@@ -34,7 +34,7 @@ use crate::model::{End, Model, Network};
 use crate::physics::friction::Friction;
 use crate::physics::slender::Slender;
 
-/// Change of friction over the push of the seabed that asks for another pass [-].
+/// Change of friction over the push of the seabed that requires another pass [-].
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
 /// Tensions of four segments by the velocities of free points.
@@ -231,7 +231,7 @@ impl CoupledPoint {
         self.friction = Vector3::zeros();
     }
 
-    /// Revises contact and friction from the velocity that a pass found; false if that asks for another one.
+    /// Revises contact and friction from the velocity that a pass found; false if that requires another one.
     fn seabed_holds(&mut self, friction: Option<&Friction>, step: Step) -> bool {
         let rise = self.normal.dot(&self.velocity);
         let (mut push, mut holds) = (0.0, true);

@@ -22,7 +22,7 @@ use crate::math::real::choose;
 use crate::physics::friction::{Axes, Friction, slide};
 use crate::physics::slender::Slender;
 
-/// Change of friction that asks for another pass, over the greater of the push of the seabed and the greatest tension [-].
+/// Change of friction that requires another pass, over the greater of the push of the seabed and the greatest tension [-].
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
 /// State of a row of nodes on the seabed.
@@ -198,7 +198,7 @@ impl AxialLine {
         greatest
     }
 
-    /// Compares the states with those assumed, under a greatest tension in the lanes [N]; false if that asks for another pass.
+    /// Compares the states with those assumed, under a greatest tension in the lanes [N]; false if that requires another pass.
     #[inline(always)]
     pub(super) fn seabed_holds(&mut self, greatest: Lanes, sizes: &Sizes) -> bool {
         let (line, friction) = (&self.layout, self.layout.friction());

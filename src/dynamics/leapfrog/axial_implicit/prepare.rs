@@ -1,4 +1,4 @@
-//! What a step of the axial-implicit leapfrog knows before its system is solved: segments, nodes, and how the nodes meet a level bed.
+//! Quantities of a step of the axial-implicit leapfrog that precede its system: segments, nodes, and contact with a level seabed.
 //!
 //! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
 

@@ -1,4 +1,4 @@
-//! What a step of the axial-implicit leapfrog knows of four segments, and of four nodes.
+//! Quantities of four segments and of four nodes in a step of the axial-implicit leapfrog.
 
 use nalgebra::Vector3;
 
@@ -12,7 +12,7 @@ use crate::physics::stretch::StretchLaw;
 /// Strain below which slack springs go on along their tangent: further down measures of strain bend back [-].
 const SHORTEST: f64 = -0.2;
 
-/// What springs pull by: kinds of them.
+/// Kinds of springs.
 pub(super) mod springs {
     /// Engineering strain.
     pub(crate) const LINEAR: u8 = 0;
@@ -22,7 +22,7 @@ pub(super) mod springs {
     pub(crate) const VISCOELASTIC: u8 = 2;
 }
 
-/// What is under the nodes.
+/// Kinds of seabed under the nodes.
 pub(super) mod under {
     /// No bed.
     pub(crate) const NOTHING: u8 = 0;
@@ -76,7 +76,7 @@ pub(super) struct SegmentRow {
     pub elastic: Lanes,
     /// The part of it that the springs up to t_n have [N], kept where springs are curved or [`super::AxialLine::forgets`].
     pub memory: Lanes,
-    /// What of BA/L acts in T̄ [N s/m].
+    /// Part of BA/L that acts in T̄ [N s/m].
     pub damping: Lanes,
     /// EA·b₁ times the strain by transverse motion [N].
     pub curvature: Lanes,
@@ -84,9 +84,9 @@ pub(super) struct SegmentRow {
     pub taut: Lanes,
     /// Tensions of the springs at t_{n−1} and t_{n−2} as if they pushed too [N]; once a step is prepared, at t_n, t_{n−1} and t_{n−2}.
     pub history: [Lanes; 3],
-    /// How far the damper may pull less than 0, and more, before T̄ has more or fewer of them [N].
+    /// Pulls of the damper below and above 0 at which T̄ has more or fewer of the earlier tensions [N].
     pub margins: [Lanes; 2],
-    /// Rows of the system in T̄ [N], and what elimination makes of them.
+    /// Rows of the system in T̄ [N], and the rows after elimination.
     pub equations: Equations,
     pub eliminated: Eliminated,
     /// T̄ [N].
@@ -232,14 +232,14 @@ impl SegmentRow {
         (less + pull).min(more - pull)
     }
 
-    /// What the damper adds, at a stretching velocity [m/s], to what tells whether the segment is taut [N].
+    /// Contribution of the damper at a stretching velocity [m/s] to the force that decides whether the segment is taut [N].
     #[inline(always)]
     pub(super) fn pull(&self, rate: Lanes, sizes: &Sizes) -> Lanes {
         (Lanes::splat(1.0) - sizes.push) * self.damping * rate
     }
 
-    /// What is > 0 where the segment is taut at a stretching velocity [m/s], and by how much more T̄ has of springs up to t_n and of the damper than is
-    /// remembered [N].
+    /// Force that is positive where the segment is taut at a stretching velocity [m/s], and the contribution of earlier springs and of the damper to T̄
+    /// in excess of the remembered one [N].
     #[inline(always)]
     pub(super) fn total(&self, along: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let (zero, rate) = (Lanes::splat(0.0), self.rate(along, sizes));
@@ -395,7 +395,7 @@ impl CurrentRow {
 pub(super) struct Rows {
     pub segments: Vec<SegmentRow>,
     pub nodes: Vec<NodeRow>,
-    /// Where the water moves.
+    /// Rows of moving water; none in still water.
     pub current: Option<Vec<CurrentRow>>,
 }
 

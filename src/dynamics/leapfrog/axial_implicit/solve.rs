@@ -8,20 +8,20 @@ use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striped_tridiagonal::Eliminated;
 use crate::physics::stretch::StretchLaw;
 
-/// Change of tension by the true stretch, relative to the greatest tension, that asks for another pass [-].
+/// Change of tension by the true stretch, relative to the greatest tension, that requires another pass [-].
 const STRETCH_TOLERANCE: f64 = 1e-3;
-/// Square of transverse over axial length up to which the stretch by transverse motion is told by its first term [-].
+/// Square of transverse over axial length up to which the stretch by transverse motion is approximated by its first term [-].
 const FLAT: f64 = 1e-3;
 /// Shortest that a segment may get, over its length, for the same [-].
 const SHORT: f64 = 0.9;
 
-/// What a pass found.
+/// Differences between the result of a pass and its assumptions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Found {
     /// > 0 where the bed pushes other nodes than assumed, or other segments are slack.
     landed: Lanes,
     flipped: Lanes,
-    /// 2·[`SHORT`] times the most that T̄ changes by the true stretch [N], told for segments that turn little; > 0 where one turns more.
+    /// 2·[`SHORT`] times the most that T̄ changes by the true stretch [N], for segments that turn little; > 0 where one turns more.
     bent: Lanes,
     turned: Lanes,
     /// Least margin of segments [N]: < 0 where T̄ has other springs up to t_n than are remembered.
@@ -157,7 +157,7 @@ impl Found {
         self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
     }
 
-    /// Whether segments are as slack, and bent by as much, as they were taken to be.
+    /// Compares a segment's slackness and stretch by transverse motion with those assumed.
     #[inline(always)]
     fn check(&mut self, segment: &SegmentRow, relative: Vectors, sizes: &Sizes) {
         let (zero, drift) = (Lanes::splat(0.0), sizes.drift);
@@ -183,7 +183,7 @@ impl Found {
 }
 
 impl AxialLine {
-    /// Corrects how the nodes meet the bed where a pass found it not to be as assumed; false if that asks for another pass.
+    /// Corrects how the nodes meet the bed where a pass found it not to be as assumed; false if that requires another pass.
     #[inline(always)]
     pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
         if BED == under::ROUGH {
@@ -196,7 +196,7 @@ impl AxialLine {
         !landed
     }
 
-    /// Corrects what a pass found of the segments not to be as assumed; false if that asks for another pass.
+    /// Corrects what a pass found of the segments not to be as assumed; false if that requires another pass.
     #[inline(always)]
     pub(super) fn segments_hold(&mut self, found: &Found, sizes: &Sizes) -> bool {
         let tolerance = Lanes::splat(STRETCH_TOLERANCE) * found.greatest.greatest();
@@ -214,13 +214,13 @@ impl AxialLine {
         !(revised || curved)
     }
 
-    /// Whether springs have tensions that are not proportional to their strain, and no memory.
+    /// Returns whether the tension of the springs is not proportional to their strain, without being viscoelastic.
     #[inline(always)]
     pub(super) fn is_curved(&self) -> bool {
         self.layout.law != StretchLaw::Engineering && self.layout.viscoelastic.is_none()
     }
 
-    /// Lays the springs' tension along the tangent of its curve where the last pass found that segments come to; whether that asks for another pass.
+    /// Lays the springs' tension along the tangent of its curve where the last pass found that segments come to; returns whether that requires another pass.
     #[inline(always)]
     fn follow_curve(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (velocity, law) = (&self.layout.velocity_before, &self.layout.law);
@@ -236,7 +236,7 @@ impl AxialLine {
             let off = (curve.positive() - spring.positive()).abs() - tolerance;
             let off = off.where_positive(segment.taut);
             if off.any_positive() {
-                *segment = laid; // else the books tell what the step was made with
+                *segment = laid; // else the energy balance keeps the law of the step
             }
             again = again.max(off);
         }
@@ -254,7 +254,7 @@ impl AxialLine {
     }
 
     /// Takes the segments to be slack and bent as the last pass found, true stretch by transverse motion included, and remembers the springs up to t_n as
-    /// dampers pull; whether that asks for another pass.
+    /// dampers pull; returns whether that requires another pass.
     #[inline(always)]
     fn revise_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (zero, one, drift) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.drift);

@@ -254,7 +254,7 @@ struct Kicking {
     froude_krylov: Vectors,
     /// From the nodes before to those after [m].
     chord: Vectors,
-    /// Its inverse square [1/m²].
+    /// Inverse square of the chord [1/m²].
     inverse_square: Lanes,
 }
 

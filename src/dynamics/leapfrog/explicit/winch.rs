@@ -31,7 +31,7 @@ use crate::model::{End, Line, LineState, Passage, Winch, WinchState};
 /// Segments from the winch on whose energy a split or a merge can change.
 const CHANGED: usize = 3;
 
-/// What a line on a winch is worked out with.
+/// Scratch of a line on a winch.
 #[derive(Debug, Clone)]
 pub(super) struct WinchWork {
     /// The line as it is at t_n.
@@ -152,8 +152,8 @@ impl ExplicitLine {
         winch.density = winch.line.spring(i, chord.norm() / length - 1.0).energy;
     }
 
-    /// Winds on to `t` [s], the end of a step, after the end was put where it is then: books what the winch gives, and gives the end the
-    /// velocity of its material.
+    /// Advances the winch to `t` [s], the end of a step, after the end was put in place: adds the work of the winch to the energy balance, and sets
+    /// the velocity of the material at the end.
     pub(super) fn wind(&mut self, t: f64, step: Step) {
         let Some(winch) = &mut self.kernel.winch else {
             return;

@@ -15,7 +15,7 @@ pub struct ContactArrays {
     pub level: Column,
     pub stiffness: Column,
     pub damping: Column,
-    /// Where the bed is more than a level plane without friction.
+    /// The seabed where it has a slope, soundings or friction.
     pub bottom: Option<BottomArrays>,
 }
 

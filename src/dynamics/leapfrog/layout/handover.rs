@@ -21,7 +21,7 @@ struct Nodes<'a> {
 }
 
 impl<'a> Nodes<'a> {
-    /// So many of each, which the compiler is to see.
+    /// The first `count` values of each, so that the compiler drops bound checks.
     #[inline(always)]
     fn first(self, count: usize) -> Nodes<'a> {
         Nodes {
@@ -56,7 +56,7 @@ impl NullaryFnOnce for HandBack<'_> {
     }
 }
 
-/// Whether [`Layout::soundness`] of all rows is positive, for the vector unit of the machine.
+/// Returns whether [`Layout::soundness`] of all rows is positive, for the vector unit of the machine.
 struct AreSound<'a>(&'a Layout);
 
 impl NullaryFnOnce for AreSound<'_> {
@@ -81,7 +81,7 @@ pub(super) fn padded_positions(striping: Striping) -> Field {
     position
 }
 
-/// Where node `i` is if it is padding [m].
+/// Position of node `i` where it is padding [m].
 fn padding(i: usize) -> Vector3<f64> {
     i as f64 * Vector3::x()
 }

@@ -1,4 +1,4 @@
-//! What moves the water around a line, and where the water's surface is on it.
+//! Motion of the water around a line, and the position of the water's surface on it.
 
 use nalgebra::Vector3;
 
@@ -12,12 +12,12 @@ use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::slender::Slender;
 
-/// What moves the water around a line.
+/// Sources of the motion of the water around a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Water<'a> {
     /// Shape of the current, where the water flows.
     pub profile: Option<&'a Profile>,
-    /// Whether waves act on the line.
+    /// True if waves act on the line.
     pub waves: bool,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Water<'a> {
 #[derive(Debug, Clone)]
 pub struct CurrentNow {
     pub profile: Profile,
-    /// What multiplies it [-].
+    /// Factor of the velocity [-].
     pub factor: f64,
 }
 
@@ -216,7 +216,7 @@ impl Layout {
         }
     }
 
-    /// Whether it holds another span of time than this.
+    /// Returns whether the waves loaded are those of another span of time.
     pub fn lacks_waves(&self, span: &WaveSpan) -> bool {
         let waves = self.waves.as_ref();
         waves.is_some_and(|waves| waves.times != span.times)
@@ -253,7 +253,7 @@ impl Layout {
         }
     }
 
-    /// Whether the water moves.
+    /// Returns whether the water moves.
     pub fn flows(&self) -> bool {
         self.current.is_some() || self.waves.is_some()
     }
