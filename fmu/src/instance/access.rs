@@ -1,0 +1,339 @@
+//! Access to the variables of an instance: the host reads results, and sets inputs and parameters.
+
+use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
+use moorline::model::{Body, Model};
+use moorline::scene::Scene;
+
+use super::{Instance, Outcome, Refusal};
+use crate::saved::Phase;
+
+/// Greatest magnitude of an input [m, rad, m/s, rad/s]: beyond this, squares and cubes of it would overflow.
+const INPUT_MAX: f64 = 1e12;
+
+impl Instance {
+    /// Row of a value reference.
+    fn variable(interface: &Interface, reference: u32) -> Result<&Variable, Refusal> {
+        interface
+            .variable(reference)
+            .ok_or_else(|| unknown(interface, reference))
+    }
+
+    /// Row of a value reference that the host accesses by a type.
+    #[inline]
+    fn typed(interface: &Interface, kind: Kind, reference: u32) -> Result<&Variable, Refusal> {
+        match interface.variable(reference) {
+            Some(variable) if variable.kind == kind => Ok(variable),
+            Some(variable) => Err(wrong_type(variable, &format!("{kind:?}"))),
+            None => Err(unknown(interface, reference)),
+        }
+    }
+
+    /// Reads variables of one type, arrays with all their values.
+    pub(crate) fn get(&mut self, kind: Kind, references: &[u32], values: &mut [f64]) -> Outcome {
+        if self.phase == Phase::Initialization && self.asks_for_results(references) {
+            self.solve_statics()?;
+        }
+        let (count, mut rest) = (values.len(), values);
+        for &reference in references {
+            if Some(reference) == self.time_reference && kind == Kind::Float64 {
+                let (own, others) = rest
+                    .split_first_mut()
+                    .ok_or_else(|| self.wrong_count(references, count))?;
+                (*own, rest) = (self.time, others);
+                continue;
+            }
+            let variable = Self::typed(&self.interface, kind, reference)?;
+            let split = rest.split_at_mut_checked(variable.size());
+            let (own, others) = split.ok_or_else(|| self.wrong_count(references, count))?;
+            rest = others;
+            self.read(variable, own)?;
+        }
+        match rest.is_empty() {
+            true => Ok(()),
+            false => Err(self.wrong_count(references, count)),
+        }
+    }
+
+    /// Reads a variable; `values` has its size.
+    fn read(&self, variable: &Variable, values: &mut [f64]) -> Outcome {
+        values[0] = match &variable.binding {
+            Binding::Displacement { body, axis } => self.inputs[slot(&self.scene, *body)].displacement[*axis],
+            Binding::Velocity { body, axis } => self.inputs[slot(&self.scene, *body)].velocity[*axis],
+            Binding::Release { line } => f64::from(u8::from(self.releases[*line])),
+            Binding::LengthChange { line } => self.length_changes[*line],
+            Binding::Parameter(parameter) => {
+                let value = parameter.value(&self.scene);
+                value.expect("the table has only parameters of the scene")
+            }
+            _ => {
+                let simulation = self.simulation.as_ref().ok_or_else(|| {
+                    Refusal(format!(
+                        "out of order: {} has a value from initialization mode on",
+                        variable.name
+                    ))
+                })?;
+                Interface::read(variable, simulation, values)?;
+                return check_result(variable, values, self.time);
+            }
+        };
+        Ok(())
+    }
+
+    /// Reads integers.
+    pub(crate) fn get_integers(&mut self, references: &[u32], values: &mut [i32]) -> Outcome {
+        let mut numbers = vec![0.0; values.len()];
+        self.get(Kind::Int32, references, &mut numbers)?;
+        for (value, number) in values.iter_mut().zip(numbers) {
+            *value = number as i32;
+        }
+        Ok(())
+    }
+
+    /// Sets integers.
+    pub(crate) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Outcome {
+        let numbers: Vec<f64> = values.iter().map(|&value| f64::from(value)).collect();
+        self.set(Kind::Int32, references, &numbers)
+    }
+
+    /// Reads truth values.
+    pub(crate) fn get_booleans(&mut self, references: &[u32], count: usize) -> Result<Vec<bool>, Refusal> {
+        let mut numbers = vec![0.0; count];
+        self.get(Kind::Boolean, references, &mut numbers)?;
+        Ok(numbers.into_iter().map(|number| number != 0.0).collect())
+    }
+
+    /// Sets truth values.
+    pub(crate) fn set_booleans(&mut self, references: &[u32], values: impl Iterator<Item = bool>) -> Outcome {
+        let numbers: Vec<f64> = values.map(|value| f64::from(u8::from(value))).collect();
+        self.set(Kind::Boolean, references, &numbers)
+    }
+
+    fn asks_for_results(&self, references: &[u32]) -> bool {
+        references.iter().any(|&reference| {
+            self.interface.variable(reference).is_some_and(|variable| {
+                matches!(
+                    variable.causality,
+                    Causality::Output | Causality::CalculatedParameter
+                )
+            })
+        })
+    }
+
+    /// Refusal of an access to variables with room for another number of values than they have.
+    #[cold]
+    fn wrong_count(&self, references: &[u32], count: usize) -> Refusal {
+        let size = |&reference: &u32| self.interface.variable(reference).map_or(1, Variable::size);
+        let size: usize = references.iter().map(size).sum();
+        Refusal(format!(
+            "{} variables have {size} values, but the host gave room for {count}",
+            references.len()
+        ))
+    }
+
+    /// Refuses access by a type that no variable has.
+    pub(crate) fn refuse_type(&self, kind: &str, references: &[u32]) -> Outcome {
+        match references.first() {
+            None => Ok(()),
+            Some(&reference) => Err(wrong_type(Self::variable(&self.interface, reference)?, kind)),
+        }
+    }
+
+    /// Sets variables of one type: all of them or, where one is refused, none.
+    pub(crate) fn set(&mut self, kind: Kind, references: &[u32], values: &[f64]) -> Outcome {
+        if self.time_reference.is_some_and(|time| references.contains(&time)) {
+            return Err("time is not to be set".into());
+        }
+        if references.len() != values.len() {
+            return Err(self.wrong_count(references, values.len())); // whatever may be set has one value
+        }
+        let mut has_parameters = false;
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = Self::typed(&self.interface, kind, reference)?;
+            self.check_settable(variable, value)?;
+            has_parameters |= variable.causality == Causality::Parameter;
+        }
+        if has_parameters {
+            self.set_parameters(references, values)?;
+        }
+        self.set_inputs(references, values)
+    }
+
+    /// Sets the parameters among some variables.
+    fn set_parameters(&mut self, references: &[u32], values: &[f64]) -> Outcome {
+        let mut scene = self.scene.clone();
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = Self::variable(&self.interface, reference)?;
+            if let Binding::Parameter(parameter) = &variable.binding {
+                let set = parameter.set(&mut scene, value);
+                set.map_err(|problem| format!("{}: {problem}", variable.name))?;
+            }
+        }
+        self.check_scene(&scene)?;
+        self.scene = scene;
+        self.simulation = None;
+        Ok(())
+    }
+
+    /// Sets the inputs among some variables; the statics are solved again where they are given during initialization.
+    fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Outcome {
+        for (&reference, &value) in references.iter().zip(values) {
+            match Self::variable(&self.interface, reference)?.binding {
+                Binding::Displacement { body, axis } => {
+                    let input = &mut self.inputs[slot(&self.scene, body)];
+                    let before = std::mem::replace(&mut input.displacement[axis], value);
+                    match self.phase {
+                        Phase::Step => input.has_moved[axis / 3] |= value != before,
+                        Phase::Initialization => self.simulation = None,
+                        _ => {}
+                    }
+                }
+                Binding::Velocity { body, axis } => {
+                    let input = &mut self.inputs[slot(&self.scene, body)];
+                    input.velocity[axis] = value;
+                    // Hosts write the start value 0 of every input: that is not yet a velocity.
+                    input.has_velocity[axis] |= self.phase == Phase::Step || value != 0.0;
+                    input.has_speed[axis / 3] |= value != 0.0;
+                }
+                Binding::Release { line } => self.releases[line] = value != 0.0,
+                Binding::LengthChange { line } => {
+                    self.length_changes[line] = value;
+                    if self.phase == Phase::Initialization {
+                        self.simulation = None;
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a value that a variable cannot take, or not in this phase.
+    #[inline]
+    fn check_settable(&self, variable: &Variable, value: f64) -> Outcome {
+        let is_in_range = match (variable.causality, self.phase) {
+            (Causality::Input, Phase::Instantiated | Phase::Initialization | Phase::Step) => {
+                value.abs() <= INPUT_MAX
+            }
+            (Causality::Parameter, Phase::Instantiated | Phase::Initialization) => value.is_finite(),
+            _ => false,
+        };
+        match is_in_range {
+            true => Ok(()),
+            false => Err(self.not_settable(variable, value)),
+        }
+    }
+
+    #[cold]
+    fn not_settable(&self, variable: &Variable, value: f64) -> Refusal {
+        let allowed: &[Phase] = match variable.causality {
+            Causality::Input => &[Phase::Instantiated, Phase::Initialization, Phase::Step],
+            Causality::Parameter => &[Phase::Instantiated, Phase::Initialization],
+            Causality::Output | Causality::CalculatedParameter => &[],
+        };
+        let problem = match self.expect_phase(allowed) {
+            _ if allowed.is_empty() => "an output or calculated parameter is not to be set".to_string(),
+            Err(Refusal(phase)) => phase,
+            Ok(()) if !value.is_finite() => format!("{value} is not a finite number; nothing was set"),
+            Ok(()) => format!("{value} is beyond {INPUT_MAX:e}; nothing was set"),
+        };
+        Refusal(format!("{}: {problem}", variable.name))
+    }
+
+    /// The parameters are in range and leave the arrays of the interface as long as they are.
+    fn check_scene(&self, scene: &Scene) -> Outcome {
+        let model = Model::new(scene).map_err(|e| e.to_string())?;
+        for variable in self.interface.variables() {
+            if let Binding::Profile { line, node, .. } = variable.binding {
+                let nodes = model.lines[line].nodes_max();
+                if variable.dimension.is_some_and(|length| length != nodes)
+                    || node.is_some_and(|node| node >= nodes)
+                {
+                    return Err(Refusal(format!(
+                        "with these parameters {} would have {nodes} nodes, which the interface cannot follow: \
+                         give the sections of the line their number of elements in the scene",
+                        model.lines[line].name
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Time derivatives of inputs (FMI 2.0). The first derivative of a displacement is its velocity; that of a velocity
+    /// is taken note of and not used, since the path through the communication points has its own.
+    pub(crate) fn set_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Outcome {
+        self.expect_phase(&[Phase::Instantiated, Phase::Initialization, Phase::Step])?;
+        if references.len() != values.len() {
+            return Err(self.wrong_count(references, values.len()));
+        }
+        let mut targets = Vec::with_capacity(references.len());
+        for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
+            let variable = Self::typed(&self.interface, Kind::Float64, reference)?;
+            let named = |problem: String| Refusal(format!("{}: {problem}", variable.name));
+            if variable.causality != Causality::Input {
+                return Err(named("only inputs have derivatives to set".into()));
+            }
+            if order != 1 {
+                return Err(named(format!(
+                    "derivatives of order {order} are not used: order 1 would be right"
+                )));
+            }
+            self.check_settable(variable, value)?;
+            match variable.binding {
+                // The rates of roll, pitch and yaw are no angular velocity: the path through the poses has its own.
+                Binding::Displacement { body, axis } if axis < 3 => {
+                    targets.push((slot(&self.scene, body), axis, value));
+                }
+                _ => {}
+            }
+        }
+        for (body, axis, value) in targets {
+            let input = &mut self.inputs[body];
+            input.velocity[axis] = value;
+            input.has_velocity[axis] = true;
+            input.has_speed[axis / 3] |= value != 0.0;
+        }
+        Ok(())
+    }
+}
+
+/// Place of a body among the inputs: all points, then all vessels.
+fn slot(scene: &Scene, body: Body) -> usize {
+    match body {
+        Body::Point(point) => point,
+        Body::Vessel(vessel) => scene.points.len() + vessel,
+    }
+}
+
+/// An output that is not finite is no result.
+fn check_result(variable: &Variable, values: &[f64], time: f64) -> Outcome {
+    match values.iter().find(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(value) => Err(Refusal(format!(
+            "{}: {value} at t = {time} s is no result; look at the inputs and the start time, or try a smaller solver.time_step_max",
+            variable.name
+        ))),
+    }
+}
+
+/// Refusal of a value reference that no variable has.
+#[cold]
+fn unknown(interface: &Interface, reference: u32) -> Refusal {
+    Refusal(format!(
+        "no variable has the value reference {reference}: 1 to {} would be right",
+        interface.variables().len()
+    ))
+}
+
+#[cold]
+fn wrong_type(variable: &Variable, asked: &str) -> Refusal {
+    Refusal(format!(
+        "{} is of type {:?}, not {asked}",
+        variable.name, variable.kind
+    ))
+}
