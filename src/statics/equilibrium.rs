@@ -43,6 +43,8 @@ use crate::physics::friction::Friction;
 const FORCE_TOLERANCE: f64 = 1e-11;
 /// Accepted last correction, over the longest line [-], unless three residuals in a row are accepted.
 const STEP_TOLERANCE: f64 = 1e-12;
+/// Least relaxation [-].
+const RELAXATION_MIN: f64 = 1e-12;
 /// Longest correction, over the longest line or, if that is more, the reach of the network [-].
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
@@ -401,7 +403,7 @@ impl<'a> Problem<'a> {
     /// Newton's method with predicted tensions; whether it converged.
     fn newton(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) -> bool {
         case.predicted = true;
-        let mut relaxation: f64 = 1.0;
+        let mut relaxation = self.relaxation_for(state, work, &case);
         let mut step = f64::INFINITY;
         let (mut balanced, mut refused) = (0, 0);
         let solves_max = match (self.bends, case.cautious) {
@@ -445,10 +447,18 @@ impl<'a> Problem<'a> {
             work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);
             if part == 1.0 {
-                relaxation = (0.1 * relaxation).max(1e-12);
+                relaxation = (0.1 * relaxation).max(RELAXATION_MIN);
             }
         }
         false
+    }
+
+    /// First relaxation of Newton's method: the force out of balance over the sum of the external forces, so that a shape close to equilibrium is
+    /// held by nothing else [-].
+    fn relaxation_for(&self, state: &State, work: &mut Workspace, case: &StaticCase) -> f64 {
+        work.assemble_static(self.model, self.network, state, case);
+        let (residual, _) = work.greatest_residual(self.network);
+        (residual / self.force).clamp(RELAXATION_MIN, 1.0)
     }
 
     /// Returns true where the forces of a shape are in balance by themselves, without predicted tensions.
