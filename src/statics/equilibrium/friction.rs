@@ -14,8 +14,9 @@
 //! Newton's method may cycle between nodes that stick and nodes that slide: a change of one node's normal force
 //! changes the forces of its neighbours. In that case the normal forces that limit friction are kept constant for a
 //! number of steps. Friction then has the potential ∫ |f| d|r − a|, which is convex like that of springs, weight and
-//! seabed, and the sum of all is minimised with steps along which it falls. The normal forces are then updated, and
-//! Newton's method ends the search.
+//! seabed, and the sum of all is minimised with steps along which it falls, from soft springs of sticking to the stiff ones:
+//! at once with the stiff ones one of ten thousand ordinary lines stalls. The normal forces are then updated, and Newton's method ends
+//! the search.
 //!
 //! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5; the problem with kept normal forces is that of
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
@@ -64,14 +65,20 @@ impl Problem<'_> {
     /// until Newton's method finds the equilibrium from there; returns true where it did.
     fn settle_pressure(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
+        let kept = |stick| StaticCase {
+            keeps_pressure: true,
+            stick,
+            ..full
+        };
         let mut found = std::mem::take(&mut work.trial);
         let settled = (0..ROUNDS_MAX).any(|_| {
             work.assemble_static(self.model, self.network, state, &full);
-            let kept = StaticCase {
-                keeps_pressure: true,
-                ..full
-            };
-            self.descend(state, work, kept);
+            let mut stick = SOFTEST;
+            while stick < 1.0 {
+                self.descend(state, work, kept(stick));
+                stick *= GROWTH;
+            }
+            self.descend(state, work, kept(1.0));
             if self.is_balanced(state, work) {
                 return true;
             }
