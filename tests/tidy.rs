@@ -33,7 +33,13 @@ const PACKAGES: [(&str, &[&str]); 7] = [
     ("accuracy", &["moorline"]),
     (
         "cli",
-        &["moorline", "moorline-accuracy", "moorline-decks", "moorline-host"],
+        &[
+            "moorline",
+            "moorline-accuracy",
+            "moorline-decks",
+            "moorline-host",
+            "moorline-fmu",
+        ],
     ),
     ("decks", &["moorline"]),
     ("fmu", &["moorline", "moorline-host"]),

@@ -8,6 +8,7 @@ use std::ffi::c_void;
 use moorline_host::{FmiVersion, HostError, Status};
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_panic_is_fatal_for_the_instance_and_harmless_for_the_host() {
     let fmu = common::open(FmiVersion::Two, &["provoke-panic"]);
     let mut lost = fmu.instantiate("lost", true).unwrap();

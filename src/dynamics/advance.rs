@@ -82,7 +82,7 @@ impl Integrators {
             })
             .collect();
         let own = Scratch {
-            implicit: elements::Workspace::new(model),
+            implicit: elements::Workspace::serving(model, |number| networks[number].solver.has_elements()),
             next: state.clone(),
         };
         Integrators {

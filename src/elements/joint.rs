@@ -156,7 +156,7 @@ impl LineWork {
     }
 
     /// Removes the nodes between the ends from the system; `None` if a pivot cannot be taken.
-    pub(super) fn eliminate(&mut self, first_free: bool, pivots: Pivots) -> Option<Ends> {
+    pub(crate) fn eliminate(&mut self, first_free: bool, pivots: Pivots) -> Option<Ends> {
         let Some(work) = self.bending.as_mut().filter(|work| work.active) else {
             let blocks = Blocks {
                 diagonal: &self.diagonal,
@@ -180,7 +180,7 @@ impl LineWork {
     }
 
     /// Full solution from that of the ends.
-    pub(super) fn substitute(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
+    pub(crate) fn substitute(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
         match self.bending.as_mut().filter(|work| work.active) {
             Some(work) => work.chain.substitute(a, b),
             None => self.chain.substitute(a, b),

@@ -18,8 +18,8 @@ use crate::physics::stretch_step::Stretched;
 /// no direction [-].
 const FOLDED: f64 = 0.1;
 
-/// Scratch of a line.
-#[derive(Debug, Clone)]
+/// Scratch of a line; without room for nodes by default.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct LineWork {
     /// R of every node, ends included [N].
     pub residual: Vec<Vector3<f64>>,

@@ -34,7 +34,7 @@ mod viscoelastic;
 
 use nalgebra::Vector3;
 
-use crate::math::block_banded::Pivots;
+use crate::math::block_banded::{Ends, Pivots};
 use crate::math::sparse_blocks::PointSystem;
 use crate::model::{End, Model, Network, PointState, State};
 use crate::physics::catenary::Catenary;
@@ -93,6 +93,11 @@ impl std::ops::AddAssign for Counters {
 impl Workspace {
     /// Scratch for `model`.
     pub fn new(model: &Model) -> Workspace {
+        Workspace::serving(model, |_| true)
+    }
+
+    /// Scratch for `model`, with that of the lines only in the networks, by their numbers, whose elements it `serves`.
+    pub(crate) fn serving(model: &Model, serves: impl Fn(usize) -> bool) -> Workspace {
         let mut points = vec![PointWork::new(); model.points.len()];
         for network in &model.networks {
             for (slot, &index) in network.free_points.iter().enumerate() {
@@ -105,12 +110,19 @@ impl Workspace {
             PointSystem::new(network.free_points.len(), &pairs.collect::<Vec<_>>())
         };
         let systems = model.networks.iter().map(system).collect();
+        let mut lines = vec![LineWork::default(); model.lines.len()];
+        for (_, network) in model
+            .networks
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| serves(*number))
+        {
+            for &line in &network.lines {
+                lines[line] = LineWork::new(model, &model.lines[line]);
+            }
+        }
         Workspace {
-            lines: model
-                .lines
-                .iter()
-                .map(|line| LineWork::new(model, line))
-                .collect(),
+            lines,
             points,
             systems,
             catenaries: vec![None; model.lines.len()],
@@ -322,31 +334,63 @@ impl Workspace {
         pivots: Pivots,
     ) -> bool {
         self.counters.solves += 1;
-        let system = &mut self.systems[number];
-        system.clear();
+        self.systems[number].clear();
         for &index in &network.lines {
+            let [a, _] = self.end_slots(model, index);
             let work = &mut self.lines[index];
-            let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
-            let [a, b] = [a.filter(|_| !work.released[0]), b.filter(|_| !work.released[1])];
-            let Some(ends) = work.eliminate(a.is_some() || work.released[0], pivots) else {
+            let ends = work.eliminate(a.is_some() || work.released[0], pivots);
+            let Some(ends) = ends.and_then(|ends| work.eliminate_released(ends)) else {
                 return false;
             };
-            let Some(ends) = work.eliminate_released(ends) else {
-                return false;
-            };
-            if let Some(a) = a {
-                system.add_block(a, a, &ends.aa);
-                system.add_right(a, ends.a);
-            }
-            if let Some(b) = b {
-                system.add_block(b, b, &ends.bb);
-                system.add_right(b, ends.b);
-            }
-            if let (Some(a), Some(b)) = (a, b) {
-                system.add_block(a, b, &ends.ab);
-                system.add_block(b, a, &ends.ba);
-            }
+            self.add_condensed(model, number, index, &ends);
         }
+        if !self.solve_points(model, network, number, pivots) {
+            return false;
+        }
+        for &index in &network.lines {
+            let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
+            self.lines[index].substitute_all(a, b);
+        }
+        true
+    }
+
+    /// Places of the free points that the ends of a line are tied to in the system of these.
+    fn end_slots(&self, model: &Model, line: usize) -> [Option<usize>; 2] {
+        let released = self.lines[line].released;
+        let slot = |side: usize| {
+            self.points[model.lines[line].ends[side]]
+                .slot
+                .filter(|_| !released[side])
+        };
+        [slot(0), slot(1)]
+    }
+
+    /// Adds a line that is condensed on its ends to the system of the free points of its network.
+    pub(crate) fn add_condensed(&mut self, model: &Model, number: usize, line: usize, ends: &Ends) {
+        let ([a, b], system) = (self.end_slots(model, line), &mut self.systems[number]);
+        if let Some(a) = a {
+            system.add_block(a, a, &ends.aa);
+            system.add_right(a, ends.a);
+        }
+        if let Some(b) = b {
+            system.add_block(b, b, &ends.bb);
+            system.add_right(b, ends.b);
+        }
+        if let (Some(a), Some(b)) = (a, b) {
+            system.add_block(a, b, &ends.ab);
+            system.add_block(b, a, &ends.ba);
+        }
+    }
+
+    /// Solves for the free points of a network whose lines were all added to their system; false if one of the `pivots` cannot be taken.
+    pub(crate) fn solve_points(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        number: usize,
+        pivots: Pivots,
+    ) -> bool {
+        let system = &mut self.systems[number];
         for (slot, &index) in network.free_points.iter().enumerate() {
             system.add_block(slot, slot, &self.points[index].diagonal);
             system.add_right(slot, self.points[index].residual);
@@ -361,10 +405,6 @@ impl Workspace {
         }
         for (slot, &index) in network.free_points.iter().enumerate() {
             self.points[index].solution = system.solution(slot);
-        }
-        for &index in &network.lines {
-            let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
-            self.lines[index].substitute_all(a, b);
         }
         true
     }
@@ -469,7 +509,8 @@ impl Workspace {
         self.gather(model, network);
     }
 
-    fn solution_at(&self, point: usize) -> Vector3<f64> {
+    /// Solution at a point, zero where it is not free.
+    pub(crate) fn solution_at(&self, point: usize) -> Vector3<f64> {
         let point = &self.points[point];
         point.slot.map_or(Vector3::zeros(), |_| point.solution)
     }

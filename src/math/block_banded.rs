@@ -35,7 +35,7 @@ pub struct Blocks<'a> {
 }
 
 /// Scratch of one chain, whose nodes are coupled to their second neighbours too where it is `FAR`; never read before it is written.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Chain<const FAR: bool> {
     /// D_i⁻¹ times the blocks of the eliminated nodes on nodes i + 1 and i + 2, and on the first end.
     next: Vec<Matrix3<f64>>,

@@ -32,7 +32,7 @@ impl Scene {
     /// Finds every mistake, each with its key path.
     pub fn mistakes(&self) -> Vec<SceneError> {
         let mut findings = Findings::default();
-        check_table(self, "", &mut findings);
+        check_table(self, &mut findings);
         surroundings::check(self, &mut findings);
         line_types::check(self, &mut findings);
         let names = Names::of(self);
@@ -96,6 +96,21 @@ pub struct Findings {
 }
 
 impl Findings {
+    /// Adds the findings of a check of what is at a key or index, with their paths from there.
+    pub(super) fn below(&mut self, place: impl FnOnce() -> String, check: impl FnOnce(&mut Findings)) {
+        let (mistakes, notes) = (self.mistakes.len(), self.notes.len());
+        check(self);
+        if self.mistakes.len() == mistakes && self.notes.len() == notes {
+            return;
+        }
+        let place = place();
+        let mistakes = self.mistakes[mistakes..]
+            .iter_mut()
+            .map(|mistake| &mut mistake.at);
+        let notes = self.notes[notes..].iter_mut().map(|note| &mut note.at);
+        mistakes.chain(notes).for_each(|at| *at = below(&place, at));
+    }
+
     /// Adds a mistake.
     pub(super) fn say(&mut self, at: impl Into<String>, problem: impl Into<String>) {
         self.mistakes.push(SceneError::new(at, problem));

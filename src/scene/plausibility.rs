@@ -75,7 +75,7 @@ impl Scene {
     /// Returns notes on values that are far from those of moorings, most of them slips of units.
     pub fn plausibility(&self) -> Vec<Note> {
         let mut findings = Findings::default();
-        check_table(self, "", &mut findings);
+        check_table(self, &mut findings);
         let mut notes = findings.notes;
         RULES.iter().for_each(|rule| rule(self, &mut notes));
         notes

@@ -165,12 +165,12 @@ impl Value for Friction {
         }
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+    fn check(&self, key: &Key, findings: &mut Findings) {
         let Friction { transverse, axial } = *self;
         if axial == transverse || axial.is_nan() && transverse.is_nan() {
-            axial.check(at, key, findings);
+            axial.check(key, findings);
         } else {
-            Directions { transverse, axial }.check(at, key, findings);
+            Directions { transverse, axial }.check(key, findings);
         }
     }
 }

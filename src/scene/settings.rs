@@ -130,9 +130,9 @@ impl Value for Threads {
         }
     }
 
-    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
+    fn check(&self, _: &Key, findings: &mut Findings) {
         if let Threads::Number(number) = self {
-            findings.number(at, *number as f64, within(1.0, 256.0).bounds, "-");
+            findings.number("", *number as f64, within(1.0, 256.0).bounds, "-");
         }
     }
 }

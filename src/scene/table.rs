@@ -323,7 +323,7 @@ pub trait Value {
     /// The value as TOML; `None` where it is absent.
     fn write(&self) -> Option<Toml>;
     /// Adds the mistakes that the value has by itself: numbers out of bounds, rows out of order.
-    fn check(&self, _at: &str, _key: &Key, _findings: &mut Findings) {}
+    fn check(&self, _key: &Key, _findings: &mut Findings) {}
     /// The number, in the unit of the key, of a value that is one.
     fn number(&self) -> Option<f64> {
         None
@@ -420,8 +420,8 @@ impl<T: Table> Value for T {
         Some(Toml::Table(entries.collect()))
     }
 
-    fn check(&self, at: &str, _key: &Key, findings: &mut Findings) {
-        check_table(self, at, findings);
+    fn check(&self, _key: &Key, findings: &mut Findings) {
+        check_table(self, findings);
     }
 
     fn in_words(&self, _key: &Key) -> Option<String> {
@@ -430,16 +430,12 @@ impl<T: Table> Value for T {
 }
 
 /// Adds the mistakes that each value of a table has by itself, and keys of which only one can be given.
-pub(super) fn check_table<T: Table>(table: &T, at: &str, findings: &mut Findings) {
+pub(super) fn check_table<T: Table>(table: &T, findings: &mut Findings) {
     for (key, value) in table.entries().filter(|(_, value)| !value.is_absent()) {
-        let at = match at {
-            "" => key.name().to_string(),
-            _ => format!("{at}.{}", key.name()),
-        };
-        value.check(&at, key, findings);
+        findings.below(|| key.name().to_string(), |findings| value.check(key, findings));
         let given = |name: &&&str| table.get(name).is_some_and(|other| !other.is_absent());
         if let Some(other) = key.rule.excluded.iter().find(given) {
-            findings.say(at, format!("`{other}` is given too: give one of them"));
+            findings.say(key.name(), format!("`{other}` is given too: give one of them"));
         }
     }
 }
@@ -617,11 +613,11 @@ macro_rules! choice_of_values {
                 })
             }
 
-            fn check(&self, at: &str, key: &$crate::scene::table::Key, findings: &mut $crate::scene::check::Findings) {
+            fn check(&self, key: &$crate::scene::table::Key, findings: &mut $crate::scene::check::Findings) {
                 match self {
                     $($name::$held(value) => {
                         let key = $crate::scene::table::Key { rule: $rule, kind: <$type>::kind, ..*key };
-                        value.check(&format!("{at}.{}", $held_word), &key, findings);
+                        findings.below(|| $held_word.to_string(), |findings| value.check(&key, findings));
                     })+
                     _ => {}
                 }

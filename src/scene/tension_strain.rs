@@ -72,9 +72,9 @@ impl Value for TensionStrain {
         }
     }
 
-    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
+    fn check(&self, _: &Key, findings: &mut Findings) {
         for (number, row) in self.rows.iter().enumerate() {
-            let at = format!("{at}[{number}]");
+            let at = format!("[{number}]");
             let strain = findings.number(&at, row[0], magnitude(10.0).bounds, "-");
             if !strain || !findings.number(&at, row[1], magnitude(1e15).bounds, "N") {
                 return;
@@ -90,9 +90,9 @@ impl Value for TensionStrain {
         }
         match &self.file {
             Some(file) if self.rows.is_empty() => {
-                findings.say(at, format!("{file} was not read: write its rows here"));
+                findings.say("", format!("{file} was not read: write its rows here"));
             }
-            _ if self.rows.len() < 2 => findings.say(at, "a table has two rows [strain, tension] or more"),
+            _ if self.rows.len() < 2 => findings.say("", "a table has two rows [strain, tension] or more"),
             _ => {}
         }
     }

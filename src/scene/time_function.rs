@@ -82,17 +82,16 @@ impl Value for TimeFunction {
         }
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+    fn check(&self, key: &Key, findings: &mut Findings) {
         let (limits, unit) = (magnitude(1e15).bounds, key.unit().unwrap_or("-"));
         match self {
-            TimeFunction::Constant(value) => _ = findings.number(at, *value, limits, unit),
-            TimeFunction::Step(numbers) => check_rise(findings, &format!("{at}.step"), *numbers, unit),
-            TimeFunction::Ramp(numbers) => check_rise(findings, &format!("{at}.ramp"), *numbers, unit),
+            TimeFunction::Constant(value) => _ = findings.number("", *value, limits, unit),
+            TimeFunction::Step(numbers) => check_rise(findings, "step", *numbers, unit),
+            TimeFunction::Ramp(numbers) => check_rise(findings, "ramp", *numbers, unit),
             TimeFunction::Table(rows) => {
-                let at = format!("{at}.table");
-                check_times(findings, &at, rows.iter().map(|row| row[0]), true);
+                check_times(findings, "table", rows.iter().map(|row| row[0]), true);
                 for (i, row) in rows.iter().enumerate() {
-                    findings.number(format!("{at}[{i}][1]"), row[1], limits, unit);
+                    findings.number(format!("table[{i}][1]"), row[1], limits, unit);
                 }
             }
         }
@@ -472,22 +471,21 @@ impl Value for MotionPath {
         Some(entry("table", rows.write()?))
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+    fn check(&self, key: &Key, findings: &mut Findings) {
         match self {
             MotionPath::File(file) if file.rows.is_empty() => findings.say(
-                format!("{at}.file"),
+                "file",
                 "a scene that comes as text cannot read files: write the rows as `table = [[t, x, y, z], …]`",
             ),
             MotionPath::File(file) => {
-                let (mut of_rows, at) = (Findings::default(), format!("{at}.file"));
-                check_rows(&mut of_rows, &at, &file.rows);
-                if let Some(first) = of_rows.mistakes.first() {
-                    let row = first.at.strip_prefix(&at).unwrap_or_default();
-                    findings.say(&at, format!("row {row} (from 0) of the file: {}", first.problem));
+                let mut of_rows = Findings::default();
+                check_rows(&mut of_rows, "", &file.rows);
+                if let Some(SceneError { at, problem, .. }) = of_rows.mistakes.first() {
+                    findings.say("file", format!("row {at} (from 0) of the file: {problem}"));
                 }
             }
-            MotionPath::Table(rows) => check_rows(findings, &format!("{at}.table"), rows),
-            MotionPath::Harmonic(harmonic) => check_harmonic(findings, at, key, harmonic),
+            MotionPath::Table(rows) => check_rows(findings, "table", rows),
+            MotionPath::Harmonic(harmonic) => check_harmonic(findings, key, harmonic),
         }
     }
 
@@ -520,11 +518,11 @@ fn check_rows(findings: &mut Findings, at: &str, rows: &[MotionRow]) {
     }
 }
 
-fn check_harmonic(findings: &mut Findings, at: &str, key: &Key, harmonic: &HarmonicMotion) {
+fn check_harmonic(findings: &mut Findings, key: &Key, harmonic: &HarmonicMotion) {
     for ((axis, sines), size) in harmonic.axes().into_iter().zip(&COLUMNS[1..]) {
         let (unit, period, phase) = (size.1, Bounds::Positive(1e9), Bounds::Magnitude(1e6));
         for (i, sine) in sines.iter().enumerate() {
-            let (at, count) = (format!("{at}.{axis}[{i}]"), sine.len());
+            let (at, count) = (format!("{axis}[{i}]"), sine.len());
             let commas = decimal_commas(sine, &[2, 3]);
             rules! { findings, &at;
                 "" if ![2, 3].contains(&count) =>
@@ -539,7 +537,7 @@ fn check_harmonic(findings: &mut Findings, at: &str, key: &Key, harmonic: &Harmo
         ramp: harmonic.ramp,
         ..MotionText::default()
     };
-    text.check(at, key, findings);
+    text.check(key, findings);
 }
 
 #[cfg(test)]

@@ -27,8 +27,8 @@ impl Value for f64 {
         Some(Toml::Float(*self))
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
-        findings.ruled(at, *self, &key.rule, key.unit().unwrap_or("-"));
+    fn check(&self, key: &Key, findings: &mut Findings) {
+        findings.ruled("", *self, &key.rule, key.unit().unwrap_or("-"));
     }
 
     fn number(&self) -> Option<f64> {
@@ -66,10 +66,10 @@ macro_rules! count {
                 Some(Toml::Integer(*self as i64))
             }
 
-            fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+            fn check(&self, key: &Key, findings: &mut Findings) {
                 let value = *self as f64;
                 if let Some(problem) = key.rule.bounds.complaint(value, "-") {
-                    findings.say(at, problem.replacen(&number(value), &self.to_string(), 1));
+                    findings.say("", problem.replacen(&number(value), &self.to_string(), 1));
                 }
             }
 
@@ -142,9 +142,9 @@ impl<T: Value> Value for Option<T> {
         self.as_ref().and_then(T::write)
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+    fn check(&self, key: &Key, findings: &mut Findings) {
         if let Some(value) = self {
-            value.check(at, key, findings);
+            value.check(key, findings);
         }
     }
 
@@ -233,9 +233,9 @@ impl<T: Value, const N: usize> Value for [T; N] {
         Some(Toml::Array(self.iter().filter_map(T::write).collect()))
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+    fn check(&self, key: &Key, findings: &mut Findings) {
         for (index, value) in self.iter().enumerate() {
-            value.check(&format!("{at}[{index}]"), key, findings);
+            findings.below(|| format!("[{index}]"), |findings| value.check(key, findings));
         }
     }
 
@@ -263,7 +263,7 @@ impl<T: Value> Value for Vec<T> {
         (!self.is_empty()).then(|| Toml::Array(self.iter().filter_map(T::write).collect()))
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+    fn check(&self, key: &Key, findings: &mut Findings) {
         let known = findings.mistakes.len();
         let is_plain = |value: &T| {
             value
@@ -271,7 +271,7 @@ impl<T: Value> Value for Vec<T> {
                 .is_some_and(|number| key.rule.bounds.accepts(number))
         };
         for (index, value) in self.iter().enumerate().filter(|(_, value)| !is_plain(value)) {
-            value.check(&format!("{at}[{index}]"), key, findings);
+            findings.below(|| format!("[{index}]"), |findings| value.check(key, findings));
             if matches!(T::kind(), Kind::Number | Kind::Numbers) && findings.mistakes.len() > known {
                 return; // one wrong number of a long list is enough
             }
@@ -307,9 +307,12 @@ impl<T: Value> Value for BTreeMap<String, T> {
         (!self.is_empty()).then(|| Toml::Table(entries.collect()))
     }
 
-    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+    fn check(&self, key: &Key, findings: &mut Findings) {
         for (name, value) in self {
-            value.check(&format!("{at}.{}", super::path::quoted(name)), key, findings);
+            findings.below(
+                || super::path::quoted(name),
+                |findings| value.check(key, findings),
+            );
         }
     }
 }

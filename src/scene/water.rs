@@ -232,9 +232,10 @@ impl Value for Waves {
         }
     }
 
-    fn check(&self, _: &str, key: &Key, findings: &mut Findings) {
-        for (index, sea) in self.seas.iter().enumerate() {
-            sea.check(&self.path(index), key, findings);
+    fn check(&self, key: &Key, findings: &mut Findings) {
+        match self.seas.as_slice() {
+            [sea] => sea.check(key, findings),
+            _ => self.seas.check(key, findings),
         }
     }
 }
@@ -268,15 +269,15 @@ impl Value for WaveComponents {
         }
     }
 
-    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
+    fn check(&self, _: &Key, findings: &mut Findings) {
         let rows = match self {
             WaveComponents::Rows(rows) => rows,
             WaveComponents::Number(number) => {
-                findings.number(at, *number as f64, within(1.0, 1e5).bounds, "-");
+                findings.number("", *number as f64, within(1.0, 1e5).bounds, "-");
                 return;
             }
         };
-        rules! { findings, at;
+        rules! { findings, "";
             "" if rows.is_empty() => "there are no rows: write [[amplitude, period, direction, phase], …]";
         }
         let columns = [
@@ -286,7 +287,7 @@ impl Value for WaveComponents {
             (ANGLE.bounds, "rad"),
         ];
         for (i, row) in rows.iter().enumerate() {
-            findings.row(&format!("{at}[{i}]"), row, &columns);
+            findings.row(&format!("[{i}]"), row, &columns);
         }
     }
 }

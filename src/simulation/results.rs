@@ -120,16 +120,20 @@ impl Simulation {
     /// [`statics::stiffness`]. Where a current drags lines, its force changes with them: the stiffness is then that of equilibria on both sides
     /// of the pose that is set.
     pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
-        self.stiffness_with(vessel, &mut elements::Workspace::new(&self.model))
+        self.stiffness_with(vessel, &mut self.stiffness_scratch())
     }
 
     /// [`Simulation::vessel_stiffness`] of every vessel.
     pub fn vessel_stiffnesses(&self) -> Vec<Option<[[f64; 6]; 6]>> {
-        let mut work = elements::Workspace::new(&self.model);
+        let mut work = self.stiffness_scratch();
         let vessels = 0..self.model.vessels.len();
         vessels
             .map(|vessel| self.stiffness_with(vessel, &mut work))
             .collect()
+    }
+
+    fn stiffness_scratch(&self) -> elements::Workspace {
+        statics::stiffness::scratch(&self.model, &self.snapshot.state)
     }
 
     fn stiffness_with(&self, vessel: usize, work: &mut elements::Workspace) -> Option<[[f64; 6]; 6]> {
@@ -205,7 +209,7 @@ impl Simulation {
         hung.snapshot.state.waves = None;
         hung.reactions.clear();
         let (model, time) = (&*self.model, self.snapshot.state.time);
-        let mut work = elements::Workspace::new(model);
+        let mut work = elements::Workspace::serving(model, |_| false);
         for number in 0..model.networks.len() {
             let state = &mut hung.snapshot.state;
             catenary_network::solve_network(model, number, state, time, &mut work);

@@ -7,7 +7,7 @@
 //!
 //!   J (u − x) + c = 0 at every node between the ends and every free point,   δR = J (u − x) + c at the ends on the vessel,
 //!
-//! six solves of the linear system of statics. The force of the mooring is F = −R and its moment M = Σ r × F + m, so
+//! six solves for the free points, with every line condensed on its ends once. The force of the mooring is F = −R and its moment M = Σ r × F + m, so
 //! that
 //!
 //!   K δ = −δF = Σ δR,   −δM = Σ r × δR + (ω × r) × R − δm,
@@ -27,10 +27,11 @@
 
 use std::ops::SubAssign;
 
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::catenary_network::{self, HungNetwork};
-use crate::elements::{LineWork, StaticCase, Workspace, friction};
+use crate::elements::{StaticCase, Workspace, friction};
+use crate::math::block_banded::{Ends, Pivots};
 use crate::model::{Body, End, Line, Model, Network, Role, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
 
@@ -64,7 +65,7 @@ pub fn of_vessel(
         if model.beam_of(number).is_some() || problem.network.lines.iter().any(released) {
             return None;
         }
-        sum += if problem.on_catenaries() {
+        sum += if lies_on_catenaries(problem.network, state) {
             problem.of_catenaries(work)?
         } else {
             let mut parts = ANCHORING.into_iter();
@@ -97,6 +98,19 @@ fn of_own_weights(model: &Model, state: &State, vessel: usize, origin: Vector3<f
         }
     }
     sum
+}
+
+/// Scratch for the stiffness on any vessel, at a state.
+pub(crate) fn scratch(model: &Model, state: &State) -> Workspace {
+    Workspace::serving(model, |number| {
+        !lies_on_catenaries(&model.networks[number], state)
+    })
+}
+
+/// Returns whether all lines of a network lie on closed-form catenaries.
+fn lies_on_catenaries(network: &Network, state: &State) -> bool {
+    let mut lines = network.lines.iter();
+    lines.all(|&line| state.lines[line].closed_form.is_some())
 }
 
 /// One of the six motions of a vessel, of unit size.
@@ -186,6 +200,31 @@ impl Clamp {
     }
 }
 
+/// A line condensed on its ends, both of them free.
+struct CondensedLine {
+    index: usize,
+    /// Residual of the ends at rest [N].
+    residual: [Vector3<f64>; 2],
+    ends: Ends,
+    /// Clamps on the vessel.
+    clamps: Vec<Clamp>,
+}
+
+impl CondensedLine {
+    /// Condensed equations with the effect of the turned clamps on the right.
+    fn with_turned_clamps(&self, motion: &Motion, work: &mut Workspace) -> Option<Ends> {
+        if self.clamps.is_empty() {
+            return Some(self.ends);
+        }
+        let line = &mut work.lines[self.index];
+        line.residual.fill(Vector3::zeros());
+        for clamp in &self.clamps {
+            clamp.add_push(&motion.spin, &mut line.residual);
+        }
+        line.eliminate(true, Pivots::Positive)
+    }
+}
+
 /// One network and the vessel that moves its ends.
 struct Problem<'a> {
     model: &'a Model,
@@ -223,11 +262,6 @@ impl Problem<'_> {
         } else {
             Vector3::zeros()
         }
-    }
-
-    fn on_catenaries(&self) -> bool {
-        let mut lines = self.network.lines.iter();
-        lines.all(|&line| self.state.lines[line].closed_form.is_some())
     }
 
     /// −δ of force and moment of one end, from its residual R and the change of that [N].
@@ -297,63 +331,99 @@ impl Problem<'_> {
             ..StaticCase::whole(self.state.time)
         };
         work.assemble_static(self.model, self.network, self.state, &case);
-        let at_rest = |(line, end): (usize, End)| {
-            let node = self.model.lines[line].end_node(end);
-            work.lines[line].residual[node]
-        };
-        let residuals: Vec<Vector3<f64>> = self.ends().map(at_rest).collect();
         for &point in &self.network.free_points {
             work.points[point].residual = Vector3::zeros();
         }
+        let lines = self.network.lines.iter();
+        let lines: Option<Vec<_>> = lines.map(|&line| self.condensed(line, work)).collect();
+        let lines = lines?;
         let mut stiffness = Matrix6::zeros();
         for axis in 0..6 {
-            let column = self.element_column(&Motion::along(axis), &residuals, work)?;
-            stiffness.set_column(axis, &column);
+            stiffness.set_column(axis, &self.element_column(&Motion::along(axis), &lines, work)?);
         }
         Some(stiffness)
+    }
+
+    /// A line condensed on its ends, after an assembly.
+    fn condensed(&self, index: usize, work: &mut Workspace) -> Option<CondensedLine> {
+        let (line, line_work) = (&self.model.lines[index], &mut work.lines[index]);
+        let residual = [End::A, End::B].map(|end| line_work.residual[line.end_node(end)]);
+        line_work.residual.fill(Vector3::zeros());
+        Some(CondensedLine {
+            index,
+            residual,
+            ends: line_work.eliminate(true, Pivots::Positive)?,
+            clamps: self.clamps(index).collect(),
+        })
     }
 
     fn element_column(
         &self,
         motion: &Motion,
-        residuals: &[Vector3<f64>],
+        lines: &[CondensedLine],
         work: &mut Workspace,
     ) -> Option<Vector6<f64>> {
-        for &index in &self.network.lines {
-            let line = &self.model.lines[index];
-            let mut moved = vec![Vector3::zeros(); line.segment_count() + 1];
-            for (end, point) in [End::A, End::B].into_iter().zip(line.ends) {
-                moved[line.end_node(end)] = self.moved(point, motion);
-            }
-            let mut right = product(&work.lines[index], &moved);
-            for clamp in self.clamps(index) {
-                clamp.add_push(&motion.spin, &mut right);
-            }
-            work.lines[index].residual.copy_from_slice(&right);
+        work.systems[self.number].clear();
+        let mut moved = Vec::with_capacity(lines.len());
+        for line in lines {
+            let [a, b] = self.model.lines[line.index]
+                .ends
+                .map(|point| self.moved(point, motion));
+            let ends = line.with_turned_clamps(motion, work)?;
+            let ends = Ends {
+                a: ends.a + ends.aa * a + ends.ab * b,
+                b: ends.b + ends.ba * a + ends.bb * b,
+                ..ends
+            };
+            work.add_condensed(self.model, self.number, line.index, &ends);
+            moved.push((ends, [a, b]));
         }
-        if !work.solve(self.model, self.network, self.number) {
+        if !work.solve_points(self.model, self.network, self.number, Pivots::Positive) {
             return None;
         }
-        let mut column = Vector6::zeros();
-        for ((index, end), residual) in self.ends().zip(residuals) {
-            let (line, line_work) = (&self.model.lines[index], &work.lines[index]);
-            let mut moved: Vec<Vector3<f64>> = line_work.solution().iter().map(|x| -x).collect();
-            for (end, point) in [End::A, End::B].into_iter().zip(line.ends) {
-                moved[line.end_node(end)] += self.moved(point, motion);
-            }
-            let mut change = product(line_work, &moved);
-            for clamp in self.clamps(index) {
-                clamp.add_push(&motion.spin, &mut change);
-            }
-            let (node, point) = (line.end_node(end), self.point(index, end));
-            column += self.at_origin(point, motion, *residual, change[node]);
-            if let Some(clamp) = Clamp::new(line, self.state, index, end) {
-                let from = node.saturating_sub(usize::from(end == End::B));
-                let moment = clamp.moment(&motion.spin, moved[from + 1] - moved[from]);
-                column += joined(Vector3::zeros(), moment);
-            }
+        let lines = lines.iter().zip(moved);
+        Some(
+            lines
+                .map(|(line, moved)| self.of_line(line, motion, moved, work))
+                .sum(),
+        )
+    }
+
+    /// −δ of force and moment of one line, from its condensed equations with the motion of its ends [m] on the right.
+    fn of_line(
+        &self,
+        line: &CondensedLine,
+        motion: &Motion,
+        (ends, moved): (Ends, [Vector3<f64>; 2]),
+        work: &mut Workspace,
+    ) -> Vector6<f64> {
+        let points = self.model.lines[line.index].ends;
+        let [a, b] = points.map(|point| work.solution_at(point));
+        let change = [
+            ends.a - ends.aa * a - ends.ab * b,
+            ends.b - ends.ba * a - ends.bb * b,
+        ];
+        let mut sum = Vector6::zeros();
+        for (side, point) in points
+            .into_iter()
+            .enumerate()
+            .filter(|(_, point)| self.rides(*point))
+        {
+            sum += self.at_origin(point, motion, line.residual[side], change[side]);
         }
-        Some(column)
+        if !line.clamps.is_empty() {
+            work.lines[line.index].substitute(a - moved[0], b - moved[1]);
+        }
+        let solution = work.lines[line.index].solution();
+        for clamp in &line.clamps {
+            let from = match clamp.stands {
+                End::A => 0,
+                End::B => solution.len() - 2,
+            };
+            let moment = clamp.moment(&motion.spin, solution[from] - solution[from + 1]);
+            sum += joined(Vector3::zeros(), moment);
+        }
+        sum
     }
 
     /// Clamps of a line on the vessel.
@@ -376,28 +446,6 @@ impl Clamp {
         change[lower] -= push;
         change[upper] += push;
     }
-}
-
-/// J of a line, as last assembled, times a motion of its nodes [N].
-fn product(line: &LineWork, moved: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
-    let own = line.diagonal.iter().zip(moved);
-    let mut sum: Vec<Vector3<f64>> = own.map(|(block, x)| block * x).collect();
-    let mut couple = |row: usize, column: usize, block: &Matrix3<f64>| {
-        sum[row] += block * moved[column];
-        sum[column] += block.tr_mul(&moved[row]);
-    };
-    for (i, block) in line.coupling.iter().enumerate() {
-        couple(i, i + 1, block);
-    }
-    if let Some(bending) = line.bending.as_ref().filter(|bending| bending.active) {
-        for (i, block) in bending.near.iter().enumerate() {
-            couple(i, i + 1, block);
-        }
-        for (i, block) in bending.far.iter().enumerate() {
-            couple(i, i + 2, block);
-        }
-    }
-    sum
 }
 
 fn joined(force: Vector3<f64>, moment: Vector3<f64>) -> Vector6<f64> {

@@ -16,24 +16,22 @@ fn an_fmu_that_cannot_be_placed_is_refused() {
     assert_eq!(folder.names(), ["scene.toml"]);
 }
 
-/// Puts the FMU library beside the program under test, once: `cargo test` does not build it for the tests of another package.
-fn build_library() {
-    static BUILT: std::sync::Once = std::sync::Once::new();
-    BUILT.call_once(|| {
-        let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
-        let arguments = format!("build --quiet --package moorline-fmu --lib --profile {profile}");
-        let output = Command::new(env!("CARGO"))
-            .args(arguments.split(' '))
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", err(&output));
+/// Puts the FMU library that Cargo built for this test program beside the program under test, once.
+fn place_library() {
+    static PLACED: std::sync::Once = std::sync::Once::new();
+    PLACED.call_once(|| {
+        let library = moorline::output::package::find_library().unwrap();
+        let beside = Path::new(env!("CARGO_BIN_EXE_moorline")).with_file_name(library.file_name().unwrap());
+        if library != beside {
+            let _ = fs::remove_file(&beside); // of an earlier build, or none
+            fs::hard_link(library, beside).unwrap();
+        }
     });
 }
 
 #[test]
 fn an_fmu_of_either_version_is_one_whole_file() {
-    build_library();
+    place_library();
     let folder = folder();
     for version in ["2", "3"] {
         let target = format!("rope{version}.fmu");
@@ -58,7 +56,7 @@ fn an_fmu_of_either_version_is_one_whole_file() {
 
 #[test]
 fn the_demo_drives_an_fmu_that_gives_the_bits_of_a_run() {
-    build_library();
+    place_library();
     let folder = folder_of("demo");
     let parts = [
         "static equilibrium",

@@ -1,4 +1,4 @@
-//! A small scene, packaged with the library that this test run built.
+//! A small scene, packaged with the library that Cargo built for this test program.
 #![allow(dead_code)] // each test file uses a part
 
 use std::path::{Path, PathBuf};
@@ -12,12 +12,13 @@ use moorline_host::{FmiVersion, Fmu};
 /// One chain on a seabed, 20 elements.
 pub(crate) const SCENE: &str = include_str!("../../../tests/scenes/chain.toml");
 
-/// Builds the library as it is now, with the profile of this test, and returns a copy that later builds leave alone.
-/// Cargo by itself does not: nothing links to a library for C.
-fn build_library(features: &[&str]) -> PathBuf {
+/// A copy of the library that later builds leave alone: the one that this program was built with, or one with `features`.
+fn copy_library(features: &[&str]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(env!("CARGO_CRATE_NAME"));
     std::fs::create_dir_all(&folder).unwrap();
-    run_cargo(features);
+    if !features.is_empty() {
+        run_cargo(features);
+    }
     let built = package::find_library().unwrap();
     let copy = folder.join(built.file_name().unwrap());
     std::fs::copy(&built, &copy).unwrap();
@@ -47,7 +48,7 @@ fn run_cargo(features: &[&str]) {
 fn package(version: FmiVersion, features: &[&str], text: &str) -> &'static Path {
     static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
     static PACKAGED: [OnceLock<PathBuf>; 2] = [OnceLock::new(), OnceLock::new()];
-    let library = LIBRARY.get_or_init(|| build_library(features));
+    let library = LIBRARY.get_or_init(|| copy_library(features));
     PACKAGED[version as usize].get_or_init(|| {
         let fmu = library.with_file_name(format!("line{version}.fmu"));
         let scene = Scene::from_toml(text).unwrap();

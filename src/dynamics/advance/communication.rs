@@ -62,6 +62,11 @@ impl Solver {
         matches!(self, Solver::Implicit(_))
     }
 
+    /// Returns whether the integrator assembles the elements of its lines.
+    pub(super) fn has_elements(&self) -> bool {
+        matches!(self, Solver::Implicit(_) | Solver::QuasiStatic)
+    }
+
     /// Returns whether the integrator is one of the leapfrogs.
     pub(super) fn is_leapfrog(&self) -> bool {
         matches!(self, Solver::Leapfrog(_) | Solver::AxialImplicit(_))
