@@ -7,8 +7,8 @@
 //!
 //!   J (u − x) + c = 0 at every node between the ends and every free point,   δR = J (u − x) + c at the ends on the vessel,
 //!
-//! six solves for the free points, with every line condensed on its ends once. The force of the mooring is F = −R and its moment M = Σ r × F + m, so
-//! that
+//! six solves for the free points. Every line is condensed on its ends, once if no clamp of it turns. The force of the mooring is F = −R and
+//! its moment M = Σ r × F + m, so that
 //!
 //!   K δ = −δF = Σ δR,   −δM = Σ r × δR + (ω × r) × R − δm,
 //!
