@@ -96,7 +96,7 @@ impl Workspace {
         Workspace::serving(model, |_| true)
     }
 
-    /// Scratch for `model`, with that of the lines only in the networks, by their numbers, whose elements it `serves`.
+    /// Scratch for `model`; lines have theirs only in networks whose number `serves` accepts.
     pub(crate) fn serving(model: &Model, serves: impl Fn(usize) -> bool) -> Workspace {
         let mut points = vec![PointWork::new(); model.points.len()];
         for network in &model.networks {
@@ -344,7 +344,7 @@ impl Workspace {
             };
             self.add_condensed(model, number, index, &ends);
         }
-        if !self.solve_points(model, network, number, pivots) {
+        if !self.solve_points(model, number, pivots) {
             return false;
         }
         for &index in &network.lines {
@@ -354,7 +354,7 @@ impl Workspace {
         true
     }
 
-    /// Places of the free points that the ends of a line are tied to in the system of these.
+    /// Positions, in the system of the free points, of the points that hold the ends of a line; `None` for a held or released end.
     fn end_slots(&self, model: &Model, line: usize) -> [Option<usize>; 2] {
         let released = self.lines[line].released;
         let slot = |side: usize| {
@@ -383,14 +383,8 @@ impl Workspace {
     }
 
     /// Solves for the free points of a network whose lines were all added to their system; false if one of the `pivots` cannot be taken.
-    pub(crate) fn solve_points(
-        &mut self,
-        model: &Model,
-        network: &Network,
-        number: usize,
-        pivots: Pivots,
-    ) -> bool {
-        let system = &mut self.systems[number];
+    pub(crate) fn solve_points(&mut self, model: &Model, number: usize, pivots: Pivots) -> bool {
+        let (network, system) = (&model.networks[number], &mut self.systems[number]);
         for (slot, &index) in network.free_points.iter().enumerate() {
             system.add_block(slot, slot, &self.points[index].diagonal);
             system.add_right(slot, self.points[index].residual);

@@ -96,7 +96,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Adds the findings of a check of what is at a key or index, with their paths from there.
+    /// Runs the check of the value at a key or an index, its `place`, and puts that in front of the paths of the findings.
     pub(super) fn below(&mut self, place: impl FnOnce() -> String, check: impl FnOnce(&mut Findings)) {
         let (mistakes, notes) = (self.mistakes.len(), self.notes.len());
         check(self);

@@ -43,7 +43,7 @@ use crate::physics::friction::Friction;
 const FORCE_TOLERANCE: f64 = 1e-11;
 /// Accepted last correction, over the longest line [-], unless three residuals in a row are accepted.
 const STEP_TOLERANCE: f64 = 1e-12;
-/// Least relaxation [-].
+/// Least tension, and least stiffness of the anchoring springs times the length, over the sum of the external forces [-].
 const RELAXATION_MIN: f64 = 1e-12;
 /// Longest correction, over the longest line or, if that is more, the reach of the network [-].
 const STEP_MAX: f64 = 0.2;
@@ -403,7 +403,7 @@ impl<'a> Problem<'a> {
     /// Newton's method with predicted tensions; whether it converged.
     fn newton(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) -> bool {
         case.predicted = true;
-        let mut relaxation = self.relaxation_for(state, work, &case);
+        let mut relaxation = self.first_relaxation(state, work, &case);
         let mut step = f64::INFINITY;
         let (mut balanced, mut refused) = (0, 0);
         let solves_max = match (self.bends, case.cautious) {
@@ -453,12 +453,13 @@ impl<'a> Problem<'a> {
         false
     }
 
-    /// First relaxation of Newton's method: the force out of balance over the sum of the external forces, so that a shape close to equilibrium is
-    /// held by nothing else [-].
-    fn relaxation_for(&self, state: &State, work: &mut Workspace, case: &StaticCase) -> f64 {
+    /// Relaxation at the start of Newton's method: the force out of balance over the sum of the external forces, so that anchoring hardly
+    /// holds a shape that is close to equilibrium [-]. A power of ten, which rounding of the residual does not change.
+    fn first_relaxation(&self, state: &State, work: &mut Workspace, case: &StaticCase) -> f64 {
         work.assemble_static(self.model, self.network, state, case);
         let (residual, _) = work.greatest_residual(self.network);
-        (residual / self.force).clamp(RELAXATION_MIN, 1.0)
+        let share = (residual / self.force).clamp(RELAXATION_MIN, 1.0);
+        10.0_f64.powf(share.log10().ceil())
     }
 
     /// Returns true where the forces of a shape are in balance by themselves, without predicted tensions.

@@ -7,7 +7,7 @@
 //!
 //!   J (u − x) + c = 0 at every node between the ends and every free point,   δR = J (u − x) + c at the ends on the vessel,
 //!
-//! six solves for the free points. Every line is condensed on its ends, once if no clamp of it turns. The force of the mooring is F = −R and
+//! six solves for the free points. Every line is condensed on its ends: once, or for every motion where one of its clamps turns. The force of the mooring is F = −R and
 //! its moment M = Σ r × F + m, so that
 //!
 //!   K δ = −δF = Σ δR,   −δM = Σ r × δR + (ω × r) × R − δm,
@@ -378,7 +378,7 @@ impl Problem<'_> {
             work.add_condensed(self.model, self.number, line.index, &ends);
             moved.push((ends, [a, b]));
         }
-        if !work.solve_points(self.model, self.network, self.number, Pivots::Positive) {
+        if !work.solve_points(self.model, self.number, Pivots::Positive) {
             return None;
         }
         let lines = lines.iter().zip(moved);

@@ -6,8 +6,7 @@
 //! forces at the ends of lines over the greatest of the run.
 //!
 //! A relation may fail only in a scene that is not smooth (`is_smooth`): where displacements of its points by [`NUDGE`] change the run by [`NUDGED_MAX`] or more, as in
-//! lines that snap, or where a segment at rest is slack, so that its place is not determined. Such scenes are counted, and may be a fifth of all at most, or a quarter through some seconds,
-//! in which more lines snap. By design
+//! lines that snap, or where a segment at rest is slack, so that its place is not determined. Such scenes are counted, and may be a fifth of all at most. By design
 //! the axial-implicit leapfrog reproduces curved springs to 1e-3 of the tension, so that its scenes have linear ones; and a line that lies with both ends, or with none, has the
 //! friction of one that was laid from end A, so that such lines are reversed without. Lines on winches are left out: the correction of their
 //! end forces is (`dynamics/reaction.rs`).
@@ -41,22 +40,18 @@ struct Span {
     step_max: f64,
     /// Greatest length of one over the shortest internal step [-].
     internal: f64,
-    /// Greatest share of the scenes of a relation that may fail because they are not smooth [-].
-    rough_max: f64,
 }
 /// A few internal steps.
 const SHORT: Span = Span {
     steps: 2,
     step_max: 0.05,
     internal: 20.0,
-    rough_max: 0.2,
 };
 /// Some seconds, or as much as ten thousand internal steps make.
 const LONG: Span = Span {
     steps: 10,
     step_max: 0.3,
     internal: 1000.0,
-    rough_max: 0.25,
 };
 /// Integrators, in turns.
 const INTEGRATORS: [Integrator; 4] = [
@@ -113,7 +108,6 @@ impl Base {
             steps: count,
             step_max,
             internal,
-            rough_max: _,
         } = span;
         let steps = Simulation::new(&scene).map(|simulation| {
             let steps = simulation.choices().map(|choice| choice.step_max);
@@ -256,6 +250,8 @@ const NUDGES: usize = 12;
 const NUDGED_MAX: f64 = 5e-9;
 /// Least tension of a line at rest that is determined by forces, over its greatest [-].
 const TAUT: f64 = 1e-9;
+/// Greatest share of the scenes of a relation that may fail because they are not smooth [-].
+const ROUGH_MAX: f64 = 0.2;
 
 /// Returns true where a scene is smooth: small displacements of its points change its run in proportion. A line that
 /// snaps is not smooth, nor is one that may rest in many places, where rounding changes the run as much.
@@ -342,7 +338,7 @@ fn claim(span: Span, relations: &[(&str, Relation, f64)]) {
         let (all, rough) = (own().count(), own().filter(|one| one.rough).count());
         println!("{name}: {all} scenes, {rough} of them fail and are not smooth");
         assert!(all >= SCENES / 10, "{name}: {all} scenes");
-        let few = rough as f64 <= span.rough_max * all as f64;
+        let few = rough as f64 <= ROUGH_MAX * all as f64;
         assert!(few, "{name}: {rough} of {all} scenes are not smooth");
         for one in own().filter(|one| !one.holds && !one.rough) {
             let (number, Gap { most, first }) = (one.scene, &one.gap);

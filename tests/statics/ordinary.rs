@@ -246,7 +246,7 @@ fn three_hundred_random_lines_with_friction_find_their_equilibrium() {
     claim(0..300, Line::rough);
 }
 
-/// Minimised at once with stiff springs of sticking, the energy of these stalls.
+/// The minimisation stalls on these lines where nodes stick with their full stiffness from the start.
 #[test]
 fn lines_on_which_many_nodes_are_about_to_slide_find_their_equilibrium() {
     for number in [922, 7623, 10_294, 19_983, 39_547] {

@@ -14,9 +14,9 @@
 //! Newton's method may cycle between nodes that stick and nodes that slide: a change of one node's normal force
 //! changes the forces of its neighbours. In that case the normal forces that limit friction are kept constant for a
 //! number of steps. Friction then has the potential ∫ |f| d|r − a|, which is convex like that of springs, weight and
-//! seabed, and the sum of all is minimised with steps along which it falls, from soft springs of sticking to the stiff ones:
-//! at once with the stiff ones one of ten thousand ordinary lines stalls. The normal forces are then updated, and Newton's method ends
-//! the search.
+//! seabed, and the sum of all is minimised with steps along which it falls. The springs of nodes that stick are stiffened in
+//! steps: at their full stiffness from the start, the minimisation stalls on about one ordinary line in ten thousand. The normal
+//! forces are then updated, and Newton's method ends the search.
 //!
 //! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5; the problem with kept normal forces is that of
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
