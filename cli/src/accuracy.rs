@@ -14,7 +14,7 @@ use moorline_decks::Supplement;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::summary::Table;
-use crate::terminal::{print, progress, read_scene};
+use crate::terminal::{bar, print, read_scene};
 
 /// The public scenes, built in.
 const PUBLIC: [(&str, &str); 5] = [
@@ -53,7 +53,7 @@ pub(crate) fn accuracy(
     let mut printed = print(&format!("on {machine}\n\n"));
     let mut studies = Vec::new();
     for (name, scene) in &scenes {
-        let bar = progress(1);
+        let bar = bar(1);
         let done = study(name, scene, peers.as_ref(), &mut |done, total| {
             bar.set_length(total as u64);
             bar.set_position(done as u64);

@@ -50,7 +50,10 @@ pub(crate) enum Command {
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
-    /// Run in time with the scene's motion: CSV, ParaView files, figures, report
+    /// Run in time with the scene's motion: tables, ParaView files, figures, report
+    ///
+    /// Tables and shapes are written as the run goes. Ctrl-C ends the run after its present step, with the results so far and a saved state in DIR;
+    /// the state is saved every minute too.
     Run {
         /// Folder for the results; made where it is missing
         #[arg(short, long, value_name = "DIR")]
@@ -61,6 +64,12 @@ pub(crate) enum Command {
         /// Set velocities beside displacements
         #[arg(long, requires = "communication_step")]
         velocities: bool,
+        /// Continue the interrupted run in DIR from its saved state, to the same rows as without the interruption
+        #[arg(long)]
+        resume: bool,
+        /// Stop at T [s] and save the state, as if interrupted there
+        #[arg(long, value_name = "T", value_parser = positive_number)]
+        until: Option<f64>,
         #[command(flatten)]
         moved: Moved,
         #[command(flatten)]

@@ -2,13 +2,15 @@
 //! interface, moves the fairlead and reads forces, tensions and shapes back.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use moorline::discretisation;
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
+use moorline::output::files::RunFiles;
 use moorline::output::record::{Frame, Node, Record};
-use moorline::output::{collect, write_run};
+use moorline::output::times::Times;
+use moorline::output::{collect, write_report};
 use moorline::scene::{Scene, load_text};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
@@ -16,9 +18,9 @@ use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 use crate::failure::Failure;
 use crate::fmu::package;
 use crate::folder::Folder;
-use crate::run::{Times, columns, recorded, scene_input};
+use crate::run::{columns, input_of, recorded};
 use crate::summary::run_summary;
-use crate::terminal::{discretise, print, progress, simulate};
+use crate::terminal::{Progress, discretise, print, simulate};
 
 /// The built-in scene.
 const SCENE: &str = include_str!("../../scenes/demo.toml");
@@ -31,9 +33,8 @@ pub(crate) fn demo(folder: &Path) -> Result<(), Failure> {
     let target = folder.join("demo.fmu");
     package(&loaded, &target, FmiVersion::Two)?;
     let reference = simulate(&loaded)?;
-    let record = drive(&target, &loaded.scene, &reference)
-        .map_err(|error| Failure::Computation(format!("{}: {error}", target.display())))?;
-    write_run(&record, &loaded.scene, folder)?;
+    let record = drive(&target, &loaded.scene, &reference, folder)?;
+    write_report(&record, &loaded.scene, folder)?;
     print(&format!(
         "{}\nFMI 2.0 co-simulation through the C interface, steps of {} s, displacements only\n\n{}\n\
          written to {}: {}, results.csv, report.html, …\n",
@@ -45,37 +46,35 @@ pub(crate) fn demo(folder: &Path) -> Result<(), Failure> {
     ))
 }
 
-/// Runs the FMU as a host does. `reference` gives the motion of the scene and the closed-form shapes to compare with.
-fn drive(target: &Path, scene: &Scene, reference: &Simulation) -> Result<Record, HostError> {
+/// Runs the FMU as a host does, and writes its tables and shapes. `reference` gives the motion of the scene and the closed-form shapes to compare
+/// with.
+fn drive(target: &Path, scene: &Scene, reference: &Simulation, folder: &Path) -> Result<Record, Failure> {
+    let failed = |error: HostError| Failure::Computation(format!("{}: {error}", target.display()));
     let interface = Interface::new(scene, reference.model(), Layout::Scalars)
-        .map_err(|mistake| HostError::Description(mistake.to_string()))?;
-    let fmu = Fmu::open(target)?;
-    let mut host = Host::new(&fmu, &interface, reference)?;
-    let mut record = collect::record(scene, reference, Some(reference), columns(&host.recorded));
+        .map_err(|mistake| failed(HostError::Description(mistake.to_string())))?;
+    let fmu = Fmu::open(target).map_err(failed)?;
+    let mut host = Host::new(&fmu, &interface, reference).map_err(failed)?;
     let times = Times::new(scene.output.duration, scene.output.interval);
-    host.slave.enter_initialization(0.0, Some(times.end))?;
-    host.set_motion(0.0)?;
-    host.slave.exit_initialization()?;
-    host.record_statics(&mut record)?;
-    host.record(0.0, &mut record)?;
-    let bar = progress(times.count as u64);
-    let mut wall = Duration::ZERO;
-    for index in 0..times.count {
-        let (time, step) = (times.at(index), times.step(index));
-        let before = Instant::now();
-        host.set_motion(time)?;
-        host.slave.do_step(time, step)?;
-        wall += before.elapsed();
-        host.record(times.at(index + 1), &mut record)?;
-        bar.inc(1);
+    let columns = (columns(host.recorded.iter().copied()), times.count + 1);
+    let mut record = collect::record(scene, reference, Some(reference), columns);
+    host.initialize(times.end, &mut record).map_err(failed)?;
+    let mut files = RunFiles::create(folder, &record, &scene.output, &times, false)?;
+    let mut progress = Progress::new(times.count, 0, times.end);
+    for index in 0..=times.count {
+        if index > 0 {
+            let before = Instant::now();
+            let stepped = host.step(times.at(index - 1), times.step(index - 1));
+            record.course.counters.wall += before.elapsed();
+            record.course.counters.substeps += stepped.map_err(failed)?;
+            progress.step(times.at(index));
+        }
+        let (row, frame) = host.read(times.at(index)).map_err(failed)?;
+        files.add(&mut record, index, &row, |_| frame)?;
     }
-    bar.finish_and_clear();
-    host.slave.terminate()?;
-    let substeps = record.history("solver.substeps").unwrap_or_default();
-    // The first row stands before any step.
-    record.counters.substeps = substeps.iter().skip(1).map(|row| row[1] as u64).sum();
-    record.counters.wall = wall;
-    record.counters.simulated = times.end;
+    progress.finish();
+    files.flush()?;
+    host.slave.terminate().map_err(failed)?;
+    record.course.counters.simulated = times.end;
     Ok(record)
 }
 
@@ -125,6 +124,21 @@ impl<'a> Host<'a> {
         })
     }
 
+    /// Initializes the FMU, and gives a record its equilibrium.
+    fn initialize(&mut self, end: f64, record: &mut Record) -> Result<(), HostError> {
+        self.slave.enter_initialization(0.0, Some(end))?;
+        self.set_motion(0.0)?;
+        self.slave.exit_initialization()?;
+        self.record_statics(record)
+    }
+
+    /// Makes a step of a length from a time [s]; the number of internal steps.
+    fn step(&mut self, time: f64, step: f64) -> Result<u64, HostError> {
+        self.set_motion(time)?;
+        self.slave.do_step(time, step)?;
+        Ok(self.slave.integer("solver.substeps")?.unsigned_abs().into())
+    }
+
     /// Sets where the scene's motion has the coupled points and vessels at `time` [s].
     fn set_motion(&mut self, time: f64) -> Result<(), HostError> {
         for moving in self.reference.model().moving(time) {
@@ -161,11 +175,13 @@ impl<'a> Host<'a> {
         Ok(())
     }
 
-    /// Adds a row and a shape to the record.
-    fn record(&mut self, time: f64, record: &mut Record) -> Result<(), HostError> {
-        let mut row = Vec::with_capacity(self.recorded.len());
+    /// Reads a row and the shape of the lines.
+    fn read(&mut self, time: f64) -> Result<(Vec<f64>, Frame), HostError> {
+        let mut row = Vec::with_capacity(1 + self.recorded.len());
+        row.push(time);
+        let moving = self.reference.model().moving(time);
         for (variable, &reference) in self.recorded.iter().zip(&self.references) {
-            let value = match scene_input(variable, self.reference.model(), time) {
+            let value = match input_of(variable, self.reference.model(), &moving, time) {
                 Some(input) => input,
                 None if variable.kind == Kind::Int32 => f64::from(self.slave.integer(&variable.name)?),
                 None => {
@@ -176,7 +192,6 @@ impl<'a> Host<'a> {
             };
             row.push(value);
         }
-        record.add_row(time, row);
         let mut lines = Vec::with_capacity(self.nodes.len());
         for (line, references) in self.reference.model().lines.iter().zip(&self.nodes) {
             let mut nodes = Vec::with_capacity(references.len());
@@ -193,7 +208,6 @@ impl<'a> Host<'a> {
             }
             lines.push(nodes);
         }
-        record.frames.push(Frame { time, lines });
-        Ok(())
+        Ok((row, Frame { time, lines }))
     }
 }

@@ -10,6 +10,8 @@ use moorline::output::package::PackageError;
 use moorline::scene::{LoadError, LoadedScene, SceneError};
 use moorline::simulation;
 
+use crate::folder::INTERRUPTED;
+
 /// The input is wrong, or a path cannot be read or written.
 const INPUT: u8 = 2;
 /// The computation failed.
@@ -26,6 +28,8 @@ pub(crate) enum Failure {
     Argument(String),
     /// The computation failed, or its result could not be written.
     Computation(String),
+    /// The command was interrupted, and has kept its results.
+    Interrupted(String),
     /// Standard output did not take the text.
     Print(io::Error),
 }
@@ -80,6 +84,7 @@ impl Failure {
             Failure::Scene(error) => (INPUT, rendered(&error)),
             Failure::Argument(text) => (INPUT, format!("error: {text}\n")),
             Failure::Computation(text) => (COMPUTATION, format!("error: {text}\n")),
+            Failure::Interrupted(text) => (INTERRUPTED, format!("interrupted {text}\n")),
             Failure::Print(error) => (
                 COMPUTATION,
                 format!("error: cannot write to standard output: {error}\n"),

@@ -4,6 +4,7 @@
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use moorline::output::{open_folder, remove_partial};
@@ -11,7 +12,15 @@ use moorline::output::{open_folder, remove_partial};
 use crate::failure::Failure;
 
 /// Exit code of a program that Ctrl-C ends, by the convention of shells: 128 and the signal's number.
-const INTERRUPTED: i32 = 130;
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// Interrupts end the program.
+const ENDS: u8 = 0;
+/// The next interrupt is left to the command.
+const LISTENS: u8 = 1;
+/// An interrupt has come that the command ends after.
+const STOPS: u8 = 2;
+static INTERRUPTS: AtomicU8 = AtomicU8::new(ENDS);
 
 /// Place that the command writes to, while it does.
 static OPEN: Mutex<Option<Place>> = Mutex::new(None);
@@ -62,6 +71,29 @@ impl Drop for Folder {
     }
 }
 
+/// As long as this lives, the first interrupt is left to the command, which looks for it and ends by itself. The second one ends the program.
+#[derive(Debug)]
+pub(crate) struct Listener(());
+
+impl Listener {
+    /// Begins to listen.
+    pub(crate) fn new() -> Listener {
+        INTERRUPTS.store(LISTENS, Ordering::SeqCst);
+        Listener(())
+    }
+
+    /// Returns true once an interrupt has come.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        INTERRUPTS.load(Ordering::Relaxed) == STOPS
+    }
+}
+
+impl Drop for Listener {
+    fn drop(&mut self) {
+        INTERRUPTS.store(ENDS, Ordering::SeqCst);
+    }
+}
+
 /// Refuses to write results to the file that is read.
 pub(crate) fn check_apart(input: &Path, target: &Path) -> Result<(), Failure> {
     let [read, written] = [input, target].map(|path| fs::canonicalize(path).ok());
@@ -100,16 +132,20 @@ impl Place {
     }
 }
 
-/// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on the results kept.
+/// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on the results kept, or be seen by a [`Listener`].
 pub(crate) fn end_on_interrupt() {
     // Without a handler, they end the program as they end any other.
     let _ = ctrlc::set_handler(|| {
+        let left = INTERRUPTS.compare_exchange(LISTENS, STOPS, Ordering::SeqCst, Ordering::SeqCst);
+        if left.is_ok() {
+            return;
+        }
         let kept = match set_open(None).filter(Place::clear) {
             Some(place) => format!("{} holds what was written before", place.path.display()),
             None => "nothing was written".to_string(),
         };
         // A message that cannot be written changes nothing.
         let _ = writeln!(io::stderr(), "interrupted: {kept}");
-        std::process::exit(INTERRUPTED)
+        std::process::exit(INTERRUPTED.into())
     });
 }

@@ -48,10 +48,13 @@ fn main() -> ExitCode {
             output,
             communication_step,
             velocities,
+            resume,
+            until,
             moved,
         } => {
             let pace = communication_step.map_or(Pace::Scene, |step| Pace::Host { step, velocities });
-            run::run(&input, &moved.into(), &output, pace)
+            let course = run::Course { pace, resume, until };
+            run::run(&input, &moved.into(), &output, &course)
         }
         Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.supplement()),
         Command::Fmu { input, output, fmi } => fmu::fmu(&input, &output, &fmi),

@@ -7,20 +7,22 @@ use moorline::discretisation;
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
-use moorline::output::figures::ELEVATION;
-use moorline::output::record::{Column, Record};
-use moorline::output::{collect, write_run};
-use moorline::scene::{Drive, LoadedScene, MotionPath, Reconstruction, Scene};
+use moorline::output::files::RunFiles;
+use moorline::output::record::{Column, ELEVATION, Form, Record};
+use moorline::output::state::{self, RunState};
+use moorline::output::times::Times;
+use moorline::output::{collect, write_report};
+use moorline::scene::{Drive, LoadedScene, MotionPath, Reconstruction, Scene, SceneError};
 use moorline::simulation::{Simulation, Watch};
 
 use crate::arguments::Input;
 use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::folder::{Folder, Listener};
 use crate::summary::run_summary;
-use crate::terminal::{discretise, print, progress, read_scene, remark, remark_all, simulate};
+use crate::terminal::{Progress, discretise, print, read_scene, remark, remark_all, simulate};
 
-/// Number of shapes kept of a run whose scene does not request all of them [-].
-const FRAMES_MAX: usize = 240;
+/// Time between saved states of a run.
+const SAVED_EVERY: Duration = Duration::from_secs(60);
 
 /// Coupling of the motion to the mooring.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +49,20 @@ impl Pace {
     }
 }
 
+/// Course of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Course {
+    /// Coupling of the motion to the mooring.
+    pub pace: Pace,
+    /// True if an interrupted run is continued.
+    pub resume: bool,
+    /// Time at which the run stops, to be continued [s].
+    pub until: Option<f64>,
+}
+
 /// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
-pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<(), Failure> {
+pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) -> Result<(), Failure> {
+    let pace = course.pace;
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Pace::Host { .. } = pace
         && let Some(packaged) = discretisation::frozen(&loaded.scene)
@@ -62,37 +76,41 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Re
         motion = loaded.scene.drive(drive).map_err(Failure::Argument)?;
         remark_driven(&loaded, &before, drive);
     }
-    let _open = Folder::open(folder)?;
-    if pace == Pace::Scene {
-        discretise(&mut loaded, discretisation::select);
+    let given = Given::of(&loaded.scene, pace);
+    let saved = match course.resume {
+        true => Some(given.saved_in(folder)?),
+        false => None,
+    };
+    let done = saved
+        .as_ref()
+        .map_or(0.0, |saved| saved.course.counters.simulated);
+    if let Some(until) = course.until.filter(|until| *until <= done) {
+        let text = format!("--until {until}: the run has come to t = {done} s already");
+        return Err(Failure::Argument(text));
     }
-    let mut simulation = simulate(&loaded)?;
-    let expense = discretisation::expense(&loaded.scene, &simulation, pace.interval(&loaded.scene));
-    remark_all(&loaded, expense.into_iter().collect());
-    let still = simulation.in_equilibrium().ok();
-    let start = match pace {
-        Pace::Scene => simulation.follow_scene(),
-        Pace::Host { velocities, .. } => {
-            set_motion(&mut simulation, 0.0, velocities);
-            simulation.restart(0.0)
+    let _open = Folder::open(folder)?;
+    match &saved {
+        Some(saved) => loaded.scene = given.discretised(saved)?,
+        None if pace == Pace::Scene => discretise(&mut loaded, discretisation::select),
+        None => {}
+    }
+    let run = Run::start(&loaded, folder, course, given, saved)?;
+    let (record, end) = run.finish()?;
+    write_report(&record, &loaded.scene, folder)?;
+    let now = record.course.counters.simulated;
+    let whole = loaded.scene.output.duration;
+    let continued = match end {
+        End::Complete => String::new(),
+        End::Until => format!("stopped at t = {now} s of {whole} s: --resume continues the run\n"),
+        End::Interrupted => {
+            return Err(Failure::Interrupted(format!(
+                "at t = {now} s of {whole} s: {} holds the results up to there, and --resume continues the run",
+                folder.display()
+            )));
         }
     };
-    start.map_err(|error| Failure::of_simulation(error, &loaded))?;
-    let interface = Interface::new(&loaded.scene, simulation.model(), Layout::Scalars)
-        .map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
-    let channels = Channels::new(&loaded.scene, simulation.model())
-        .map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
-    let recorder = Recorder {
-        variables: recorded(&interface).collect(),
-        channels,
-    };
-    let columns = recorder.columns(simulation.model());
-    let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
-    let mut watch = Watch::new(&loaded.scene, &simulation);
-    let record = step_through(&loaded, &mut simulation, &recorder, pace, record, &mut watch)?;
-    write_run(&record, &loaded.scene, folder)?;
     print(&format!(
-        "{}{}\nwritten to {}\n",
+        "{}{}\n{continued}written to {}\n",
         motion.map_or(String::new(), |words| words + "\n"),
         run_summary(&record),
         folder.display()
@@ -118,59 +136,249 @@ fn remark_driven(loaded: &LoadedScene, before: &Scene, drive: &Drive) {
     }
 }
 
-/// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record; `watch` sees every row.
-fn step_through(
-    loaded: &LoadedScene,
-    simulation: &mut Simulation,
-    recorder: &Recorder<'_>,
-    pace: Pace,
-    mut record: Record,
-    watch: &mut Watch,
-) -> Result<Record, Failure> {
-    let scene = &loaded.scene;
-    let times = Times::new(scene.output.duration, pace.interval(scene));
-    let ahead = usize::from(scene.solver.input_reconstruction == Reconstruction::Interpolate);
-    let stride = times.frame_stride(scene.output.profile);
-    record.add_row(0.0, recorder.row(simulation, 0.0));
-    record.frames.push(collect::frame(simulation, 0.0));
-    record.flight.extend(collect::flight(simulation, 0.0));
-    let bar = progress(times.count as u64);
-    remark_all(loaded, watch.look(simulation));
-    let mut wall = Duration::ZERO;
-    for index in 0..times.count {
-        if let Pace::Host { velocities, .. } = pace {
-            let told = times.at(index + ahead);
-            set_motion(simulation, told, velocities);
+/// Everything that an interrupted run must have in common with the one that continues it.
+struct Given {
+    scene: String,
+    coupling: String,
+}
+
+impl Given {
+    /// The scene as given, with the motion of the command line.
+    fn of(scene: &Scene, pace: Pace) -> Given {
+        Given {
+            scene: scene.to_toml(),
+            coupling: match pace {
+                Pace::Scene => "the motion of the scene".to_string(),
+                Pace::Host { step, velocities } => {
+                    let velocities = if velocities { " --velocities" } else { "" };
+                    format!("--communication-step {step}{velocities}")
+                }
+            },
+        }
+    }
+
+    /// Reads the state of the interrupted run in a folder; refuses that of another one.
+    fn saved_in(&self, folder: &Path) -> Result<RunState, Failure> {
+        let saved = RunState::read(folder)?;
+        let refuse = |problem: String| {
+            let file = folder.join(state::FILE);
+            let text = format!("cannot continue from {}: {problem}", file.display());
+            Err(Failure::Argument(text))
+        };
+        if saved.coupling != self.coupling {
+            return refuse(format!(
+                "the run was coupled to {}, not to {}",
+                saved.coupling, self.coupling
+            ));
+        }
+        if saved.scene != self.scene {
+            let (mut then, mut now) = (saved.scene.lines(), self.scene.lines());
+            let differ = std::iter::from_fn(|| Some((then.next(), now.next())))
+                .take_while(|pair| *pair != (None, None))
+                .find(|(then, now)| then != now);
+            let (then, now) = differ.unwrap_or_default();
+            let shown = |line: Option<&str>| line.map_or("nothing".to_string(), |line| format!("`{line}`"));
+            return refuse(format!(
+                "it is of another scene or motion, with {} where this one has {}; give the same ones, or run the scene from the start",
+                shown(then),
+                shown(now)
+            ));
+        }
+        Ok(saved)
+    }
+
+    /// The scene that the interrupted run simulates.
+    fn discretised(&self, saved: &RunState) -> Result<Scene, Failure> {
+        let read = Scene::from_toml(&saved.discretised);
+        read.map_err(|mistake| Failure::Computation(format!("the saved scene cannot be read: {mistake}")))
+    }
+}
+
+/// End of the steps.
+enum End {
+    /// The duration is over.
+    Complete,
+    /// The time to stop has come.
+    Until,
+    /// A signal has come.
+    Interrupted,
+}
+
+/// A run between two rows.
+struct Run<'r> {
+    loaded: &'r LoadedScene,
+    folder: &'r Path,
+    course: &'r Course,
+    given: Given,
+    times: Times,
+    simulation: Simulation,
+    recorder: Recorder,
+    record: Record,
+    files: RunFiles,
+    watch: Watch,
+}
+
+impl<'r> Run<'r> {
+    /// Builds the simulation and the files, with the first row; or restores them behind their last row.
+    fn start(
+        loaded: &'r LoadedScene,
+        folder: &'r Path,
+        course: &'r Course,
+        given: Given,
+        saved: Option<RunState>,
+    ) -> Result<Run<'r>, Failure> {
+        let (scene, pace) = (&loaded.scene, course.pace);
+        let mut simulation = simulate(loaded)?;
+        let expense = discretisation::expense(scene, &simulation, pace.interval(scene));
+        remark_all(loaded, expense.into_iter().collect());
+        let still = simulation.in_equilibrium().ok();
+        let start = match pace {
+            Pace::Scene => simulation.follow_scene(),
+            Pace::Host { velocities, .. } => {
+                set_motion(&mut simulation, 0.0, velocities);
+                simulation.restart(0.0)
+            }
+        };
+        start.map_err(|error| Failure::of_simulation(error, loaded))?;
+        let recorder =
+            Recorder::new(scene, simulation.model()).map_err(|mistake| Failure::of_scene(mistake, loaded))?;
+        let times = Times::new(scene.output.duration, pace.interval(scene));
+        let columns = (recorder.columns(simulation.model()), times.count + 1);
+        let mut record = collect::record(scene, &simulation, still.as_ref(), columns);
+        let mut watch = Watch::new(scene, &simulation);
+        remark_all(loaded, watch.look(&simulation));
+        let bends = (0..scene.lines.len()).any(|line| simulation.bending(line).is_some());
+        let files = match saved {
+            None => RunFiles::create(folder, &record, &scene.output, &times, bends)?,
+            Some(saved) => {
+                simulation.restore(saved.snapshot);
+                watch.resume(&simulation);
+                record.course = saved.course;
+                RunFiles::reopen(folder, &record, &scene.output, &times, (&saved.marks, bends))?
+            }
+        };
+        let mut run = Run {
+            loaded,
+            folder,
+            course,
+            given,
+            times,
+            simulation,
+            recorder,
+            record,
+            files,
+            watch,
+        };
+        if run.record.course.rows == 0 {
+            run.add_row(0)?;
+        }
+        Ok(run)
+    }
+
+    /// Steps until the run ends in one way or another, with a row at every step.
+    fn finish(mut self) -> Result<(Record, End), Failure> {
+        let listener = Listener::new();
+        let (count, first) = (self.times.count, self.record.course.rows);
+        let mut progress = Progress::new(count, first - 1, self.times.end);
+        let mut saved = Instant::now();
+        let mut end = End::Complete;
+        for index in first..=count {
+            let stepped = self.step(index, &progress);
+            if let Err(failure) = stepped {
+                progress.finish();
+                self.files.flush()?;
+                return Err(failure);
+            }
+            progress.step(self.times.at(index));
+            if index == count {
+                break;
+            }
+            if listener.is_interrupted() {
+                end = End::Interrupted;
+                break;
+            }
+            if self
+                .course
+                .until
+                .is_some_and(|until| self.times.at(index) >= until)
+            {
+                end = End::Until;
+                break;
+            }
+            if saved.elapsed() >= SAVED_EVERY {
+                self.save()?;
+                saved = Instant::now();
+            }
+        }
+        progress.finish();
+        match end {
+            End::Complete => {
+                self.files.flush()?;
+                RunState::remove(self.folder);
+            }
+            End::Until | End::Interrupted => self.save()?,
+        }
+        Ok((self.record, end))
+    }
+
+    /// Makes the step that ends with row `index`, and adds the row.
+    fn step(&mut self, index: usize, progress: &Progress) -> Result<(), Failure> {
+        let Run {
+            times, simulation, ..
+        } = self;
+        if let Pace::Host { velocities, .. } = self.course.pace {
+            let solver = &self.loaded.scene.solver;
+            let ahead = usize::from(solver.input_reconstruction == Reconstruction::Interpolate);
+            set_motion(simulation, times.at(index - 1 + ahead), velocities);
         }
         let before = Instant::now();
-        simulation.advance(times.step(index))?;
-        wall += before.elapsed();
-        record.counters.substeps += simulation.substeps() as u64;
-        let now = times.at(index + 1);
-        let row = recorder.row(simulation, now);
-        check_finite(now, record.columns(), &row)?;
-        record.add_row(now, row);
-        let notes = watch.look(simulation);
+        simulation.advance(times.step(index - 1))?;
+        let counters = &mut self.record.course.counters;
+        counters.wall += before.elapsed();
+        counters.substeps += simulation.substeps() as u64;
+        self.add_row(index)?;
+        let notes = self.watch.look(&self.simulation);
         if !notes.is_empty() {
-            bar.suspend(|| remark_all(loaded, notes));
+            progress.suspend(|| remark_all(self.loaded, notes));
         }
-        record.flight.extend(collect::flight(simulation, now));
-        if (index + 1) % stride == 0 || index + 1 == times.count {
-            record.frames.push(collect::frame(simulation, now));
-        }
-        bar.inc(1);
+        Ok(())
     }
-    bar.finish_and_clear();
-    record.counters.wall = wall;
-    record.counters.simulated = times.end;
-    Ok(record)
+
+    /// Adds the row of the present state.
+    fn add_row(&mut self, index: usize) -> Result<(), Failure> {
+        let (simulation, record) = (&self.simulation, &mut self.record);
+        let now = self.times.at(index);
+        let row = self.recorder.row(simulation, now);
+        if index > 0 {
+            check_finite(record.columns(), row)?;
+        }
+        let shape = |time| collect::frame(simulation, time);
+        self.files.add(record, index, row, shape)?;
+        if let Some(flight) = collect::flight(simulation, now) {
+            record.course.add_flight(&flight);
+        }
+        record.course.counters.simulated = now;
+        Ok(())
+    }
+
+    /// Saves the state, and writes all rows that it stands behind.
+    fn save(&mut self) -> Result<(), Failure> {
+        let state = RunState {
+            scene: self.given.scene.clone(),
+            coupling: self.given.coupling.clone(),
+            discretised: self.loaded.scene.to_toml(),
+            snapshot: self.simulation.snapshot().clone(),
+            marks: self.files.mark()?,
+            course: self.record.course.clone(),
+        };
+        Ok(state.write(self.folder)?)
+    }
 }
 
 /// Refuses a row with a value that is not finite.
-fn check_finite(time: f64, columns: &[Column], row: &[f64]) -> Result<(), Failure> {
-    // The first column is the time.
-    let values = columns.iter().skip(1).zip(row);
-    let lost = values.into_iter().find(|(_, value)| !value.is_finite());
+fn check_finite(columns: &[Column], row: &[f64]) -> Result<(), Failure> {
+    let time = row[0];
+    let lost = columns.iter().zip(row).find(|(_, value)| !value.is_finite());
     lost.map_or(Ok(()), |(column, value)| {
         Err(Failure::Computation(format!(
             "at t = {time} s, {}: {value} {} is no result; try a smaller solver.time_step_max, and look at the motion",
@@ -179,84 +387,49 @@ fn check_finite(time: f64, columns: &[Column], row: &[f64]) -> Result<(), Failur
     })
 }
 
-/// Columns of the results: variables of the interface, then channels.
-struct Recorder<'i> {
-    variables: Vec<&'i Variable>,
+/// Columns of the results: time, variables of the interface, then channels.
+struct Recorder {
+    variables: Vec<Variable>,
     channels: Channels,
+    row: Vec<f64>,
 }
 
-impl Recorder<'_> {
+impl Recorder {
+    fn new(scene: &Scene, model: &Model) -> Result<Recorder, SceneError> {
+        let interface = Interface::new(scene, model, Layout::Scalars)?;
+        Ok(Recorder {
+            variables: recorded(&interface).cloned().collect(),
+            channels: Channels::new(scene, model)?,
+            row: Vec::new(),
+        })
+    }
+
+    /// Columns behind the time.
     fn columns(&self, model: &Model) -> Vec<Column> {
         let mut all = columns(&self.variables);
-        all.extend(model.waves.as_ref().map(|_| Column {
-            name: ELEVATION.to_string(),
-            unit: "m".to_string(),
-            description: "elevation of the surface at x = y = 0".to_string(),
-            whole: false,
-        }));
+        let elevation = "elevation of the surface at x = y = 0";
+        let waves = model.waves.as_ref();
+        all.extend(waves.map(|_| Column::new(ELEVATION, "m", elevation, Form::Real)));
         all.extend(self.channels.columns());
         all
     }
 
-    /// Values at `time` [s], each in its column's unit.
-    fn row(&self, simulation: &Simulation, time: f64) -> Vec<f64> {
-        let variables = self.variables.iter();
-        let mut row: Vec<f64> = variables.map(|v| value(v, simulation, time)).collect();
-        let waves = simulation.model().waves.as_ref();
+    /// The time [s] and the values then, each in its column's unit.
+    fn row(&mut self, simulation: &Simulation, time: f64) -> &[f64] {
+        let (row, model) = (&mut self.row, simulation.model());
+        row.clear();
+        row.push(time);
+        let moving = model.moving(time);
+        for variable in &self.variables {
+            row.push(match input_of(variable, model, &moving, time) {
+                Some(input) => input,
+                None => output_of(variable, simulation),
+            });
+        }
+        let waves = model.waves.as_ref();
         row.extend(waves.map(|waves| waves.elevation(0.0, 0.0, time)));
         row.extend(self.channels.values(simulation));
         row
-    }
-}
-
-/// Output times: multiples of an interval, and the end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Times {
-    interval: f64,
-    /// End [s].
-    pub end: f64,
-    /// Number of steps [-].
-    pub count: usize,
-}
-
-impl Times {
-    /// Times from 0 to `end` [s] every `interval` [s]; the last step is shorter where the interval does not divide the end.
-    pub(crate) fn new(end: f64, interval: f64) -> Times {
-        // A remainder of a millionth of a step is rounding of the quotient, not a step.
-        let count = (end / interval - 1e-6).ceil().max(0.0) as usize;
-        Times { interval, end, count }
-    }
-
-    /// Time at the beginning of a step, or the end [s].
-    pub(crate) fn at(&self, index: usize) -> f64 {
-        // Six times 0.05 is 0.30000000000000004, six twentieths are 0.3.
-        let a_second = (1.0 / self.interval).round();
-        if index == self.count {
-            self.end
-        } else if (a_second * self.interval - 1.0).abs() < 1e-12 {
-            index as f64 / a_second
-        } else {
-            index as f64 * self.interval
-        }
-    }
-
-    /// Length of a step [s]: the interval to the last bit, save for a shorter last one.
-    pub(crate) fn step(&self, index: usize) -> f64 {
-        let rest = self.end - index as f64 * self.interval;
-        if index + 1 == self.count && rest < self.interval * (1.0 - 1e-6) {
-            rest
-        } else {
-            self.interval
-        }
-    }
-
-    /// Every how many steps a shape is kept [-].
-    pub(crate) fn frame_stride(&self, all: bool) -> usize {
-        if all {
-            1
-        } else {
-            self.count.div_ceil(FRAMES_MAX).max(1)
-        }
     }
 }
 
@@ -269,32 +442,33 @@ pub(crate) fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable>
 }
 
 /// Columns of these variables.
-pub(crate) fn columns(variables: &[&Variable]) -> Vec<Column> {
-    variables
-        .iter()
-        .map(|variable| Column {
-            name: variable.name.clone(),
-            unit: variable.unit.name.to_string(),
-            description: variable.description.clone(),
-            whole: variable.kind != Kind::Float64,
-        })
-        .collect()
+pub(crate) fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Column> {
+    let form = |variable: &Variable| match variable.kind {
+        Kind::Float64 => Form::Real,
+        Kind::Int32 | Kind::Boolean => Form::Whole,
+    };
+    let column = |variable: &Variable| {
+        Column::new(
+            &variable.name,
+            variable.unit.name,
+            variable.description.clone(),
+            form(variable),
+        )
+    };
+    variables.into_iter().map(column).collect()
 }
 
-/// A variable's value now, in its unit; inputs as the scene moves the points at `time` [s].
-fn value(variable: &Variable, simulation: &Simulation, time: f64) -> f64 {
-    scene_input(variable, simulation.model(), time).unwrap_or_else(|| {
-        let mut value = [f64::NAN];
-        // An output that cannot be computed is no number; the table marks it so.
-        let _ = Interface::read(variable, simulation, &mut value);
-        value[0]
-    })
+/// An output now, in its unit.
+fn output_of(variable: &Variable, simulation: &Simulation) -> f64 {
+    let mut value = [f64::NAN];
+    // An output that cannot be computed is no number; the table marks it so.
+    let _ = Interface::read(variable, simulation, &mut value);
+    value[0]
 }
 
-/// An input by the scene's motion at `time` [s], in its unit; `None` of an output.
-pub(crate) fn scene_input(variable: &Variable, model: &Model, time: f64) -> Option<f64> {
+/// An input by the scene's motion at `time` [s], where it has `moving` bodies, in its unit; `None` of an output.
+pub(crate) fn input_of(variable: &Variable, model: &Model, moving: &[Moving], time: f64) -> Option<f64> {
     let of = |body: Body, part: fn(&Moving) -> [f64; 6], axis: usize| {
-        let moving = model.moving(time);
         let found = moving.iter().find(|moving| moving.body == body);
         Some(found.map_or(0.0, |moving| part(moving)[axis]))
     };
@@ -314,33 +488,5 @@ fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
     for moving in simulation.model().moving(time) {
         let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
         simulation.set_body(moving.body, moving.pose, velocity);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_are_the_interval_to_the_last_bit_and_end_at_the_end() {
-        let times = Times::new(60.0, 0.05);
-        assert_eq!(times.count, 1200);
-        assert!((0..1200).all(|i| times.step(i) == 0.05));
-        assert_eq!(times.at(6), 0.3);
-        assert_eq!(times.at(1200), 60.0);
-    }
-
-    #[test]
-    fn a_last_step_is_shorter_where_the_interval_does_not_divide_the_duration() {
-        let times = Times::new(1.0, 0.3);
-        assert_eq!(times.count, 4);
-        assert!((times.step(3) - 0.1).abs() < 1e-12);
-        assert_eq!(times.at(4), 1.0);
-    }
-
-    #[test]
-    fn an_interval_beyond_the_duration_is_one_step() {
-        let times = Times::new(1.0, 5.0);
-        assert_eq!((times.count, times.step(0)), (1, 1.0));
     }
 }

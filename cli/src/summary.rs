@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use moorline::output::record::{LineRecord, Range, Record, StaticLine};
+use moorline::output::record::{LineRecord, Record, StaticLine};
 use moorline::output::report::{difference, rounded};
 
 /// Digits of a number in a table [-].
@@ -107,13 +107,12 @@ pub(crate) fn run_summary(record: &Record) -> String {
     let mut table = Table::new(&["in time", "least", "mean", "greatest"]);
     for LineRecord { name, .. } in &record.lines {
         for (stem, label) in [("tension_b", "tension at end B [N]"), ("sag", "sag [m]")] {
-            let history = record.history(&format!("{name}.{stem}")).unwrap_or_default();
-            if let Some(range) = Range::of(&history) {
+            if let Some(range) = record.range(&format!("{name}.{stem}")) {
                 table.row(&format!("{name} {label}"), &[range.min, range.mean, range.max]);
             }
         }
     }
-    let counters = &record.counters;
+    let counters = &record.course.counters;
     let cost = counters.real_time_factor().map_or(String::new(), |factor| {
         format!(
             "{} s simulated in {} s, {} internal steps: {} times real time\n",

@@ -1,7 +1,8 @@
 //! Input and output of all commands: scenes, remarks, results, progress.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use moorline::discretisation::{self, Discretisation};
@@ -77,9 +78,134 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
         .map_err(Failure::Print)
 }
 
-/// A bar on a terminal, nothing in a pipe.
-pub(crate) fn progress(steps: u64) -> ProgressBar {
+/// A bar of the progress of a command, shown on a terminal.
+pub(crate) fn bar(steps: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left")
         .expect("the template is a constant that indicatif accepts");
-    ProgressBar::new(steps).with_style(style)
+    ProgressBar::new(steps as u64).with_style(style)
+}
+
+/// Time between lines on the progress of a run that no terminal shows.
+const LINES_EVERY: Duration = Duration::from_secs(60);
+
+/// Progress of a run on standard error: a bar on a terminal, a line a minute elsewhere, both with the time that remains.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    lines: Option<Lines>,
+}
+
+impl Progress {
+    /// Progress of a run that ends at a time [s], after some of its steps are done.
+    pub(crate) fn new(steps: usize, done: usize, end: f64) -> Progress {
+        let bar = bar(steps).with_position(done as u64);
+        bar.reset_eta();
+        let lines = Lines::new([steps, done], end, Instant::now());
+        Progress {
+            bar,
+            lines: (!io::stderr().is_terminal()).then_some(lines),
+        }
+    }
+
+    /// One more step is done, up to a time [s].
+    pub(crate) fn step(&mut self, time: f64) {
+        match &mut self.lines {
+            None => self.bar.inc(1),
+            Some(lines) => {
+                if let Some(line) = lines.step(time, Instant::now()) {
+                    // a line that cannot be written does not end the run
+                    let _ = writeln!(io::stderr(), "{line}");
+                }
+            }
+        }
+    }
+
+    /// Writes something else to standard error.
+    pub(crate) fn suspend(&self, write: impl FnOnce()) {
+        self.bar.suspend(write);
+    }
+
+    /// Removes the bar.
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Progress in lines.
+#[derive(Debug)]
+struct Lines {
+    steps: usize,
+    /// Steps done before, and now.
+    done: [usize; 2],
+    /// End of the run [s].
+    end: f64,
+    start: Instant,
+    last: Instant,
+}
+
+impl Lines {
+    fn new([steps, done]: [usize; 2], end: f64, now: Instant) -> Lines {
+        Lines {
+            steps,
+            done: [done; 2],
+            end,
+            start: now,
+            last: now,
+        }
+    }
+
+    /// One more step is done, up to a time [s]; a line once a minute.
+    fn step(&mut self, time: f64, now: Instant) -> Option<String> {
+        self.done[1] += 1;
+        if now - self.last < LINES_EVERY {
+            return None;
+        }
+        self.last = now;
+        let [before, done] = self.done;
+        let share = (self.steps - done) as f64 / (done - before) as f64;
+        let left = (now - self.start).mul_f64(share).as_secs();
+        let left = match left {
+            0..120 => format!("{left} s"),
+            120..7200 => format!("{} min", (left + 30) / 60),
+            _ => format!("{:.1} h", left as f64 / 3600.0),
+        };
+        let percent = 100 * done / self.steps;
+        Some(format!(
+            "t = {time} s of {} s, {percent} %, {left} left",
+            self.end
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_progress_of_a_run_is_a_line_a_minute_with_the_time_that_remains() {
+        let start = Instant::now();
+        let mut lines = Lines::new([1000, 100], 100.0, start);
+        let mut said = Vec::new();
+        for step in 1..=900 {
+            let now = start + Duration::from_millis(500) * step;
+            said.extend(lines.step(f64::from(100 + step) * 0.1, now));
+        }
+        let expected = [
+            "t = 22 s of 100 s, 22 %, 7 min left",
+            "t = 34 s of 100 s, 34 %, 6 min left",
+        ];
+        assert_eq!(said[..2], expected);
+        assert_eq!(said[6..], ["t = 94 s of 100 s, 94 %, 30 s left"]);
+    }
+
+    #[test]
+    fn a_run_of_less_than_a_minute_is_silent() {
+        let start = Instant::now();
+        let mut lines = Lines::new([59, 0], 59.0, start);
+        assert!((1..=59_u32).all(|step| {
+            lines
+                .step(f64::from(step), start + Duration::from_secs(1) * step)
+                .is_none()
+        }));
+    }
 }

@@ -5,7 +5,7 @@
 //!
 //! Source: MoorDyn-C, `Line.hpp`, `getNodeTen`.
 
-use super::record::Column;
+use super::record::{Column, Form};
 use crate::model::Model;
 use crate::scene::channel::{Channel, LineEnd, NodePlace, Quantity, check_node};
 use crate::scene::{Scene, SceneError};
@@ -57,9 +57,9 @@ impl Channels {
     }
 
     /// The channels' values now, each in its column's unit.
-    pub fn values(&self, simulation: &Simulation) -> Vec<f64> {
+    pub fn values(&self, simulation: &Simulation) -> impl Iterator<Item = f64> {
         let sources = self.list.iter();
-        sources.map(|(_, source)| value(*source, simulation)).collect()
+        sources.map(|(_, source)| value(*source, simulation))
     }
 }
 
@@ -122,12 +122,7 @@ fn column(name: &str, source: Source, model: &Model) -> Column {
             Source::Point { .. } => ("N", "size of the force of the lines".to_string()),
         },
     };
-    Column {
-        name: name.to_string(),
-        unit: unit.to_string(),
-        description: format!("{what}, {place}"),
-        whole: false,
-    }
+    Column::new(name, unit, format!("{what}, {place}"), Form::Real)
 }
 
 fn value(source: Source, simulation: &Simulation) -> f64 {
@@ -196,7 +191,7 @@ mod tests {
             simulation.tension_b(0),
             0.0,
         ];
-        assert_eq!(channels.values(&simulation), expected);
+        assert!(channels.values(&simulation).eq(expected));
         let units: Vec<String> = channels.columns().map(|column| column.unit).collect();
         assert_eq!(units, ["N", "N", "m", "m", "N", "N", "N", "m/s"]);
         let first = channels.columns().next().unwrap();
@@ -214,7 +209,7 @@ mod tests {
         scene.points[1].position = [0.0, 0.0, 21.0];
         let simulation = Simulation::new(&scene).unwrap();
         let channels = Channels::new(&scene, simulation.model()).unwrap();
-        let values = channels.values(&simulation);
+        let values: Vec<f64> = channels.values(&simulation).collect();
         let (above, below) = (simulation.tension_b(0), simulation.tension_a(0));
         let segment = 0.2 * 2.0 * scene.gravity; // weight [N]
         let close = |value: f64, expected: f64| {

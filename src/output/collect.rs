@@ -11,16 +11,16 @@ use crate::simulation::{NodeBending, Simulation};
 /// Points of a catenary's drawn shape [-].
 const CATENARY_POINTS: usize = 201;
 
-/// The lines, points and surroundings of a simulation, without rows or frames. `still` is the same in static equilibrium, where there is
+/// The lines, points and surroundings of a simulation, with columns for a planned number of rows, and none yet. `still` is the same in static equilibrium, where there is
 /// one: see [`Simulation::in_equilibrium`].
 pub fn record(
     scene: &Scene,
     simulation: &Simulation,
     still: Option<&Simulation>,
-    columns: Vec<Column>,
+    (columns, planned): (Vec<Column>, usize),
 ) -> Record {
     let model = simulation.model();
-    let mut record = Record::new(&scene.title, columns);
+    let mut record = Record::new(&scene.title, columns, planned);
     record.lines = (0..model.lines.len())
         .map(|line| line_record(simulation, still, line))
         .collect();

@@ -2,80 +2,145 @@
 //!
 //! `results.csv` has one plain header row (`time,fairlead.x,…`) and one row for every output time, as `pandas.read_csv` and
 //! spreadsheets expect; `results.units.csv` has a row `name,unit,description` for every column. `profile.csv` holds
-//! the shape of the lines in long form, a row for every time, line and node; where any line has bending stiffness there are columns
-//! for curvature and moment, empty for the others. Numbers have the fewest digits that read back to
-//! the same bits.
+//! the shape of the lines in long form, a row for every time, line and node. Numbers have the fewest digits that read back to
+//! the same bits, or those that the scene asks for.
 
 use std::io::{self, Write};
+use std::time::{Duration, Instant};
 
-use super::record::{Column, Record};
+use super::OutputError;
+use super::growing::Growing;
+use super::record::{Column, Form};
 
-/// Header of `profile.csv`.
-const PROFILE_HEADER: [&str; 8] = ["time", "line", "node", "s", "x", "y", "z", "tension"];
+/// Text that is kept before it is written [bytes].
+const BUFFER: usize = 1 << 16;
+/// Time after which rows are written in any case.
+const DELAY: Duration = Duration::from_secs(1);
 
-/// Writes the results: a header row of names, then a row for every output time, each value in its column's unit.
-///
-/// # Errors
-/// Writing to `out` fails.
-pub fn write_results(record: &Record, out: impl Write) -> io::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    table.write_record(record.columns().iter().map(|column| &column.name))?;
-    let written = |(column, &value): (&Column, &f64)| match column.whole && value.is_finite() {
-        true => format!("{value:.0}"),
-        false => shortest(value),
-    };
-    for row in record.rows() {
-        table.write_record(record.columns().iter().zip(row).map(written))?;
-    }
-    table.flush()
+/// A table that is written row by row. Only whole rows are written; those that wait were added within a second.
+#[derive(Debug)]
+pub(super) struct CsvTable {
+    file: Growing,
+    text: RowText,
+    buffer: Vec<u8>,
+    written: Instant,
 }
 
-/// Writes name, unit and description of every column of the results.
+impl CsvTable {
+    /// Begins a table with its header row.
+    pub(super) fn create(
+        mut file: Growing,
+        columns: &[Column],
+        digits: Option<usize>,
+    ) -> Result<CsvTable, OutputError> {
+        file.append(&header(columns), Vec::new())?;
+        CsvTable::reopen(file, columns, digits)
+    }
+
+    /// Continues a table behind its last row.
+    pub(super) fn reopen(
+        file: Growing,
+        columns: &[Column],
+        digits: Option<usize>,
+    ) -> Result<CsvTable, OutputError> {
+        Ok(CsvTable {
+            file,
+            text: RowText::new(columns, digits),
+            buffer: Vec::with_capacity(BUFFER + BUFFER / 8),
+            written: Instant::now(),
+        })
+    }
+
+    /// Adds a row: a value for every column.
+    pub(super) fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
+        self.text.push(values, &mut self.buffer);
+        match self.buffer.len() >= BUFFER || self.written.elapsed() >= DELAY {
+            true => self.flush(),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes the rows that are kept.
+    pub(super) fn flush(&mut self) -> Result<(), OutputError> {
+        self.written = Instant::now();
+        self.file.append(&self.buffer, Vec::new())?;
+        self.buffer.clear();
+        Ok(())
+    }
+
+    /// The file behind the rows written so far.
+    pub(super) fn file(&mut self) -> &mut Growing {
+        &mut self.file
+    }
+}
+
+/// Row of the names of columns.
+fn header(columns: &[Column]) -> Vec<u8> {
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    quoted(&names)
+}
+
+/// A row of texts, quoted where they need it, with its line end.
+fn quoted(texts: &[&str]) -> Vec<u8> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let row = table.write_record(texts).and_then(|()| Ok(table.flush()?));
+    row.expect("a vector takes any row");
+    table.into_inner().expect("a vector takes any row")
+}
+
+/// Text of rows.
+#[derive(Debug)]
+struct RowText {
+    forms: Vec<Form>,
+    digits: Option<usize>,
+    scratch: String,
+}
+
+impl RowText {
+    fn new(columns: &[Column], digits: Option<usize>) -> RowText {
+        let quoted_name = |name: &String| {
+            let row = quoted(&[name]);
+            String::from_utf8_lossy(&row[..row.len() - 1]).into_owned()
+        };
+        let form = |column: &Column| match &column.form {
+            Form::Name(names) => Form::Name(names.iter().map(quoted_name).collect()),
+            form => form.clone(),
+        };
+        RowText {
+            forms: columns.iter().map(form).collect(),
+            digits,
+            scratch: String::new(),
+        }
+    }
+
+    /// Appends a row with its line end.
+    fn push(&mut self, values: &[f64], text: &mut Vec<u8>) {
+        for (form, &value) in self.forms.iter().zip(values) {
+            match (form, self.digits) {
+                (Form::Whole, _) if value.is_finite() => push_whole(text, value),
+                (Form::Sparse, _) if value.is_nan() => {}
+                (Form::Name(names), _) => text.extend(names[value as usize].as_bytes()),
+                (Form::Real | Form::Sparse, Some(digits)) => {
+                    push_shortest(text, rounded(value, digits, &mut self.scratch));
+                }
+                _ => push_shortest(text, value),
+            }
+            text.push(b',');
+        }
+        text.pop();
+        text.push(b'\n');
+    }
+}
+
+/// Writes name, unit and description of every column.
 ///
 /// # Errors
 /// Writing to `out` fails.
-pub fn write_units(record: &Record, out: impl Write) -> io::Result<()> {
+pub fn write_units(columns: &[Column], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record(["name", "unit", "description"])?;
-    for column in record.columns() {
+    for column in columns {
         table.write_record([&column.name, &column.unit, &column.description])?;
-    }
-    table.flush()
-}
-
-/// Additional columns of lines with bending stiffness.
-const BENDING_HEADER: [&str; 2] = ["curvature", "moment"];
-
-/// Writes the shapes of the lines: time [s], line, node, unstretched arc length s [m], x, y, z [m], effective tension [N], and
-/// curvature [1/m] and moment [N m] where a line bends.
-///
-/// # Errors
-/// Writing to `out` fails.
-pub fn write_profile(record: &Record, out: impl Write) -> io::Result<()> {
-    let mut table = csv::Writer::from_writer(out);
-    let mut nodes = record
-        .frames
-        .iter()
-        .flat_map(|frame| frame.lines.iter().flatten());
-    let bends = nodes.any(|node| node.bending.is_some());
-    let more = if bends { &BENDING_HEADER[..] } else { &[] };
-    table.write_record(PROFILE_HEADER.iter().chain(more))?;
-    for frame in &record.frames {
-        for (line, nodes) in record.lines.iter().zip(&frame.lines) {
-            for (index, node) in nodes.iter().enumerate() {
-                let [x, y, z] = node.position;
-                table.write_field(shortest(frame.time))?;
-                table.write_field(&line.name)?;
-                table.write_field(index.to_string())?;
-                let numbers = [node.s, x, y, z, node.tension].map(shortest);
-                let bending = match node.bending {
-                    Some(bending) => [bending.curvature, bending.moment].map(shortest),
-                    None => [String::new(), String::new()],
-                };
-                let more = if bends { &bending[..] } else { &[] };
-                table.write_record(numbers.iter().chain(more))?;
-            }
-        }
     }
     table.flush()
 }
@@ -85,10 +150,62 @@ pub(super) fn shortest(value: f64) -> String {
     format!("{value:?}")
 }
 
+/// Value rounded to a number of significant digits.
+pub(super) fn rounded(value: f64, digits: usize, scratch: &mut String) -> f64 {
+    use std::fmt::Write;
+    scratch.clear();
+    let written = write!(scratch, "{value:.*e}", digits - 1);
+    written.expect("a string takes any text");
+    scratch.parse().expect("a number that was just written")
+}
+
+/// Appends a whole number.
+pub(super) fn push_whole(text: &mut Vec<u8>, value: f64) {
+    let written = match value.abs() < 1e15 && value.is_sign_positive() {
+        true => write!(text, "{}", value.round_ties_even() as u64),
+        false => write!(text, "{value:.0}"),
+    };
+    written.expect("a vector takes any text");
+}
+
+/// Appends [`shortest`] of a value, by a faster way where that gives the same text.
+pub(super) fn push_shortest(text: &mut Vec<u8>, value: f64) {
+    let size = value.abs();
+    // outside, the two write the exponent differently
+    if size == 0.0 || (1e-4..1e16).contains(&size) {
+        let mut buffer = zmij::Buffer::new();
+        let digits = buffer.format_finite(value);
+        if !is_tie(value, digits) {
+            text.extend(digits.as_bytes());
+            return;
+        }
+    }
+    write!(text, "{value:?}").expect("a vector takes any text");
+}
+
+/// Returns true where a value may lie half-way between two decimals of the length of its shortest one, of which the standard library takes
+/// the upper one: its own decimals are one more. m·2⁻ᵏ with odd m has k decimals.
+fn is_tie(value: f64, digits: &str) -> bool {
+    const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
+    let bits = value.to_bits();
+    let exponent = ((bits >> MANTISSA) & 0x7ff) as i32 - 1075;
+    let mantissa = bits | 1 << MANTISSA;
+    let places = -(exponent + mantissa.trailing_zeros() as i32);
+    let shown = digits.find('.').map_or(0, |point| digits.len() - point - 1);
+    places == shown as i32 + 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::sample;
     use super::*;
+
+    fn text(columns: &[Column], digits: Option<usize>, rows: &[Vec<f64>]) -> String {
+        let mut bytes = header(columns);
+        let mut text = RowText::new(columns, digits);
+        rows.iter().for_each(|row| text.push(row, &mut bytes));
+        String::from_utf8(bytes).unwrap()
+    }
 
     #[test]
     fn every_number_reads_back_to_the_same_bits() {
@@ -99,75 +216,94 @@ mod tests {
         }
     }
 
+    /// Values of all sizes, and short binary fractions, among which are the ties.
     #[test]
-    fn the_results_read_back_row_by_row() {
-        let record = sample::record();
-        let mut bytes = Vec::new();
-        write_results(&record, &mut bytes).unwrap();
-        let mut table = csv::Reader::from_reader(bytes.as_slice());
-        let names: Vec<_> = record.columns().iter().map(|c| c.name.clone()).collect();
-        assert_eq!(table.headers().unwrap(), &csv::StringRecord::from(names));
-        let rows: Vec<Vec<f64>> = table.deserialize().collect::<Result<_, _>>().unwrap();
-        assert!(rows.iter().map(Vec::as_slice).eq(record.rows()));
+    fn the_fast_text_of_a_number_is_that_of_the_standard_library() {
+        let mut seed = 88_172_645_463_325_252_u64;
+        let mut text = Vec::new();
+        let mut ties = 0;
+        let edges = [
+            0.0,
+            -0.0,
+            1e-4,
+            9.999e-5,
+            1e16,
+            9.007199254740993e15,
+            f64::NAN,
+            f64::INFINITY,
+            0.5,
+        ];
+        for i in 0..400_000 {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            let value = match i % 4 {
+                0 => f64::from_bits(seed),
+                1 => (seed >> 40) as f64 / (1_u64 << (seed & 31)) as f64,
+                2 => ((seed >> 20) as i64 - (1 << 43)) as f64 * 1e-6,
+                _ => *edges
+                    .get(i / 4)
+                    .unwrap_or(&((seed >> 11) as f64 * 2f64.powi((seed % 90) as i32 - 75))),
+            };
+            text.clear();
+            push_shortest(&mut text, value);
+            let text = std::str::from_utf8(&text).unwrap();
+            assert_eq!(text, shortest(value));
+            ties += usize::from(text.len() > 16 && is_tie(value, text));
+        }
+        assert!(ties > 10, "{ties}");
     }
 
     #[test]
-    fn a_count_is_written_as_a_whole_number() {
-        let column = |name: &str, whole: bool| Column {
-            name: name.to_string(),
-            unit: "1".to_string(),
-            description: String::new(),
-            whole,
-        };
-        let mut record = Record::new("", vec![column("steps", true), column("x", false)]);
-        record.add_row(0.5, [15.0, 15.0]);
-        let mut bytes = Vec::new();
-        write_results(&record, &mut bytes).unwrap();
-        let text = String::from_utf8(bytes).unwrap();
-        assert_eq!(text, "time,steps,x\n0.5,15,15.0\n");
+    fn the_results_read_back_row_by_row() {
+        let record = sample::record();
+        let text = text(record.columns(), None, &sample::rows());
+        let mut table = csv::Reader::from_reader(text.as_bytes());
+        let names: Vec<_> = record.columns().iter().map(|c| c.name.clone()).collect();
+        assert_eq!(table.headers().unwrap(), &csv::StringRecord::from(names));
+        let rows: Vec<Vec<f64>> = table.deserialize().collect::<Result<_, _>>().unwrap();
+        assert_eq!(rows, sample::rows());
+    }
+
+    fn columns() -> Vec<Column> {
+        let names = ["line1".to_string(), "the \"other\", line".to_string()];
+        vec![
+            Column::time(),
+            Column::new("steps", "1", "", Form::Whole),
+            Column::new("x", "m", "", Form::Real),
+            Column::new("line", "1", "", Form::Name(names.to_vec())),
+            Column::new("moment", "N m", "", Form::Sparse),
+        ]
+    }
+
+    #[test]
+    fn counts_are_whole_numbers_and_names_are_quoted_and_missing_values_are_empty() {
+        let rows = [
+            vec![0.5, 15.0, 15.0, 1.0, f64::NAN],
+            vec![1.0, 2.0, -0.0, 0.0, 8.0],
+        ];
+        let text = text(&columns(), None, &rows);
+        let expected =
+            "time,steps,x,line,moment\n0.5,15,15.0,\"the \"\"other\"\", line\",\n1.0,2,-0.0,line1,8.0\n";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn digits_round_results_and_neither_times_nor_counts() {
+        let rows = [vec![10799.95, 1_234_567.0, 2_435_556.25, 0.0, 1.234_567e-9]];
+        let text = text(&columns(), Some(3), &rows);
+        assert_eq!(
+            text.lines().nth(1),
+            Some("10799.95,1234567,2440000.0,line1,1.23e-9")
+        );
     }
 
     #[test]
     fn a_comma_in_a_description_is_quoted() {
-        let mut record = sample::record();
-        record.title = String::new();
         let mut bytes = Vec::new();
-        write_units(&record, &mut bytes).unwrap();
+        write_units(sample::record().columns(), &mut bytes).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         assert!(text.starts_with("name,unit,description\ntime,s,simulated time\n"));
         assert!(text.contains("fairlead.fx,N,\"end force, on the vessel\"\n"));
-    }
-
-    #[test]
-    fn a_line_that_bends_has_its_curvature_and_moment_in_the_profile() {
-        let mut record = sample::record();
-        record.frames[0].lines[1][2].bending = Some(crate::simulation::NodeBending {
-            curvature: 0.25,
-            moment: 8.0,
-        });
-        let mut bytes = Vec::new();
-        write_profile(&record, &mut bytes).unwrap();
-        let text = String::from_utf8(bytes).unwrap();
-        assert!(
-            text.lines()
-                .next()
-                .unwrap()
-                .ends_with(",tension,curvature,moment")
-        );
-        assert_eq!(text.lines().filter(|row| row.ends_with(",0.25,8.0")).count(), 1);
-        assert!(text.lines().nth(1).unwrap().ends_with(",,"));
-    }
-
-    #[test]
-    fn the_profile_has_a_row_for_every_time_line_and_node() {
-        let record = sample::record();
-        let mut bytes = Vec::new();
-        write_profile(&record, &mut bytes).unwrap();
-        let mut table = csv::Reader::from_reader(bytes.as_slice());
-        let nodes: usize = record.frames.iter().flat_map(|f| &f.lines).map(Vec::len).sum();
-        let rows: Vec<_> = table.records().collect::<Result<_, _>>().unwrap();
-        assert_eq!(rows.len(), nodes);
-        assert_eq!(&rows[1][1], "line1");
-        assert_eq!(&rows[1][2], "1");
     }
 }

@@ -1,19 +1,27 @@
 //! Results written by the program: tables, ParaView files, figures, the report and `--json`.
 //!
 //! All of it is written from plain numbers: a [`record::Record`] of a run, a [`json::Statics`] of an equilibrium. Nothing here
-//! prints. A file appears under its name only when it is whole ([`write_file`]).
+//! prints. Tables and shapes of a run are written as it goes ([`files`]); every other file appears under its name only when it is
+//! whole ([`write_file`]).
 
+mod arrow_schema;
 pub mod channels;
 pub mod collect;
 pub mod csv;
 pub mod description;
 pub mod figures;
+pub mod files;
 pub mod fmi;
+mod growing;
 pub mod json;
 pub mod modes;
 pub mod package;
+mod parquet;
 pub mod record;
 pub mod report;
+pub mod state;
+pub mod times;
+pub mod trace;
 pub mod vtk;
 
 #[cfg(test)]
@@ -57,6 +65,14 @@ pub enum OutputError {
         path: PathBuf,
         /// Error of the operating system.
         source: io::Error,
+    },
+    /// The state of an interrupted run cannot be used.
+    #[error("cannot continue from {}: {problem}", .path.display())]
+    State {
+        /// File of the state.
+        path: PathBuf,
+        /// Reason.
+        problem: String,
     },
 }
 
@@ -196,41 +212,19 @@ fn replace_file(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> io:
 
 /// Links that are followed to a file, at most [-].
 const LINKS_MAX: usize = 40;
-/// Most shapes written for ParaView [-]; of more, evenly chosen ones stand for all.
-const VTK_FRAMES_MAX: usize = 240;
 
-/// Writes a run of a scene into a folder: `results.csv` with `results.units.csv`, `profile.csv` where the scene requests it, the
-/// shapes for ParaView (`lines.pvd` and its folder), every figure as SVG, and `report.html`.
+/// Writes what a run leaves to see into its folder: every figure as SVG, and `report.html`.
 ///
 /// # Errors
-/// The first file or folder that the operating system refuses.
-pub fn write_run(record: &record::Record, scene: &Scene, folder: &Path) -> Result<(), OutputError> {
-    make_folder(folder)?;
-    write_file(&folder.join("results.csv"), |w| csv::write_results(record, w))?;
-    write_file(&folder.join("results.units.csv"), |w| csv::write_units(record, w))?;
-    if scene.output.profile {
-        write_file(&folder.join("profile.csv"), |w| csv::write_profile(record, w))?;
-    }
-    write_shapes(record, folder)?;
-    for (stem, svg) in figures::all(record) {
+/// The first file that the operating system refuses.
+pub fn write_report(record: &record::Record, scene: &Scene, folder: &Path) -> Result<(), OutputError> {
+    let figures = figures::all(record);
+    for (stem, svg) in &figures {
         let path = folder.join(format!("{stem}.svg"));
         write_file(&path, |w| w.write_all(svg.as_bytes()))?;
     }
-    let html = report::html(record, &scene.in_words());
+    let html = report::html(record, &figures, &scene.in_words());
     write_file(&folder.join("report.html"), |w| w.write_all(html.as_bytes()))
-}
-
-/// Writes the shapes for ParaView; the collection comes last, when all it names is there.
-fn write_shapes(record: &record::Record, folder: &Path) -> Result<(), OutputError> {
-    make_folder(&folder.join(vtk::FRAME_FOLDER))?;
-    let stride = record.frames.len().div_ceil(VTK_FRAMES_MAX).max(1);
-    let frames = || record.frames.iter().step_by(stride);
-    for (index, frame) in frames().enumerate() {
-        let path = folder.join(vtk::frame_name(index));
-        write_file(&path, |w| vtk::write_frame(frame, w))?;
-    }
-    let times = frames().map(|frame| frame.time);
-    write_file(&folder.join("lines.pvd"), |w| vtk::write_collection(times, w))
 }
 
 /// `results.csv` -> `results.csv.1234.partial`, with the number of the process: two runs do not write into one another.

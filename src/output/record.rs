@@ -1,11 +1,43 @@
-//! Record of a run: plain numbers, gathered step by step, that every writer of this module reads.
+//! Record of a run: plain numbers, gathered step by step, that figures, report and summary read.
 //!
-//! A [`Record`] does not depend on a solver. The driver of a simulation names the columns once, adds a row at every
+//! A [`Record`] does not depend on a solver, and its size does not depend on the duration: rows go to the tables of
+//! [`super::files`] and leave ranges and thinned histories here. The driver of a simulation names the columns once, adds a row at every
 //! output time and a frame where the shape of the lines is required.
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
+use super::trace::{Range, RangeSum, Trace};
 use crate::simulation::NodeBending;
+
+/// Column of the surface's elevation [m].
+pub const ELEVATION: &str = "waves.elevation";
+/// Last parts of the names of columns whose histories are drawn.
+const DRAWN: [&str; 7] = [
+    "tension_b",
+    "fx",
+    "fy",
+    "fz",
+    "curvature_max",
+    "moment_max",
+    "elevation",
+];
+
+/// Form of the values of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Form {
+    /// A number.
+    Real,
+    /// A number, with all of its digits: times.
+    Exact,
+    /// A whole number: counts and truth values.
+    Whole,
+    /// A number, or nothing where the value is not a number.
+    Sparse,
+    /// A name: the value is its place in the list.
+    Name(Vec<String>),
+}
 
 /// A column of the results: one output variable in time.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,12 +48,29 @@ pub struct Column {
     pub unit: String,
     /// Description in a sentence.
     pub description: String,
-    /// True if its values are whole numbers: counts and truth values.
-    pub whole: bool,
+    /// Form of its values.
+    pub form: Form,
+}
+
+impl Column {
+    /// A column of numbers.
+    pub fn new(name: &str, unit: &str, description: impl Into<String>, form: Form) -> Column {
+        Column {
+            name: name.to_string(),
+            unit: unit.to_string(),
+            description: description.into(),
+            form,
+        }
+    }
+
+    /// The first column of every table.
+    pub fn time() -> Column {
+        Column::new("time", "s", "simulated time", Form::Exact)
+    }
 }
 
 /// A line's node at one instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Node {
     /// Unstretched arc length from end A [m].
     pub s: f64,
@@ -34,7 +83,7 @@ pub struct Node {
 }
 
 /// The shapes of all lines at one instant.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Time [s].
     pub time: f64,
@@ -43,7 +92,7 @@ pub struct Frame {
 }
 
 /// Energy and momenta of beams in free flight at one instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Flight {
     /// Time [s].
     pub time: f64,
@@ -102,7 +151,7 @@ pub struct Surroundings {
 }
 
 /// Cost of the run.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counters {
     /// Internal steps of the solver [-].
     pub substeps: u64,
@@ -120,46 +169,108 @@ impl Counters {
     }
 }
 
-/// All results of a run.
+/// Everything that the rows and shapes of a run leave behind. Saved with the state of a run that is to be continued.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Course {
+    /// Number of rows [-].
+    pub rows: usize,
+    /// Number of rows of the whole run [-].
+    planned: usize,
+    /// Range of every column after time, from the first row on.
+    ranges: Vec<RangeSum>,
+    /// Histories of the columns that are drawn.
+    traces: Vec<Option<Trace>>,
+    /// Shapes in time, ascending.
+    pub frames: Vec<Frame>,
+    /// Energy and momenta in time, where all lines are beams without supports.
+    flight: Option<[Trace; 6]>,
+    /// Cost of the run.
+    pub counters: Counters,
+}
+
+/// Quantity of a flight that is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FlightQuantity {
+    /// All energy [J].
+    Total,
+    /// Kinetic energy [J].
+    Kinetic,
+    /// Strain energy [J].
+    Strain,
+    /// Angular momentum about a global axis [N m s].
+    Momentum(usize),
+}
+
+impl Course {
+    /// Adds the energy and momenta of one instant.
+    pub fn add_flight(&mut self, flight: &Flight) {
+        let planned = self.planned;
+        let traces = self
+            .flight
+            .get_or_insert_with(|| std::array::from_fn(|_| Trace::new(planned)));
+        let [x, y, z] = flight.angular_momentum;
+        let total = flight.kinetic + flight.strain + flight.gravitational;
+        let values = [total, flight.kinetic, flight.strain, x, y, z];
+        for (trace, value) in traces.iter_mut().zip(values) {
+            trace.add([flight.time, value]);
+        }
+    }
+
+    /// True if the run is a free flight of beams.
+    pub fn is_flight(&self) -> bool {
+        self.flight.is_some()
+    }
+
+    /// History of a quantity of the flight, as pairs of time [s] and value, thinned; empty where nothing flies.
+    pub fn flight(&self, quantity: FlightQuantity) -> Vec<[f64; 2]> {
+        let place = match quantity {
+            FlightQuantity::Total => 0,
+            FlightQuantity::Kinetic => 1,
+            FlightQuantity::Strain => 2,
+            FlightQuantity::Momentum(axis) => 3 + axis,
+        };
+        self.flight
+            .as_ref()
+            .map_or(Vec::new(), |traces| traces[place].points())
+    }
+}
+
+/// Record of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Description of the run, in a line.
     pub title: String,
     columns: Vec<Column>,
-    values: Vec<f64>,
-    /// Shapes in time, ascending.
-    pub frames: Vec<Frame>,
+    /// Remains of rows and shapes.
+    pub course: Course,
     /// The lines.
     pub lines: Vec<LineRecord>,
-    /// Energy and momenta in time, where all lines are beams without supports.
-    pub flight: Vec<Flight>,
     /// Names of the points whose force is recorded: the fairleads.
     pub points: Vec<String>,
     /// Surroundings of the lines.
     pub surroundings: Surroundings,
-    /// Cost of the run.
-    pub counters: Counters,
 }
 
 impl Record {
-    /// Empty record whose first column is time [s], with `columns` behind it.
-    pub fn new(title: impl Into<String>, columns: Vec<Column>) -> Record {
-        let time = Column {
-            name: "time".to_string(),
-            unit: "s".to_string(),
-            description: "simulated time".to_string(),
-            whole: false,
+    /// Empty record of a number of rows, whose first column is time [s], with `columns` behind it.
+    pub fn new(title: impl Into<String>, columns: Vec<Column>, planned: usize) -> Record {
+        let drawn = |column: &Column| {
+            let last = column.name.rsplit('.').next();
+            last.is_some_and(|last| DRAWN.contains(&last))
+                .then(|| Trace::new(planned))
+        };
+        let course = Course {
+            planned,
+            traces: columns.iter().map(drawn).collect(),
+            ..Course::default()
         };
         Record {
             title: title.into(),
-            columns: std::iter::once(time).chain(columns).collect(),
-            values: Vec::new(),
-            frames: Vec::new(),
+            columns: std::iter::once(Column::time()).chain(columns).collect(),
+            course,
             lines: Vec::new(),
-            flight: Vec::new(),
             points: Vec::new(),
             surroundings: Surroundings::default(),
-            counters: Counters::default(),
         }
     }
 
@@ -171,59 +282,43 @@ impl Record {
     /// Adds a row: the time [s] and one value for every further column, in its unit.
     ///
     /// # Panics
-    /// The number of values is not the number of columns after time: a mistake of the caller.
-    pub fn add_row(&mut self, time: f64, values: impl IntoIterator<Item = f64>) {
-        self.values.push(time);
-        self.values.extend(values);
+    /// The number of values is not the number of columns: a mistake of the caller.
+    pub fn add_row(&mut self, row: &[f64]) {
         assert!(
-            self.values.len().is_multiple_of(self.columns.len()),
+            row.len() == self.columns.len(),
             "a row holds one value for every column"
         );
+        let (course, time) = (&mut self.course, row[0]);
+        let values = row[1..].iter();
+        match course.rows {
+            0 => course.ranges = values.map(|value| RangeSum::new([time, *value])).collect(),
+            _ => values
+                .zip(&mut course.ranges)
+                .for_each(|(value, range)| range.add([time, *value])),
+        }
+        for (value, trace) in row[1..].iter().zip(&mut course.traces) {
+            if let Some(trace) = trace {
+                trace.add([time, *value]);
+            }
+        }
+        course.rows += 1;
     }
 
-    /// Rows, each as long as [`Record::columns`], each value in its column's unit.
-    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[f64]> {
-        self.values.chunks_exact(self.columns.len())
+    fn place(&self, name: &str) -> Option<usize> {
+        self.columns[1..].iter().position(|column| column.name == name)
     }
 
-    /// A column's history, as pairs of time [s] and value in the column's unit; `None` where no column has the name.
+    /// Thinned history of a column that is drawn, as pairs of time [s] and value in the column's unit; `None` where no such column has
+    /// the name.
     pub fn history(&self, name: &str) -> Option<Vec<[f64; 2]>> {
-        let index = self.columns.iter().position(|c| c.name == name)?;
-        Some(self.rows().map(|row| [row[0], row[index]]).collect())
+        let trace = self.course.traces[self.place(name)?].as_ref()?;
+        Some(trace.points())
     }
-}
 
-/// Smallest, mean and greatest value of a history, in its unit. The mean is over time, by the trapezoidal rule.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
-    /// Smallest value, in the history's unit.
-    pub min: f64,
-    /// Mean over time, in the history's unit.
-    pub mean: f64,
-    /// Greatest value, in the history's unit.
-    pub max: f64,
-}
-
-impl Range {
-    /// Range of pairs of time [s] and value; `None` of no pairs.
-    pub fn of(history: &[[f64; 2]]) -> Option<Range> {
-        let [first, .., last] = history else {
-            return history.first().map(|&[_, value]| Range {
-                min: value,
-                mean: value,
-                max: value,
-            });
-        };
-        let area: f64 = history
-            .windows(2)
-            .map(|pair| 0.5 * (pair[0][1] + pair[1][1]) * (pair[1][0] - pair[0][0]))
-            .sum();
-        let values = history.iter().map(|&[_, value]| value);
-        Some(Range {
-            min: values.clone().fold(f64::INFINITY, f64::min),
-            mean: area / (last[0] - first[0]),
-            max: values.fold(f64::NEG_INFINITY, f64::max),
-        })
+    /// Range of a column's values; `None` where no column has the name, or without rows.
+    pub fn range(&self, name: &str) -> Option<Range> {
+        let sum = self.course.ranges.get(self.place(name)?)?;
+        Some(sum.range())
     }
 }
 
@@ -232,40 +327,40 @@ mod tests {
     use super::*;
 
     fn column(name: &str) -> Column {
-        Column {
-            name: name.to_string(),
-            unit: "N".to_string(),
-            description: String::new(),
-            whole: false,
-        }
+        Column::new(name, "N", "", Form::Real)
     }
 
     #[test]
-    fn a_history_pairs_time_with_the_named_column() {
-        let mut record = Record::new("", vec![column("a"), column("b")]);
-        record.add_row(0.0, [1.0, 2.0]);
-        record.add_row(0.5, [3.0, 4.0]);
-        assert_eq!(record.history("b"), Some(vec![[0.0, 2.0], [0.5, 4.0]]));
-        assert_eq!(record.history("c"), None);
-        assert_eq!(record.rows().len(), 2);
+    fn a_history_pairs_time_with_the_named_column_if_it_is_drawn() {
+        let mut record = Record::new("", vec![column("a.sag"), column("b.tension_b")], 2);
+        record.add_row(&[0.0, 1.0, 2.0]);
+        record.add_row(&[0.5, 3.0, 4.0]);
+        assert_eq!(record.history("b.tension_b"), Some(vec![[0.0, 2.0], [0.5, 4.0]]));
+        assert_eq!((record.history("a.sag"), record.history("c")), (None, None));
+        assert_eq!(record.range("a.sag").unwrap().mean, 2.0);
+        assert_eq!((record.range("c"), record.range("time")), (None, None));
+    }
+
+    /// Counts of numbers kept, not of bytes in use: they bound each other.
+    #[test]
+    fn a_record_of_ten_times_the_rows_keeps_no_more() {
+        let kept = |rows: u32| {
+            let mut record = Record::new("", vec![column("a.sag"), column("b.tension_b")], rows as usize);
+            (0..rows).for_each(|i| record.add_row(&[f64::from(i), 1.0, f64::from(i % 13)]));
+            let course = postcard::to_stdvec(&record.course).unwrap();
+            (record.history("b.tension_b").unwrap().len(), course.len())
+        };
+        let (short, long) = (kept(20_000), kept(200_000));
+        assert!(
+            long.0 <= 2400 && long.1 <= short.1 + short.1 / 10,
+            "{short:?} {long:?}"
+        );
     }
 
     #[test]
     #[should_panic(expected = "a row holds one value for every column")]
     fn a_row_of_the_wrong_length_is_our_own_mistake() {
-        Record::new("", vec![column("a")]).add_row(0.0, [1.0, 2.0]);
-    }
-
-    #[test]
-    fn the_mean_is_over_time_and_not_over_rows() {
-        let range = Range::of(&[[0.0, 0.0], [1.0, 2.0], [4.0, 2.0]]).unwrap();
-        assert_eq!((range.min, range.mean, range.max), (0.0, 7.0 / 4.0, 2.0));
-    }
-
-    #[test]
-    fn a_single_row_is_its_own_mean_and_none_has_no_range() {
-        assert_eq!(Range::of(&[[3.0, 5.0]]).unwrap().mean, 5.0);
-        assert_eq!(Range::of(&[]), None);
+        Record::new("", vec![column("a")], 1).add_row(&[0.0, 1.0, 2.0]);
     }
 
     #[test]

@@ -7,8 +7,7 @@ use std::fmt::Write;
 
 use quick_xml::escape::escape;
 
-use super::figures;
-use super::record::{LineRecord, Range, Record, StaticLine};
+use super::record::{LineRecord, Record, StaticLine};
 
 const STYLE: &str = "
 body { font: 16px/1.5 sans-serif; color: #222; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
@@ -23,14 +22,14 @@ pre { white-space: pre-wrap; background: #f6f6f6; padding: .8rem; font-size: .85
 /// Digits of a number in a table [-].
 const DIGITS: usize = 6;
 
-/// Page of a run. `words` is the description of the scene's model, as `moorline check` prints it.
-pub fn html(record: &Record, words: &str) -> String {
+/// Page of a run with its figures. `words` is the description of the scene's model, as `moorline check` prints it.
+pub fn html(record: &Record, figures: &[(&str, String)], words: &str) -> String {
     let title = match record.title.as_str() {
         "" => "moorline run",
         title => title,
     };
     let title = escape(title);
-    let figures: String = figures::all(record)
+    let figures: String = figures
         .iter()
         .map(|(_, svg)| format!("<figure>\n{svg}</figure>\n"))
         .collect();
@@ -52,7 +51,7 @@ pub fn html(record: &Record, words: &str) -> String {
 
 /// Cost of the run, in a sentence.
 fn cost(record: &Record) -> String {
-    let counters = &record.counters;
+    let counters = &record.course.counters;
     let speed = counters.real_time_factor().map_or(String::new(), |factor| {
         format!(
             " in {} s: {} times real time",
@@ -114,7 +113,7 @@ fn history(record: &Record) -> String {
         ]
         .into_iter()
         .filter_map(|(stem, name)| {
-            let range = Range::of(&record.history(&format!("{}.{stem}", line.name))?)?;
+            let range = record.range(&format!("{}.{stem}", line.name))?;
             Some(vec![
                 format!("{}: {name}", line.name),
                 rounded(range.min, DIGITS),
@@ -183,12 +182,13 @@ pub fn rounded(value: f64, digits: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
+    use super::super::{figures, sample};
     use super::*;
 
     #[test]
     fn the_page_holds_everything_and_asks_for_nothing() {
-        let page = html(&sample::record(), "water: 1025 kg/m³ & no waves");
+        let record = sample::record();
+        let page = html(&record, &figures::all(&record), "water: 1025 kg/m³ & no waves");
         for part in [
             "911120",
             "911089",
@@ -209,7 +209,7 @@ mod tests {
         let mut record = sample::record();
         record.title = "<script>alert(1)</script>".to_string();
         record.lines[0].name = "<b>".to_string();
-        let page = html(&record, "");
+        let page = html(&record, &figures::all(&record), "");
         assert!(!page.contains("<script>") && !page.contains("<b>"));
     }
 

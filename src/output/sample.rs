@@ -3,18 +3,15 @@
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-use super::record::{Catenary, Column, Counters, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
+use super::record::{
+    Catenary, Column, Counters, Form, Frame, LineRecord, Node, Record, StaticLine, Surroundings,
+};
 
 const DEPTH: f64 = 200.0;
 const ELEMENTS: usize = 20;
 
 fn columns() -> Vec<Column> {
-    let of = |name: &str, unit: &str, description: &str| Column {
-        name: name.to_string(),
-        unit: unit.to_string(),
-        description: description.to_string(),
-        whole: false,
-    };
+    let of = |name: &str, unit: &str, description: &str| Column::new(name, unit, description, Form::Real);
     vec![
         of("fairlead.x", "m", "displacement"),
         of("fairlead.fx", "N", "end force, on the vessel"),
@@ -70,14 +67,14 @@ fn line(name: &str, side: f64) -> LineRecord {
     }
 }
 
-/// The record.
-pub(super) fn record() -> Record {
-    let mut record = Record::new("two lines on a seabed, swaying", columns());
-    for i in 0..=600 {
+/// Rows of the record.
+pub(super) fn rows() -> Vec<Vec<f64>> {
+    let row = |i: i32| {
         let time = 0.1 * f64::from(i);
         let sway = 5.0 * (TAU * time / 12.0).sin() * (time / 10.0).min(1.0);
         let pull = 911e3 + 30e3 * sway;
-        let row = [
+        vec![
+            time,
             sway,
             pull,
             1e3 * sway,
@@ -88,10 +85,17 @@ pub(super) fn record() -> Record {
             260.0 - sway,
             81.3 - 0.1 * sway,
             911e3 - 30e3 * sway,
-        ];
-        record.add_row(time, row);
-    }
-    record.frames = (0..13)
+        ]
+    };
+    (0..=600).map(row).collect()
+}
+
+/// The record.
+pub(super) fn record() -> Record {
+    let rows = rows();
+    let mut record = Record::new("two lines on a seabed, swaying", columns(), rows.len());
+    rows.iter().for_each(|row| record.add_row(row));
+    record.course.frames = (0..13)
         .map(|i| {
             let time = 5.0 * f64::from(i);
             let shift = 12.0 * (TAU * time / 60.0).sin();
@@ -107,7 +111,7 @@ pub(super) fn record() -> Record {
         water: true,
         seabed: Some(-DEPTH),
     };
-    record.counters = Counters {
+    record.course.counters = Counters {
         substeps: 24_000,
         simulated: 60.0,
         wall: Duration::from_millis(40),

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
 
-use super::csv::shortest;
+use super::csv::{push_shortest, push_whole, shortest};
 use super::record::{Frame, Node};
 
 /// Folder of the frames, next to the collection.
@@ -18,6 +18,14 @@ pub const FRAME_FOLDER: &str = "vtk";
 /// Name of a frame's file, relative to the collection, with a forward slash on every system.
 pub fn frame_name(index: usize) -> String {
     format!("{FRAME_FOLDER}/lines_{index:05}.vtp")
+}
+
+/// Returns true for the name of a frame's file in its folder.
+pub(super) fn is_frame(name: &str) -> bool {
+    let number = name
+        .strip_prefix("lines_")
+        .and_then(|rest| rest.strip_suffix(".vtp"));
+    number.is_some_and(|number| number.len() >= 5 && number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
 /// Writes the shape of all lines at one instant as `.vtp`.
@@ -50,98 +58,86 @@ pub fn write_frame(frame: &Frame, out: impl Write) -> io::Result<()> {
 }
 
 fn write_piece<W: Write>(xml: &mut Writer<W>, frame: &Frame, nodes: &[Node]) -> io::Result<()> {
+    let reals = |values: &mut dyn Iterator<Item = f64>, components| tuples(values, components, push_shortest);
+    let wholes = |values: &mut dyn Iterator<Item = usize>| {
+        tuples(values, 1, |text, value| push_whole(text, value as f64))
+    };
     xml.create_element("PointData")
         .with_attribute(("Scalars", "tension"))
         .write_inner_content(|xml| {
-            write_array(
-                xml,
-                "Float64",
-                "tension",
-                1,
-                nodes.iter().map(|n| shortest(n.tension)),
-            )?;
-            write_array(xml, "Float64", "s", 1, nodes.iter().map(|n| shortest(n.s)))
+            let tensions = reals(&mut nodes.iter().map(|node| node.tension), 1);
+            write_array(xml, ["Float64", "tension", "1"], &tensions)?;
+            let arcs = reals(&mut nodes.iter().map(|node| node.s), 1);
+            write_array(xml, ["Float64", "s", "1"], &arcs)
         })?;
     xml.create_element("CellData").write_inner_content(|xml| {
-        write_array(
-            xml,
-            "Int32",
-            "line",
-            1,
-            (0..frame.lines.len()).map(|i| i.to_string()),
-        )
+        let lines = wholes(&mut (0..frame.lines.len()));
+        write_array(xml, ["Int32", "line", "1"], &lines)
     })?;
     xml.create_element("Points").write_inner_content(|xml| {
-        let coordinates = nodes.iter().flat_map(|n| n.position).map(shortest);
-        write_array(xml, "Float64", "position", 3, coordinates)
+        let positions = reals(&mut nodes.iter().flat_map(|node| node.position), 3);
+        write_array(xml, ["Float64", "position", "3"], &positions)
     })?;
     xml.create_element("Lines").write_inner_content(|xml| {
         // Every line owns a run of the points; `offsets` holds where each run ends.
-        let ends = frame.lines.iter().scan(0, |end, line| {
+        let mut ends = frame.lines.iter().scan(0, |end, line| {
             *end += line.len();
-            Some(end.to_string())
+            Some(*end)
         });
-        let connectivity = (0..nodes.len()).map(|i| i.to_string());
-        write_array(xml, "Int64", "connectivity", 1, connectivity)?;
-        write_array(xml, "Int64", "offsets", 1, ends)
+        let connectivity = wholes(&mut (0..nodes.len()));
+        write_array(xml, ["Int64", "connectivity", "1"], &connectivity)?;
+        write_array(xml, ["Int64", "offsets", "1"], &wholes(&mut ends))
     })?;
     Ok(())
 }
 
-/// Writes one array as text, a tuple of `components` numbers a line.
+/// Text of values, a tuple of `components` numbers a line.
+fn tuples<T>(
+    values: &mut dyn Iterator<Item = T>,
+    components: usize,
+    push: impl Fn(&mut Vec<u8>, T),
+) -> String {
+    let mut text = b"\n".to_vec();
+    for (index, value) in values.enumerate() {
+        push(&mut text, value);
+        text.push(if (index + 1) % components == 0 {
+            b'\n'
+        } else {
+            b' '
+        });
+    }
+    String::from_utf8(text).expect("numbers are ASCII")
+}
+
+/// Writes one array as text, with its type, name and number of components.
 fn write_array<W: Write>(
     xml: &mut Writer<W>,
-    kind: &str,
-    name: &str,
-    components: usize,
-    values: impl Iterator<Item = String>,
+    [kind, name, components]: [&str; 3],
+    text: &str,
 ) -> io::Result<()> {
-    let mut text = String::from("\n");
-    for (index, value) in values.enumerate() {
-        text.push_str(&value);
-        text.push(if (index + 1) % components == 0 { '\n' } else { ' ' });
-    }
-    let components = components.to_string();
     xml.create_element("DataArray")
         .with_attributes([
             ("type", kind),
             ("Name", name),
-            ("NumberOfComponents", components.as_str()),
+            ("NumberOfComponents", components),
             ("format", "ascii"),
         ])
-        .write_text_content(BytesText::new(&text))?;
+        .write_text_content(BytesText::from_escaped(text))?;
     Ok(())
 }
 
-/// Writes the collection `.pvd` of frames at these times [s], named by [`frame_name`].
-///
-/// # Errors
-/// Writing to `out` fails.
-pub fn write_collection(times: impl Iterator<Item = f64>, out: impl Write) -> io::Result<()> {
-    let mut xml = document(out)?;
-    xml.create_element("VTKFile")
-        .with_attributes([
-            ("type", "Collection"),
-            ("version", "1.0"),
-            ("byte_order", "LittleEndian"),
-        ])
-        .write_inner_content(|xml| {
-            xml.create_element("Collection").write_inner_content(|xml| {
-                for (index, time) in times.enumerate() {
-                    let (time, file) = (shortest(time), frame_name(index));
-                    xml.create_element("DataSet")
-                        .with_attributes([
-                            ("timestep", time.as_str()),
-                            ("part", "0"),
-                            ("file", file.as_str()),
-                        ])
-                        .write_empty()?;
-                }
-                Ok(())
-            })?;
-            Ok(())
-        })?;
-    xml.into_inner().flush()
+/// Beginning of the collection `.pvd` of frames.
+pub(super) const COLLECTION: &str = "<?xml version=\"1.0\"?>
+<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">
+ <Collection>
+";
+/// End of the collection.
+pub(super) const COLLECTION_END: &str = " </Collection>\n</VTKFile>";
+
+/// Entry of a frame at a time [s] in the collection, named by [`frame_name`].
+pub(super) fn collected(index: usize, time: f64) -> String {
+    let (time, file) = (shortest(time), frame_name(index));
+    format!("  <DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n")
 }
 
 fn document<W: Write>(out: W) -> io::Result<Writer<W>> {
@@ -181,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_frame_reads_back_to_the_same_numbers() {
-        let frame = &sample::record().frames[1];
+        let frame = &sample::record().course.frames[1];
         let mut bytes = Vec::new();
         write_frame(frame, &mut bytes).unwrap();
         let arrays = arrays(std::str::from_utf8(&bytes).unwrap());
@@ -200,14 +196,5 @@ mod tests {
         let first = frame.lines[0].len() as f64;
         assert_eq!(*get("offsets"), [first, nodes.len() as f64]);
         assert_eq!(*get("line"), [0.0, 1.0]);
-    }
-
-    #[test]
-    fn the_collection_names_every_frame_at_its_time() {
-        let mut bytes = Vec::new();
-        write_collection([0.0, 0.25].into_iter(), &mut bytes).unwrap();
-        let xml = String::from_utf8(bytes).unwrap();
-        assert!(xml.contains(r#"<DataSet timestep="0.25" part="0" file="vtk/lines_00001.vtp"/>"#));
-        assert_eq!(xml.matches("<DataSet ").count(), 2);
     }
 }

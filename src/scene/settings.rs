@@ -6,7 +6,7 @@ use super::SceneError;
 use super::check::Findings;
 use super::document::Node;
 use super::line::ELEMENTS_MAX;
-use super::table::{Key, Kind, MIXED, PLAIN, Value, choice, positive, table, within};
+use super::table::{Key, Kind, MIXED, PLAIN, Value, choice, choice_of_values, positive, table, within};
 
 table! {
     /// Solver settings.
@@ -93,6 +93,39 @@ table! {
         pub energy_balance: bool = false,
         /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),
+        /// Format of the tables of `moorline run`; `csv` where absent.
+        pub format: Option<Format>,
+        /// Significant digits of the results in the tables of `moorline run` [-]; all where absent. Times and counts keep theirs. In Parquet, 6 digits or
+        /// fewer are stored as 32-bit numbers.
+        pub digits: Option<usize> => within(1.0, DIGITS_MAX),
+        /// Shapes that `moorline run` writes for ParaView; `overview` where absent.
+        pub frames: Option<Frames>,
+    }
+}
+
+/// Digits with which every number reads back to the same bits [-].
+const DIGITS_MAX: f64 = 17.0;
+
+choice! {
+    /// Format of tables.
+    pub enum Format {
+        /// Comma-separated values, with `results.units.csv` beside them.
+        Csv = "csv",
+        /// Apache Parquet, with the units in the metadata of the fields.
+        Parquet = "parquet",
+    }
+}
+
+choice_of_values! {
+    /// Shapes for ParaView.
+    #[derive(Copy)]
+    pub enum Frames {
+        /// About 240, evenly over the run, or all rows where there are fewer.
+        Overview = "overview",
+        /// None.
+        None = "none";
+        /// `{ every = interval }`: one every `interval` [s], rounded to whole rows, and the last one.
+        Every(f64) = "every" => positive(1e9).in_units("s"),
     }
 }
 

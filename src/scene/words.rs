@@ -13,7 +13,7 @@ pub(super) use points::motion_in_words;
 use super::channel::Channel;
 use super::check::{number, quantity};
 use super::table::{Choice, Kind, Table};
-use super::{Integrator, Reconstruction, Scene};
+use super::{Format, Frames, Integrator, Output, Reconstruction, Scene};
 
 /// Widest line of the text, in characters.
 const WIDTH: usize = 110;
@@ -58,6 +58,7 @@ impl Scene {
             self.compression_in_words()
         };
         let nodes = if output.profile { ", with all nodes" } else { "" };
+        let tables = tables_in_words(output);
         let [duration, interval] = [output.duration, output.interval].map(|time| quantity(time, "s"));
         let inputs = match solver.input_reconstruction {
             Reconstruction::Smooth => None,
@@ -73,7 +74,7 @@ impl Scene {
             self.integrator_in_words(),
             format!("target error of fairlead tension {}", percent(solver.tolerance)),
             compression.to_string(),
-            format!("`run` covers {duration} and writes every {interval}{nodes}"),
+            format!("`run` covers {duration} and writes every {interval}{nodes}{tables}"),
         ];
         let balance = output
             .energy_balance
@@ -202,4 +203,26 @@ pub(super) fn significant(value: f64) -> String {
 /// A part of a whole [-] in percent.
 pub(crate) fn percent(part: f64) -> String {
     format!("{} %", significant(100.0 * part))
+}
+
+/// ", to tables of Parquet, with 6 significant digits, with a shape for ParaView every 1 s".
+fn tables_in_words(output: &Output) -> String {
+    let format = match output.format {
+        Some(Format::Parquet) => ", to tables of Parquet",
+        Some(Format::Csv) => ", to tables of CSV",
+        None => "",
+    };
+    let digits = match output.digits {
+        Some(digits) => format!(", with {digits} significant digits"),
+        None => String::new(),
+    };
+    let shapes = match output.frames {
+        None => String::new(),
+        Some(Frames::Overview) => ", with shapes for ParaView".to_string(),
+        Some(Frames::None) => ", without shapes for ParaView".to_string(),
+        Some(Frames::Every(interval)) => {
+            format!(", with a shape for ParaView every {}", quantity(interval, "s"))
+        }
+    };
+    format!("{format}{digits}{shapes}")
 }

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use nalgebra::{Vector3, Vector6};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::prescribed::MotionSource;
 use super::{Simulation, start};
@@ -39,7 +39,7 @@ pub struct ProfileNode {
 }
 
 /// Curvature and moment of a line at a node.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct NodeBending {
     /// Curvature [1/m].
     pub curvature: f64,

@@ -291,8 +291,10 @@ fn fate(found: Result<Outcome, Refusal>, at: &str, [name, key]: [&str; 2], befor
         let here = note.at == at || note.at == format!("{at}.{key}");
         here && note.text.contains(&format!("`{key}`")) && note.text.contains("nothing")
     };
-    let titled = key == "title" && after.loaded.scene.in_words() != before.loaded.scene.in_words();
-    match (after.notes.iter().find(about), differ(&after, before) || titled) {
+    // they act on files alone
+    let is_of_files = ["title", "format", "digits", "frames"].contains(&key);
+    let written = is_of_files && after.loaded.scene.in_words() != before.loaded.scene.in_words();
+    match (after.notes.iter().find(about), differ(&after, before) || written) {
         (Some(note), true) => Fate::Silent(format!("acts, against the note {note}")),
         (Some(note), false) => Fate::Told(note.to_string()),
         (None, true) => Fate::Acts,

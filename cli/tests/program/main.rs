@@ -1,6 +1,7 @@
 //! The command line from outside: exit codes, messages, files.
 
 mod arguments;
+mod continued;
 mod decks;
 mod drive;
 mod fmu;

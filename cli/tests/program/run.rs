@@ -3,14 +3,16 @@
 use super::*;
 
 #[test]
-fn a_run_that_blows_up_is_a_computation_that_failed_and_leaves_no_results() {
+fn a_run_that_blows_up_is_a_computation_that_failed_and_keeps_the_rows_before() {
     let folder = folder();
     let wild = SCENE.replace("[[0.05, 2.0]], ramp = 1.0", "[[1.0e7, 0.02]]");
     let wild = wild.replace("duration = 1.0", "duration = 60.0");
     folder.write("wild.toml", wild);
     let parts = ["error: t = ", " s, line", "try"];
     folder.fails("run wild.toml -o r", &parts);
-    assert_eq!(folder.names(), ["scene.toml", "wild.toml"]);
+    let (header, rows) = table(&folder.path("r/results.csv"));
+    assert!(!rows.is_empty() && rows.iter().all(|row| row.len() == header.len()));
+    assert!(!folder.path("r/report.html").exists() && !folder.path("r/run.state").exists());
 }
 
 #[test]

@@ -7,6 +7,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::super::trace::Trace;
 use super::axis::Axis;
 use super::labels::{self, Label, Patch};
 
@@ -32,8 +33,6 @@ const TEXT: u32 = 13;
 const LABEL: f64 = 12.0;
 /// Mean width of a letter over the text size, generous [-].
 const LETTER: f64 = 0.58;
-/// Most points drawn of a history; beyond, the least and greatest of every group stand for it.
-const POINTS_MAX: usize = 2400;
 /// Least and greatest height of a chart to scale, without title and legend [px].
 const TO_SCALE_HEIGHTS: [f64; 2] = [150.0, 560.0];
 /// Ratio of the text size in the plotting library, which rounds layout to the size it is given, to that in the SVG.
@@ -331,25 +330,9 @@ fn entries<'a>(curves: impl Iterator<Item = &'a Curve>, wide: u32) -> Vec<(&'a C
 }
 
 impl Curve {
-    /// Returns the curve without values that are not finite, and with few points, so that a figure stays small: of
-    /// every group of neighbours the first, the least, the greatest and the last are kept, in their order.
+    /// Returns the curve without values that are not finite, and with few points, so that a figure stays small.
     fn thinned(mut self) -> Curve {
-        self.points.retain(|[x, y]| x.is_finite() && y.is_finite());
-        if self.points.len() <= POINTS_MAX {
-            return self;
-        }
-        let group = self.points.len().div_ceil(POINTS_MAX / 4);
-        let mut kept = Vec::with_capacity(POINTS_MAX);
-        for points in self.points.chunks(group) {
-            let by_height = |i: &usize, j: &usize| points[*i][1].total_cmp(&points[*j][1]);
-            let least = (0..points.len()).min_by(by_height).unwrap_or(0);
-            let greatest = (0..points.len()).max_by(by_height).unwrap_or(0);
-            let mut indices = vec![0, least, greatest, points.len() - 1];
-            indices.sort_unstable();
-            indices.dedup();
-            kept.extend(indices.into_iter().map(|i| points[i]));
-        }
-        self.points = kept;
+        self.points = Trace::of(&self.points).points();
         self
     }
 }
@@ -461,7 +444,7 @@ mod tests {
         points[12_345][1] = -7.0;
         points[3][1] = f64::NAN;
         let curve = Curve::new(points, [0; 3], Stroke::Bold).thinned();
-        assert!(curve.points.len() <= POINTS_MAX);
+        assert!(curve.points.len() <= crate::output::trace::POINTS_MAX);
         assert!(curve.points.contains(&[54_321.0, 9.0]));
         assert!(curve.points.contains(&[12_345.0, -7.0]));
         assert!(curve.points.is_sorted_by(|a, b| a[0] < b[0]));

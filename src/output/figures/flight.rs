@@ -1,5 +1,6 @@
 //! Beams in free flight: stroboscopic shapes, and the conserved quantities of such a flight.
 
+use super::super::record::FlightQuantity;
 use super::axis::{Axis, plain};
 use super::chart::{self, Chart, Curve, Stroke};
 use super::{HISTORY_HEIGHT, Record, TRACES_MAX, WIDTH, colour, with_title};
@@ -15,9 +16,9 @@ const AXES: [&str; 3] = ["x [m]", "y [m]", "z [m]"];
 /// Shapes at equal intervals of time, from pale to dark, with the paths of both ends, in every pair of axes that the flight spreads in, two at
 /// most. `None` where nothing flies.
 pub(super) fn shapes(record: &Record) -> Option<String> {
-    record.flight.first()?;
+    record.course.is_flight().then_some(())?;
     let spread = [0, 1, 2].map(|axis| {
-        let nodes = record.frames.iter().flat_map(|f| f.lines.iter().flatten());
+        let nodes = record.course.frames.iter().flat_map(|f| f.lines.iter().flatten());
         let (min, max) = nodes.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), node| {
             (min.min(node.position[axis]), max.max(node.position[axis]))
         });
@@ -37,8 +38,8 @@ pub(super) fn shapes(record: &Record) -> Option<String> {
 
 fn view_chart(record: &Record, [across, up]: [usize; 2]) -> Chart {
     let view = |position: [f64; 3]| [position[across], position[up]];
-    let stride = record.frames.len().div_ceil(TRACES_MAX).max(1);
-    let drawn: Vec<_> = record.frames.iter().step_by(stride).collect();
+    let stride = record.course.frames.len().div_ceil(TRACES_MAX).max(1);
+    let drawn: Vec<_> = record.course.frames.iter().step_by(stride).collect();
     let mut curves = Vec::new();
     for (number, frame) in drawn.iter().enumerate() {
         let share = number as f64 / (drawn.len() - 1).max(1) as f64;
@@ -52,7 +53,7 @@ fn view_chart(record: &Record, [across, up]: [usize; 2]) -> Chart {
     }
     for (end, name) in ["end A", "end B"].into_iter().enumerate() {
         for line in 0..record.lines.len() {
-            let path = record.frames.iter().filter_map(|frame| {
+            let path = record.course.frames.iter().filter_map(|frame| {
                 let nodes = &frame.lines[line];
                 let node = if end == 0 { nodes.first() } else { nodes.last() };
                 node.map(|node| view(node.position))
@@ -78,18 +79,14 @@ fn mixed(share: f64) -> [u8; 3] {
 
 /// Energy by kind and angular momentum in time. `None` where nothing flies.
 pub(super) fn balance(record: &Record) -> Option<String> {
-    record.flight.first()?;
+    record.course.is_flight().then_some(())?;
     let energy = [
-        history(record, "total", 6, |row| {
-            row.kinetic + row.strain + row.gravitational
-        }),
-        history(record, "motion", 0, |row| row.kinetic),
-        history(record, "strain", 1, |row| row.strain),
+        history(record, "total", 6, FlightQuantity::Total),
+        history(record, "motion", 0, FlightQuantity::Kinetic),
+        history(record, "strain", 1, FlightQuantity::Strain),
     ];
-    let momentum = ["about x", "about y", "about z"]
-        .into_iter()
-        .enumerate()
-        .map(|(axis, name)| history(record, name, axis, move |row| row.angular_momentum[axis]));
+    let momentum = ["about x", "about y", "about z"].into_iter().enumerate();
+    let momentum = momentum.map(|(axis, name)| history(record, name, axis, FlightQuantity::Momentum(axis)));
     let charts = [
         (with_title("Energy", record), "energy [J]", energy.to_vec()),
         (
@@ -106,14 +103,8 @@ pub(super) fn balance(record: &Record) -> Option<String> {
     Some(chart::stacked_svg(&charts))
 }
 
-fn history(
-    record: &Record,
-    name: &str,
-    hue: usize,
-    value: impl Fn(&super::super::record::Flight) -> f64,
-) -> Curve {
-    let points = record.flight.iter().map(|row| [row.time, value(row)]);
-    Curve::new(points.collect(), colour(hue), Stroke::Bold).named(name)
+fn history(record: &Record, name: &str, hue: usize, quantity: FlightQuantity) -> Curve {
+    Curve::new(record.course.flight(quantity), colour(hue), Stroke::Bold).named(name)
 }
 
 #[cfg(test)]
@@ -124,15 +115,15 @@ mod tests {
 
     fn flying() -> Record {
         let mut record = sample::record();
-        record.flight = (0..10)
-            .map(|i| Flight {
+        for i in 0..10 {
+            record.course.add_flight(&Flight {
                 time: f64::from(i),
                 kinetic: 1.0,
                 strain: f64::from(i),
                 gravitational: 0.0,
                 angular_momentum: [0.0, 1.0, f64::from(i)],
-            })
-            .collect();
+            });
+        }
         record
     }
 
@@ -142,6 +133,7 @@ mod tests {
         let views = |record: &Record| shapes(record).unwrap().matches(" [m]").count() / 2;
         assert_eq!(views(&record), 1);
         for node in record
+            .course
             .frames
             .iter_mut()
             .flat_map(|f| f.lines.iter_mut().flatten())

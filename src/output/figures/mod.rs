@@ -14,7 +14,7 @@ pub mod modes;
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};
 
-use super::record::{Node, Record};
+use super::record::{ELEVATION, Node, Record};
 
 /// Widest figure [px].
 pub const WIDTH: u32 = 900;
@@ -49,9 +49,14 @@ pub fn colour(index: usize) -> [u8; 3] {
     PALETTE[index % PALETTE.len()]
 }
 
+/// Stems of the files of all figures.
+pub(super) const STEMS: [&str; 8] = [
+    "profile", "plan", "tension", "force", "bending", "waves", "flight", "balance",
+];
+
 /// Every figure that the record has something for, as file stem and SVG.
 pub fn all(record: &Record) -> Vec<(&'static str, String)> {
-    if !record.flight.is_empty() {
+    if record.course.is_flight() {
         let figures = [
             ("flight", flight::shapes(record)),
             ("balance", flight::balance(record)),
@@ -92,7 +97,7 @@ pub fn profile(record: &Record) -> Option<String> {
 /// Lines seen from above. `None` where they lie in one vertical plane, or there are no frames.
 pub fn plan(record: &Record) -> Option<String> {
     let (cos, sin) = principal_direction(record);
-    let nodes = record.frames.iter().flat_map(|f| f.lines.iter().flatten());
+    let nodes = record.course.frames.iter().flat_map(|f| f.lines.iter().flatten());
     let spread = |along: [f64; 2]| {
         let offsets = nodes
             .clone()
@@ -180,9 +185,6 @@ pub fn bending(record: &Record) -> Option<String> {
     Some(chart::stacked_svg(&[curvature, moment]))
 }
 
-/// Column of the surface's elevation [m].
-pub const ELEVATION: &str = "waves.elevation";
-
 /// Elevation of the surface in time. `None` without waves.
 pub fn waves(record: &Record) -> Option<String> {
     let history = record.history(ELEVATION)?;
@@ -237,11 +239,11 @@ fn with_title(what: &str, record: &Record) -> String {
 
 /// Curves of the lines' shapes through a view of space. `None` without frames.
 fn shapes(record: &Record, view: impl Fn([f64; 3]) -> [f64; 2]) -> Option<Vec<Curve>> {
-    let (first, last) = (record.frames.first()?, record.frames.last()?);
+    let (first, last) = (record.course.frames.first()?, record.course.frames.last()?);
     let seen = |nodes: &[Node]| nodes.iter().map(|n| view(n.position)).collect::<Vec<_>>();
     let mut curves = Vec::new();
-    let stride = record.frames.len().div_ceil(TRACES_MAX);
-    for frame in record.frames.iter().step_by(stride) {
+    let stride = record.course.frames.len().div_ceil(TRACES_MAX);
+    for frame in record.course.frames.iter().step_by(stride) {
         for (index, nodes) in frame.lines.iter().enumerate() {
             curves.push(Curve::new(seen(nodes), colour(index), Stroke::Faint));
         }
@@ -284,7 +286,7 @@ fn levels(record: &Record, curves: &[Curve]) -> Vec<(f64, &'static str, [u8; 3])
 /// Direction (cos, sin) in plan along which the lines extend furthest, towards +x: the principal axis of the first frame's
 /// nodes. A system that extends alike in all directions is seen along x.
 fn principal_direction(record: &Record) -> (f64, f64) {
-    let Some(frame) = record.frames.first() else {
+    let Some(frame) = record.course.frames.first() else {
         return (1.0, 0.0);
     };
     let nodes = || frame.lines.iter().flatten().map(|n| n.position);
@@ -318,7 +320,7 @@ fn direction_label(cos: f64, sin: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::Column;
+    use super::super::record::{Column, Form};
     use super::super::sample;
     use super::*;
     use quick_xml::{Reader, events::Event};
@@ -375,16 +377,11 @@ mod tests {
         let sample = sample::record();
         assert_eq!(bending(&sample), None);
         let names = ["line1.curvature_max", "line1.moment_max"];
-        let columns = names.map(|name| Column {
-            name: name.to_string(),
-            unit: String::new(),
-            description: String::new(),
-            whole: false,
-        });
-        let mut record = Record::new("", columns.into());
+        let columns = names.map(|name| Column::new(name, "", "", Form::Real));
+        let mut record = Record::new("", columns.into(), 2);
         record.lines = sample.lines;
-        record.add_row(0.0, [0.1, 8e3]);
-        record.add_row(1.0, [0.2, 16e3]);
+        record.add_row(&[0.0, 0.1, 8e3]);
+        record.add_row(&[1.0, 0.2, 16e3]);
         let labels = texts(&bending(&record).unwrap());
         for label in ["curvature [1/m]", "moment [kN m]", "line1"] {
             assert!(labels.iter().any(|t| t == label), "{label} in {labels:?}");
@@ -394,15 +391,10 @@ mod tests {
     #[test]
     fn waves_have_a_figure_and_still_water_has_none() {
         assert_eq!(waves(&sample::record()), None);
-        let column = Column {
-            name: ELEVATION.to_string(),
-            unit: "m".to_string(),
-            description: String::new(),
-            whole: false,
-        };
-        let mut record = Record::new("", vec![column]);
-        record.add_row(0.0, [1.5]);
-        record.add_row(1.0, [-0.5]);
+        let column = Column::new(ELEVATION, "m", "", Form::Real);
+        let mut record = Record::new("", vec![column], 2);
+        record.add_row(&[0.0, 1.5]);
+        record.add_row(&[1.0, -0.5]);
         let labels = texts(&waves(&record).unwrap());
         assert!(labels.iter().any(|t| t == "elevation [m]"), "{labels:?}");
     }
@@ -411,7 +403,7 @@ mod tests {
     fn lines_in_one_vertical_plane_need_no_plan() {
         let mut record = sample::record();
         assert_eq!(plan(&record), None);
-        for node in record.frames[0].lines[1].iter_mut() {
+        for node in record.course.frames[0].lines[1].iter_mut() {
             node.position[1] += 0.5 * node.position[0];
         }
         assert!(plan(&record).is_some());
@@ -421,7 +413,7 @@ mod tests {
     fn a_line_is_seen_across_its_own_plane() {
         let mut record = sample::record();
         record.lines.truncate(1);
-        for frame in &mut record.frames {
+        for frame in &mut record.course.frames {
             frame.lines.truncate(1);
             for node in &mut frame.lines[0] {
                 let [x, _, z] = node.position;
@@ -438,7 +430,7 @@ mod tests {
 
     #[test]
     fn an_empty_record_has_no_figures() {
-        assert!(all(&Record::new("", vec![])).is_empty());
+        assert!(all(&Record::new("", vec![], 0)).is_empty());
     }
 
     #[test]

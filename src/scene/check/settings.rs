@@ -3,7 +3,7 @@
 use super::{Bounds, Findings, number, quantity, rules};
 use crate::scene::channel::Channel;
 use crate::scene::table::Choice;
-use crate::scene::{AXIAL_RADIUS_MIN, Integrator, Scene};
+use crate::scene::{AXIAL_RADIUS_MIN, Frames, Integrator, Scene};
 
 /// Most output steps of a run.
 const STEPS_MAX: f64 = 1e7;
@@ -57,7 +57,13 @@ fn check_output(scene: &Scene, findings: &mut Findings) {
         return; // out of bounds
     }
     let [interval, duration] = [output.interval, output.duration].map(|time| quantity(time, "s"));
+    let shapes = match output.frames {
+        Some(Frames::Every(shapes)) if shapes > 0.0 => shapes,
+        _ => output.interval,
+    };
     rules! { findings, "output";
+        "frames.every" if shapes < output.interval =>
+            "{} is shorter than the interval of {interval}: shapes are written with rows", quantity(shapes, "s");
         "interval" if output.interval > output.duration =>
             "{interval} is longer than the duration of {duration}";
         "interval" if output.duration / output.interval > STEPS_MAX =>

@@ -1,0 +1,357 @@
+//! Tables and shapes of a run, written as it goes.
+//!
+//! The files of an interrupted run hold all that was computed, whole to the last row and shape. A run that is continued from its
+//! [`Marks`] writes the rows that it would have written without the interruption.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::csv::{CsvTable, write_units};
+use super::growing::{Growing, Mark};
+use super::parquet::ParquetTable;
+use super::record::{Column, Form, Frame, Node, Record};
+use super::times::Times;
+use super::{OutputError, figures, make_folder, vtk, write_file};
+use crate::scene::{Format, Frames, Output};
+
+/// Shapes of a run whose scene does not give their interval, about [-].
+const FRAMES_MAX: usize = 240;
+
+/// A table in the format of the scene.
+#[derive(Debug)]
+enum Table {
+    Csv(CsvTable),
+    Parquet(Box<ParquetTable>),
+}
+
+impl Table {
+    fn create(stem: &Path, columns: &[Column], output: &Output) -> Result<Table, OutputError> {
+        let file = Growing::create(&with_ending(stem, output))?;
+        Ok(match output.format {
+            Some(Format::Parquet) => {
+                Table::Parquet(Box::new(ParquetTable::create(file, columns, output.digits)?))
+            }
+            Some(Format::Csv) | None => Table::Csv(CsvTable::create(file, columns, output.digits)?),
+        })
+    }
+
+    fn reopen(stem: &Path, mark: &Mark, columns: &[Column], output: &Output) -> Result<Table, OutputError> {
+        let file = Growing::reopen(&with_ending(stem, output), mark.clone())?;
+        Ok(match output.format {
+            Some(Format::Parquet) => {
+                let table = ParquetTable::reopen(file, mark, columns, output.digits)?;
+                Table::Parquet(Box::new(table))
+            }
+            Some(Format::Csv) | None => Table::Csv(CsvTable::reopen(file, columns, output.digits)?),
+        })
+    }
+
+    fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
+        match self {
+            Table::Csv(table) => table.row(values),
+            Table::Parquet(table) => table.row(values),
+        }
+    }
+
+    fn flush(&mut self) -> Result<(), OutputError> {
+        match self {
+            Table::Csv(table) => table.flush(),
+            Table::Parquet(table) => table.flush(),
+        }
+    }
+
+    fn mark(&mut self) -> Result<Mark, OutputError> {
+        self.flush()?;
+        match self {
+            Table::Csv(table) => table.file().mark(),
+            Table::Parquet(table) => table.file().mark(),
+        }
+    }
+}
+
+fn with_ending(stem: &Path, output: &Output) -> PathBuf {
+    stem.with_extension(match output.format {
+        Some(Format::Parquet) => "parquet",
+        Some(Format::Csv) | None => "csv",
+    })
+}
+
+/// Shapes for ParaView.
+#[derive(Debug)]
+struct Shapes {
+    collection: Growing,
+    written: usize,
+}
+
+/// Places up to which the files of a run are written.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Marks {
+    results: Mark,
+    profile: Option<Mark>,
+    /// The collection of shapes, and their number.
+    shapes: Option<(Mark, usize)>,
+}
+
+/// Strides of the rows [-] that a shape is kept at.
+#[derive(Debug, Clone, Copy)]
+struct Strides {
+    /// Of the figures.
+    figures: usize,
+    /// Of the files for ParaView; `None` where there are none.
+    files: Option<usize>,
+}
+
+/// The files of a run.
+#[derive(Debug)]
+pub struct RunFiles {
+    folder: PathBuf,
+    results: Table,
+    profile: Option<Table>,
+    shapes: Option<Shapes>,
+    strides: Strides,
+    last: usize,
+    row: Vec<f64>,
+}
+
+impl RunFiles {
+    /// Begins the files of a run in a folder, and removes those of an earlier one. `bends` is true if any line has bending stiffness.
+    ///
+    /// # Errors
+    /// The first file or folder that the operating system refuses.
+    pub fn create(
+        folder: &Path,
+        record: &Record,
+        output: &Output,
+        times: &Times,
+        bends: bool,
+    ) -> Result<RunFiles, OutputError> {
+        make_folder(folder)?;
+        remove_old(folder);
+        let results = Table::create(&folder.join("results"), record.columns(), output)?;
+        write_file(&folder.join("results.units.csv"), |w| {
+            write_units(record.columns(), w)
+        })?;
+        let columns = profile_columns(record, bends);
+        let profile = output
+            .profile
+            .then(|| Table::create(&folder.join("profile"), &columns, output));
+        let strides = strides(output, times);
+        let shapes = strides.files.map(|_| Shapes::create(folder));
+        Ok(RunFiles {
+            folder: folder.to_path_buf(),
+            results,
+            profile: profile.transpose()?,
+            shapes: shapes.transpose()?,
+            strides,
+            last: times.count,
+            row: Vec::new(),
+        })
+    }
+
+    /// Continues the files of an interrupted run.
+    ///
+    /// # Errors
+    /// A file that is not as it was left, or that the operating system refuses.
+    pub fn reopen(
+        folder: &Path,
+        record: &Record,
+        output: &Output,
+        times: &Times,
+        (marks, bends): (&Marks, bool),
+    ) -> Result<RunFiles, OutputError> {
+        let open = |stem: &str, mark: &Mark, columns: &[Column]| {
+            Table::reopen(&folder.join(stem), mark, columns, output)
+        };
+        let results = open("results", &marks.results, record.columns())?;
+        let columns = profile_columns(record, bends);
+        let profile = marks.profile.as_ref().map(|mark| open("profile", mark, &columns));
+        let shapes = marks.shapes.as_ref().map(|(mark, written)| {
+            let collection = Growing::reopen(&folder.join(COLLECTION_FILE), mark.clone())?;
+            let written = *written;
+            Ok(Shapes { collection, written })
+        });
+        Ok(RunFiles {
+            folder: folder.to_path_buf(),
+            results,
+            profile: profile.transpose()?,
+            shapes: shapes.transpose()?,
+            strides: strides(output, times),
+            last: times.count,
+            row: Vec::new(),
+        })
+    }
+
+    /// Adds a row, the number `index` of the run from 0: to the record and the table, and where one is due the shape of the lines.
+    ///
+    /// # Errors
+    /// A file that the operating system refuses.
+    pub fn add(
+        &mut self,
+        record: &mut Record,
+        index: usize,
+        row: &[f64],
+        shape: impl FnOnce(f64) -> Frame,
+    ) -> Result<(), OutputError> {
+        record.add_row(row);
+        self.results.row(row)?;
+        let due = |stride: usize| index.is_multiple_of(stride) || index == self.last;
+        let drawn = due(self.strides.figures);
+        let filed = self.strides.files.is_some_and(due);
+        if !(drawn || filed || self.profile.is_some()) {
+            return Ok(());
+        }
+        let frame = shape(row[0]);
+        if let Some(profile) = &mut self.profile {
+            add_nodes(profile, &frame, &mut self.row)?;
+        }
+        if let Some(shapes) = self.shapes.as_mut().filter(|_| filed) {
+            shapes.add(&self.folder, &frame)?;
+        }
+        if drawn {
+            record.course.frames.push(frame);
+        }
+        Ok(())
+    }
+
+    /// Writes all that is kept; the marks of what the files hold now.
+    ///
+    /// # Errors
+    /// A file that the operating system refuses.
+    pub fn mark(&mut self) -> Result<Marks, OutputError> {
+        let profile = self.profile.as_mut().map(Table::mark);
+        let shapes = self.shapes.as_mut().map(|shapes| {
+            let mark = shapes.collection.mark()?;
+            Ok((mark, shapes.written))
+        });
+        Ok(Marks {
+            results: self.results.mark()?,
+            profile: profile.transpose()?,
+            shapes: shapes.transpose()?,
+        })
+    }
+
+    /// Writes all that is kept.
+    ///
+    /// # Errors
+    /// A file that the operating system refuses.
+    pub fn flush(&mut self) -> Result<(), OutputError> {
+        self.results.flush()?;
+        self.profile.as_mut().map_or(Ok(()), Table::flush)
+    }
+}
+
+/// File that names the shapes for ParaView.
+const COLLECTION_FILE: &str = "lines.pvd";
+
+impl Shapes {
+    fn create(folder: &Path) -> Result<Shapes, OutputError> {
+        make_folder(&folder.join(vtk::FRAME_FOLDER))?;
+        let mut collection = Growing::create(&folder.join(COLLECTION_FILE))?;
+        collection.append(vtk::COLLECTION.as_bytes(), vtk::COLLECTION_END.into())?;
+        Ok(Shapes {
+            collection,
+            written: 0,
+        })
+    }
+
+    /// Writes a shape, and then its place in the collection.
+    fn add(&mut self, folder: &Path, frame: &Frame) -> Result<(), OutputError> {
+        let path = folder.join(vtk::frame_name(self.written));
+        write_file(&path, |w| vtk::write_frame(frame, w))?;
+        let entry = vtk::collected(self.written, frame.time);
+        self.collection
+            .append(entry.as_bytes(), vtk::COLLECTION_END.into())?;
+        self.written += 1;
+        Ok(())
+    }
+}
+
+fn strides(output: &Output, times: &Times) -> Strides {
+    let overview = times.count.div_ceil(FRAMES_MAX).max(1);
+    let files = match output.frames {
+        None | Some(Frames::Overview) => Some(overview),
+        Some(Frames::None) => None,
+        Some(Frames::Every(interval)) => Some(((interval / times.interval).round() as usize).max(1)),
+    };
+    Strides {
+        figures: overview,
+        files,
+    }
+}
+
+/// Columns of the profile: unstretched arc length, position and effective tension of every node, and curvature and moment where any line bends.
+fn profile_columns(record: &Record, bends: bool) -> Vec<Column> {
+    let names = record.lines.iter().map(|line| line.name.clone()).collect();
+    let real = |name: &str, unit: &str, text: &str| Column::new(name, unit, text, Form::Real);
+    let mut columns = vec![
+        Column::time(),
+        Column::new("line", "1", "name of the line", Form::Name(names)),
+        Column::new("node", "1", "number of the node from end A", Form::Whole),
+        real("s", "m", "unstretched arc length from end A"),
+        real("x", "m", "position"),
+        real("y", "m", "position"),
+        real("z", "m", "position"),
+        real("tension", "N", "effective tension"),
+    ];
+    if bends {
+        columns.push(Column::new("curvature", "1/m", "curvature", Form::Sparse));
+        columns.push(Column::new("moment", "N.m", "bending moment", Form::Sparse));
+    }
+    columns
+}
+
+/// Adds a row for every node of every line.
+fn add_nodes(profile: &mut Table, frame: &Frame, row: &mut Vec<f64>) -> Result<(), OutputError> {
+    for (line, nodes) in frame.lines.iter().enumerate() {
+        for (
+            index,
+            Node {
+                s,
+                position,
+                tension,
+                bending,
+            },
+        ) in nodes.iter().enumerate()
+        {
+            let [x, y, z] = *position;
+            row.clear();
+            row.extend([frame.time, line as f64, index as f64, *s, x, y, z, *tension]);
+            row.extend(match bending {
+                Some(bending) => [bending.curvature, bending.moment],
+                None => [f64::NAN; 2],
+            });
+            profile.row(row)?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes the results of an earlier run, so that none of them stands beside those of this one. A name that belongs to something other than a
+/// file is left: the file that takes its place is refused.
+fn remove_old(folder: &Path) {
+    let tables =
+        ["results", "profile"].map(|stem| ["csv", "parquet"].map(|ending| format!("{stem}.{ending}")));
+    let figures = figures::STEMS.iter().map(|stem| format!("{stem}.svg"));
+    let others = ["report.html", COLLECTION_FILE, super::state::FILE].map(String::from);
+    let shapes = fs::read_dir(folder.join(vtk::FRAME_FOLDER))
+        .into_iter()
+        .flatten()
+        .flatten();
+    let shapes = shapes.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let shapes = shapes.filter(|name| vtk::is_frame(name));
+    let shapes = shapes.map(|name| format!("{}/{name}", vtk::FRAME_FOLDER));
+    let names = tables
+        .concat()
+        .into_iter()
+        .chain(figures)
+        .chain(others)
+        .chain(shapes);
+    for path in names.map(|name| folder.join(name)) {
+        // a link stays, and its target is replaced
+        if fs::symlink_metadata(&path).is_ok_and(|found| found.is_file()) {
+            let _ = fs::remove_file(path);
+        }
+    }
+}
