@@ -63,11 +63,11 @@ def started_at(text, points):
 
 
 @pytest.mark.parametrize("name, time_step, tolerance", [
-    ("oc3", 0.002, 1e-6), ("oc4", 0.002, 1e-6), ("volturnus", 0.002, 1e-6), ("taut", 0.004, 1e-6),
+    ("oc3", 0.002, 3e-5), ("oc4", 0.002, 1e-5), ("volturnus", 0.002, 1e-6), ("taut", 0.004, 1e-6),
     ("buoyed", 0.002, 1e-3), ("clump", 0.002, 1e-3),
 ])
 def test_fairlead_forces_in_equilibrium_are_moordyns(moorline, as_peers, tmp_path, name, time_step, tolerance):
-    """The issue asks for 0.1 %. Free points still swing in MoorDyn after its relaxation, by 0.03 % of the force."""
+    """The seabed acts at nodes in MoorDyn. Free points still swing there after its relaxation, by 0.03 % of the force."""
     text = getattr(decks, name)()
     points = at_rest(moorline, as_peers(text))
     fairleads = vessel_points(text)

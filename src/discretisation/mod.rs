@@ -40,7 +40,7 @@ use search::Search;
 pub use expense::expense;
 
 /// Part of the tolerance that the estimated error is to keep [-].
-const AIM: f64 = 0.85;
+const AIM: f64 = 0.8;
 /// Most elements that are extrapolated to [-].
 const ELEMENTS_MAX: f64 = 400.0;
 /// Names of lines in a sentence [-].

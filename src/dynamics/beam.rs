@@ -26,14 +26,14 @@ mod measures;
 use nalgebra::{Matrix3, Vector3};
 
 use super::energy_balance::Flow;
-use crate::elements::beam::{BeamEnd, Span, add_elements, folded};
+use crate::elements::beam::{BeamEnd, Span, add_elements, add_rise, folded};
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, cayley_vector, skew, spin_of_cayley};
 use crate::model::{Beam, LineState, Nodes};
 use crate::physics::contact_step::{ContactStep, contact_step};
 use crate::physics::fading_damper::damper_reach;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
-use crate::physics::seabed::ContactCoefficients;
+use crate::physics::seabed::{PARTS, Part};
 use crate::physics::section::{
     Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
 };
@@ -291,6 +291,9 @@ impl BeamWork {
             self.add_rotation(case, state.spins[i], i);
             self.add_surroundings(case, i);
         }
+        if case.nodes.contact.is_some() {
+            self.add_seabed(case);
+        }
         let last = self.now.len() - 1;
         for (node, end) in [0, last].into_iter().zip(&case.ends) {
             self.chain.right[node] += end.load;
@@ -332,7 +335,7 @@ impl BeamWork {
         block += slope / dt;
     }
 
-    /// Adds the forces of water and seabed on a node and on the body there.
+    /// Adds the forces of water on a node, and those on the body there.
     fn add_surroundings(&mut self, case: &BeamStep, i: usize) {
         let dt = case.length;
         if let Some(k) = drag_of(case.nodes, i) {
@@ -341,10 +344,6 @@ impl BeamWork {
             right += drag(k, velocity, self.tangent[i]);
             let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(0, 0);
             block += drag_slope(k, velocity, self.tangent[i]) / dt;
-        }
-        if let Some(contact) = self.contact(case, i) {
-            self.chain.right[i].z += contact.force;
-            self.chain.diagonal[i][(2, 2)] += contact.slope;
         }
         if let Some(body) = self.body(case, i) {
             let step = body.over(self.places(i), dt);
@@ -360,15 +359,30 @@ impl BeamWork {
         [&self.before[i].position, &self.now[i].position]
     }
 
-    fn contact(&self, case: &BeamStep, i: usize) -> Option<ContactStep> {
-        let contact = case.nodes.contact.as_ref()?;
-        let k = ContactCoefficients {
-            stiffness: contact.stiffness[i],
-            damping: contact.damping[i],
-        };
-        let penetration = self.places(i).map(|place| contact.level[i] - place.z);
-        let reach = damper_reach(k.stiffness, case.nodes.weight[i]);
-        Some(contact_step(k, penetration, reach, case.length))
+    /// Seabed under the parts of an element.
+    fn contact(&self, case: &BeamStep, element: usize) -> [(Part, ContactStep); 4] {
+        PARTS.map(|part| {
+            let Some(contact) = &case.nodes.contact else {
+                return (part, ContactStep::default());
+            };
+            let k = contact.coefficients(element);
+            let depths = |i: usize| self.places(i).map(|place| contact.level[i] - place.z);
+            let (near, far) = (depths(element), depths(element + 1));
+            let depth = [0, 1].map(|end| part.between(near[end], far[end]));
+            let reach = damper_reach(k.stiffness, contact.weight[element]);
+            (part, contact_step(k, depth, reach, case.length))
+        })
+    }
+
+    /// Adds the seabed under the elements.
+    fn add_seabed(&mut self, case: &BeamStep) {
+        for element in 0..case.beam.elements.len() {
+            for (part, bed) in self.contact(case, element) {
+                let force = part.shares().map(|share| share * bed.force);
+                let slope = part.products().map(|row| row.map(|product| product * bed.slope));
+                add_rise(&mut self.chain, element, force, slope);
+            }
+        }
     }
 
     /// Energy that crossed the boundary of the beam in the step.
@@ -433,8 +447,14 @@ impl BeamWork {
         if let Some(k) = drag_of(case.nodes, i) {
             lost -= drag(k, moved / case.length, self.tangent[i]).dot(&moved);
         }
-        if let Some(contact) = self.contact(case, i) {
-            lost -= contact.force * moved.z;
+        if let Some(contact) = &case.nodes.contact {
+            for (element, _) in contact.beside(i) {
+                let beds = self.contact(case, element).into_iter();
+                let push: f64 = beds
+                    .map(|(part, bed)| part.shares()[i - element] * bed.force)
+                    .sum();
+                lost -= push * moved.z;
+            }
         }
         if let Some(damping) = &case.nodes.mass_damping {
             lost += damping[i] / case.length * moved.norm_squared();

@@ -12,6 +12,7 @@
 
 mod axial_implicit;
 mod balance;
+mod contact;
 mod explicit;
 mod layout;
 mod network;

@@ -134,7 +134,14 @@ pub fn end_force(
     }
     force.z -= nodes.weight[node] + dry.weight;
     if let Some(contact) = &nodes.contact {
-        force += contact.push(node, state.position[node], point.velocity);
+        let velocity = |i: usize| {
+            if i == node {
+                point.velocity
+            } else {
+                state.velocity[i]
+            }
+        };
+        force += contact.push(node, &state.position, velocity);
     }
     force
 }
@@ -204,7 +211,7 @@ impl HalfNode<'_> {
         let [own, drag] = self.load(tangents[0], self.dry.part);
         let mut borne = nodes.weight[next] * Vector3::z();
         if let Some(contact) = &nodes.contact {
-            borne -= contact.push(next, state.position[next], state.velocity[next]);
+            borne -= contact.push(next, &state.position, |i| state.velocity[i]);
         }
         let share = nodes.length[self.node] / nodes.length[next];
         let mut at_surface = 1.0;

@@ -14,6 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::math::pivoted_chain::PivotedChain;
 use crate::model::{BeamElement, FreePoint, Point};
+use crate::physics::seabed::{PARTS, Part};
 use crate::physics::section::{
     Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain, strain_gradient,
 };
@@ -75,19 +76,19 @@ pub struct BeamCase<'a> {
     pub rest: Vec<Sextuple>,
     /// Weight of the nodes [N].
     pub weight: Vec<f64>,
-    /// Seabed under the nodes; empty without contact.
-    pub seabed: Vec<NodeSpring>,
+    /// Seabed under the elements; empty without contact.
+    pub seabed: Vec<ElementSpring>,
     /// Constraints and loads of ends A and B.
     pub ends: [BeamEnd; 2],
     /// Free points at ends A and B: their weight, buoyancy and contact act on the beam.
     pub bodies: [Option<&'a FreePoint>; 2],
 }
 
-/// Spring of the seabed under a node.
+/// Spring of the seabed under an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NodeSpring {
-    /// Height below which it pushes [m].
-    pub level: f64,
+pub struct ElementSpring {
+    /// Heights below which it pushes, at both nodes [m].
+    pub levels: [f64; 2],
     /// Stiffness [N/m].
     pub stiffness: f64,
 }
@@ -115,11 +116,23 @@ impl LoadShare {
     }
 }
 
-impl NodeSpring {
-    /// Depth of a node below the spring's level [m].
-    fn penetration(&self, section: &Section) -> f64 {
-        (self.level - section.position.z).max(0.0)
+impl ElementSpring {
+    /// Parts of an element between two sections that are below the level of the spring, with their depths [m].
+    fn pressed(&self, sections: &[Section]) -> impl Iterator<Item = (Part, f64)> + use<> {
+        let [near, far] = [0, 1].map(|end| self.levels[end] - sections[end].position.z);
+        let depths = PARTS.map(|part| (part, part.between(near, far)));
+        depths.into_iter().filter(|(_, depth)| *depth > 0.0)
     }
+}
+
+/// Adds vertical forces on the two nodes of an element [N] and minus their slopes with the heights of these [N/m].
+pub(crate) fn add_rise(chain: &mut PivotedChain, element: usize, force: [f64; 2], slope: [[f64; 2]; 2]) {
+    for (end, force) in force.into_iter().enumerate() {
+        chain.right[element + end].z += force;
+        chain.diagonal[element + end][(2, 2)] += slope[end][end];
+    }
+    chain.upper[element][(2, 2)] += slope[0][1];
+    chain.lower[element][(2, 2)] += slope[1][0];
 }
 
 /// Potential energy of a beam.
@@ -155,10 +168,12 @@ impl BeamCase<'_> {
             chain.right[i].z -= share.force * weight;
         }
         for (i, spring) in self.seabed.iter().enumerate() {
-            let penetration = spring.penetration(&sections[i]);
-            if penetration > 0.0 {
-                chain.right[i].z += spring.stiffness * penetration;
-                chain.diagonal[i][(2, 2)] += spring.stiffness;
+            for (part, depth) in spring.pressed(&sections[i..]) {
+                let force = part.shares().map(|share| share * spring.stiffness * depth);
+                let slope = part
+                    .products()
+                    .map(|row| row.map(|product| product * spring.stiffness));
+                add_rise(chain, i, force, slope);
             }
         }
         let ends = self.ends.iter().zip(&self.bodies);
@@ -209,8 +224,11 @@ impl BeamCase<'_> {
         for (weight, section) in self.weight.iter().zip(sections) {
             add(weight * section.position.z);
         }
-        for (spring, section) in self.seabed.iter().zip(sections) {
-            add(0.5 * spring.stiffness * spring.penetration(section).powi(2));
+        for (spring, sections) in self.seabed.iter().zip(sections.windows(2)) {
+            for (part, depth) in spring.pressed(sections) {
+                let share: f64 = part.shares().iter().sum();
+                add(0.5 * share * spring.stiffness * depth * depth);
+            }
         }
         for (end, node) in [0, sections.len() - 1].into_iter().enumerate() {
             let position = &sections[node].position;

@@ -14,12 +14,12 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
+use super::contact::Bearing;
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
 use crate::model::{Bottom, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::friction::{Axes, Friction, node_friction};
 use crate::physics::ground::Touch;
-use crate::physics::seabed::ContactCoefficients;
 
 /// Part of the limit of friction that statics uses: nodes that slid to their places of rest then stick in motion, and
 /// rounding does not free them one by one [-].
@@ -35,10 +35,10 @@ const POINT_STICK: f64 = 1e3;
 pub struct Resting<'a> {
     /// Penetration and normal, from the level below which the seabed pushes.
     pub touch: Touch,
-    /// Spring and damper.
-    pub coefficients: ContactCoefficients,
-    /// Half the range of penetrations over which the damper fades in [m].
-    pub reach: f64,
+    /// Normal force with its slopes.
+    pub bearing: Bearing,
+    /// Normal of the seabed at the node after [-].
+    pub normal_after: Vector3<f64>,
     /// Place [m].
     pub place: Vector3<f64>,
     /// Velocity [m/s].
@@ -78,14 +78,14 @@ pub struct Push {
     stiffness: [Matrix3<f64>; 2],
     /// Minus their slopes with velocity [N s/m].
     damping: [Matrix3<f64>; 2],
+    /// Minus the slopes of the normal force with place [N/m] and velocity [N s/m] of the node after.
+    after: [Matrix3<f64>; 2],
 }
 
 impl<'a> Resting<'a> {
-    /// Contact without velocity, with a case's part of the limit of friction, and the normal force `pressed` [N]
-    /// where the case keeps it constant.
+    /// Contact with a case's part of the limit of friction, and the normal force `pressed` [N] where the case keeps it constant.
     fn at_rest(self, case: &StaticCase, pressed: f64) -> Resting<'a> {
         Resting {
-            velocity: Vector3::zeros(),
             rub: self.rub.map(|rub| Rub {
                 limit: case.limit,
                 normal_force: case.keeps_pressure.then_some(pressed),
@@ -95,16 +95,16 @@ impl<'a> Resting<'a> {
         }
     }
 
-    /// Returns the force of the seabed; `None` without contact.
-    pub fn push(&self) -> Option<Push> {
+    /// Returns the force of the seabed.
+    pub fn push(&self) -> Push {
         let Touch {
-            penetration,
             normal,
             slope,
             turning,
+            ..
         } = self.touch;
-        let rise = normal.dot(&self.velocity);
-        let bed = FadingContact::new(self.coefficients, penetration, rise, self.reach)?;
+        let bed = self.bearing.bed;
+        let across = normal * self.normal_after.transpose();
         let by_place = bed.stiffness * slope - bed.damping * turning.transpose() * self.velocity;
         let by_velocity = -bed.damping * normal;
         let mut push = Push {
@@ -116,6 +116,7 @@ impl<'a> Resting<'a> {
                 Matrix3::zeros(),
             ],
             damping: [-normal * by_velocity.transpose(), Matrix3::zeros()],
+            after: [self.bearing.stiffness_after, self.bearing.damping_after].map(|slope| slope * across),
         };
         if let Some(rub) = &self.rub {
             let axes = Axes::new(normal, rub.tangent);
@@ -136,7 +137,7 @@ impl<'a> Resting<'a> {
             push.stiffness[1] = rub.stick * sheared - grows * by_place.transpose();
             push.damping[1] = -grows * by_velocity.transpose();
         }
-        Some(push)
+        push
     }
 }
 
@@ -149,25 +150,41 @@ impl Push {
         let slope = |i: usize| weights.position * self.stiffness[i] + weights.velocity * self.damping[i];
         slope(0) + weights.friction / weights.force * slope(1)
     }
+
+    /// Tangent with the node after.
+    fn tangent_after(&self, weights: &Weights) -> Matrix3<f64> {
+        weights.position * self.after[0] + weights.velocity * self.after[1]
+    }
 }
 
-/// Contact of a node of a line with the seabed; it sticks with `part` of its stiffness.
+/// Contact of a node of a line with the seabed; it sticks with `part` of its stiffness. Dampers fade in over ± `reach` per segment [m]; at rest,
+/// without one, there are none. `None` where the seabed does not act.
 pub fn resting_node<'a>(
     line: &'a Line,
     state: &LineState,
     i: usize,
-    reach: f64,
+    reach: Option<&[f64]>,
     part: f64,
 ) -> Option<Resting<'a>> {
-    let (contact, bottom) = line.bottom()?;
+    let contact = line.nodes.contact.as_ref()?;
+    let still = Vector3::zeros();
+    let velocity = |node: usize| reach.map_or(still, |_| state.velocity[node]);
+    let depth = |node: usize| {
+        let (penetration, normal) = contact.stand(node, state.position[node]);
+        [penetration, normal.dot(&velocity(node))]
+    };
+    let bearing = Bearing::new(contact, i, depth, |segment| {
+        reach.map_or(0.0, |reach| reach[segment])
+    })?;
     let place = state.position[i];
-    let friction = bottom.friction.as_ref().zip(state.anchor.get(i));
+    let after = (i + 1).min(state.position.len() - 1);
+    let friction = line.friction().zip(state.anchor.get(i));
     Some(Resting {
-        touch: bottom.touch(place, contact.lift(i)),
-        coefficients: contact.coefficients(i),
-        reach,
+        touch: contact.touch(i, place),
+        bearing,
+        normal_after: contact.stand(after, state.position[after]).1,
         place,
-        velocity: state.velocity[i],
+        velocity: velocity(i),
         rub: friction.map(|(friction, anchor)| Rub {
             friction,
             tangent: node_tangent(&state.position, i),
@@ -179,23 +196,36 @@ pub fn resting_node<'a>(
     })
 }
 
-/// Contact of a free point with the seabed; it sticks with `part` of its stiffness.
+/// Contact of a free point with the seabed; it sticks with `part` of its stiffness. Its damper fades in over ± `reach` [m]; at rest, without one,
+/// there is none. `None` where the seabed does not act.
 pub fn resting_point<'a>(
     free: &FreePoint,
     bottom: &'a Bottom,
     state: &PointState,
-    reach: f64,
+    reach: Option<f64>,
     part: f64,
 ) -> Option<Resting<'a>> {
     let contact = free.contact.as_ref()?;
     let place = state.position;
     let friction = bottom.friction.as_ref().zip(state.anchor);
+    let touch = bottom.touch(place, contact.lift());
+    let velocity = reach.map_or(Vector3::zeros(), |_| state.velocity);
+    let rise = touch.normal.dot(&velocity);
+    let bed = FadingContact::new(
+        contact.coefficients,
+        touch.penetration,
+        rise,
+        reach.unwrap_or(0.0),
+    )?;
     Some(Resting {
-        touch: bottom.touch(place, contact.lift()),
-        coefficients: contact.coefficients,
-        reach,
+        touch,
+        bearing: Bearing {
+            bed,
+            ..Bearing::default()
+        },
+        normal_after: touch.normal,
         place,
-        velocity: state.velocity,
+        velocity,
         rub: friction.map(|(friction, anchor)| Rub {
             friction,
             tangent: Vector3::z(), // a point is across all around
@@ -215,38 +245,55 @@ pub fn point_stick(free: &FreePoint) -> f64 {
 
 impl LineWork {
     /// Adds the seabed's springs and friction under a line at rest.
-    pub(super) fn add_static_bottom(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
+    pub(super) fn add_contact_at_rest(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
+        if line.nodes.contact.is_none() {
+            return;
+        }
         for i in 0..state.position.len() {
-            let still = Vector3::zeros();
-            let push = resting_node(line, state, i, 0.0, case.stick)
-                .map(|resting| resting.at_rest(case, self.pressed[i]))
-                .and_then(|node| node.push());
-            self.rubbed[i] = push.map_or(still, |push| push.friction);
-            if !case.keeps_pressure {
-                self.pressed[i] = push.map_or(0.0, |push| push.normal_force);
+            let pressed = self.pressed.get(i).copied().unwrap_or(0.0);
+            let push = resting_node(line, state, i, None, case.stick)
+                .map(|resting| resting.at_rest(case, pressed).push());
+            if let (Some(pressed), false) = (self.pressed.get_mut(i), case.keeps_pressure) {
+                *pressed = push.map_or(0.0, |push| push.normal_force);
             }
-            if let Some(push) = push {
-                self.residual[i] -= push.force;
-                self.diagonal[i] += push.stiffness[0] + push.stiffness[1];
+            self.keep_friction(i, push.as_ref());
+            let Some(push) = push else { continue };
+            self.residual[i] -= push.force;
+            self.diagonal[i] += push.stiffness[0] + push.stiffness[1];
+            if let Some(coupling) = self.coupling.get_mut(i) {
+                *coupling += push.after[0];
             }
         }
     }
 
     /// Adds the seabed under a moving line.
-    pub(super) fn add_bottom<const TANGENT: bool>(
+    pub(super) fn add_contact<const TANGENT: bool>(
         &mut self,
         line: &Line,
         state: &LineState,
         weights: &Weights,
     ) {
+        if line.nodes.contact.is_none() {
+            return;
+        }
         for i in 0..state.position.len() {
-            let push = resting_node(line, state, i, self.reach[i], 1.0).and_then(|node| node.push());
-            self.rubbed[i] = push.map_or(Vector3::zeros(), |push| push.friction);
+            let push = resting_node(line, state, i, Some(&self.reach), 1.0).map(|node| node.push());
+            self.keep_friction(i, push.as_ref());
             let Some(push) = push else { continue };
             self.residual[i] -= push.weighted(weights);
             if TANGENT {
                 self.diagonal[i] += push.tangent(weights);
+                if let Some(coupling) = self.coupling.get_mut(i) {
+                    *coupling += push.tangent_after(weights);
+                }
             }
+        }
+    }
+
+    /// Keeps the friction on a node, where the seabed is more than a level plane without friction.
+    fn keep_friction(&mut self, node: usize, push: Option<&Push>) {
+        if let Some(rubbed) = self.rubbed.get_mut(node) {
+            *rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         }
     }
 }
@@ -260,9 +307,8 @@ impl PointWork {
         state: &PointState,
         case: &StaticCase,
     ) {
-        let push = resting_point(free, bottom, state, 0.0, case.stick)
-            .map(|resting| resting.at_rest(case, self.pressed))
-            .and_then(|point| point.push());
+        let push = resting_point(free, bottom, state, None, case.stick)
+            .map(|resting| resting.at_rest(case, self.pressed).push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if !case.keeps_pressure {
             self.pressed = push.map_or(0.0, |push| push.normal_force);
@@ -281,7 +327,7 @@ impl PointWork {
         state: &PointState,
         weights: &Weights,
     ) {
-        let push = resting_point(free, bottom, state, self.reach, 1.0).and_then(|point| point.push());
+        let push = resting_point(free, bottom, state, Some(self.reach), 1.0).map(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
             self.residual -= push.weighted(weights);
@@ -370,6 +416,7 @@ pub(crate) fn remove_anchors(model: &Model, network: &Network, state: &mut State
 mod tests {
     use super::*;
     use crate::physics::ground::{Grid, Ground};
+    use crate::physics::seabed::ContactCoefficients;
     use approx::assert_relative_eq;
 
     const ROUGH: Friction = Friction {
@@ -411,13 +458,21 @@ mod tests {
     ) -> Resting<'_> {
         let under = Vector3::new(0.2, -0.1, bottom.ground.height(0.2, -0.1) - 0.01);
         let place = under + shift;
-        Resting {
-            touch: bottom.touch(place, 0.0),
-            coefficients: ContactCoefficients {
+        let (touch, k) = (
+            bottom.touch(place, 0.0),
+            ContactCoefficients {
                 stiffness: 1e4,
                 damping: 50.0,
             },
-            reach: 0.03,
+        );
+        let bed = FadingContact::new(k, touch.penetration, touch.normal.dot(&velocity), 0.03);
+        Resting {
+            touch,
+            bearing: Bearing {
+                bed: bed.expect("the node is under the seabed"),
+                ..Bearing::default()
+            },
+            normal_after: touch.normal,
             place,
             velocity,
             rub: slid.map(|slid| Rub {
@@ -433,10 +488,10 @@ mod tests {
 
     fn assert_tangent(bottom: &Bottom, slid: Option<Vector3<f64>>) {
         let (zero, velocity) = (Vector3::zeros(), Vector3::new(0.05, -0.1, -0.2));
-        let push = resting(bottom, zero, velocity, slid).push().unwrap();
+        let push = resting(bottom, zero, velocity, slid).push();
         for axis in 0..3 {
             let step = 1e-7 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
-            let force = |shift, velocity| resting(bottom, shift, velocity, slid).push().unwrap().force;
+            let force = |shift, velocity| resting(bottom, shift, velocity, slid).push().force;
             let by_place = (force(-step, velocity) - force(step, velocity)) / 2e-7;
             let by_velocity = (force(zero, velocity - step) - force(zero, velocity + step)) / 2e-7;
             let stiffness = push.stiffness[0] + push.stiffness[1];
@@ -474,7 +529,7 @@ mod tests {
         let still = Vector3::zeros();
         let slid = Vector3::new(0.4, -0.3, 0.1);
         let node = resting(&bed, still, still, Some(slid));
-        let push = node.push().unwrap();
+        let push = node.push();
         assert_relative_eq!(push.friction.dot(&node.touch.normal), 0.0, epsilon = 1e-10);
         assert!(push.friction.dot(&slid) < 0.0);
         let normal = (push.force - push.friction).norm();

@@ -39,7 +39,7 @@ pub(crate) struct LineWork {
     pub(super) start: Vec<Stretched>,
     /// Terms that the time integrator carries over from the last step, per node [N].
     pub history: Vec<Vector3<f64>>,
-    /// Half the range of penetrations over which the seabed damper fades in, per node [m].
+    /// Half the range of penetrations over which the seabed damper fades in, per segment [m].
     pub reach: Vec<f64>,
     /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
     pub push: Vec<f64>,
@@ -107,7 +107,7 @@ impl LineWork {
             direction: vec![Vector3::zeros(); n],
             start: vec![Stretched::default(); n],
             history: vec![Vector3::zeros(); n + 1],
-            reach: vec![0.0; n + 1],
+            reach: vec![0.0; n],
             push: vec![0.0; n],
             load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
             dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
@@ -180,10 +180,7 @@ impl LineWork {
                 self.diagonal[i][(axis, axis)] += case.anchoring;
             }
         }
-        match line.bottom() {
-            None => self.add_seabed_at_rest(line, position),
-            Some(_) => self.add_static_bottom(line, state, case),
-        }
+        self.add_contact_at_rest(line, state, case);
     }
 
     #[inline(always)]
@@ -265,9 +262,7 @@ impl LineWork {
             self.add_drag::<TANGENT>(line, state, water, weights);
         }
         self.add_froude_krylov(line, state, water, weights);
-        if line.nodes.contact.is_some() {
-            self.add_contact::<TANGENT>(line, state, weights);
-        }
+        self.add_contact::<TANGENT>(line, state, weights);
         if let Some(damping) = &line.nodes.mass_damping {
             for (i, damping) in damping.iter().enumerate() {
                 self.residual[i] += weights.force * damping * state.velocity[i];

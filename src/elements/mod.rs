@@ -452,8 +452,8 @@ impl Workspace {
     }
 
     /// Half the range of penetrations over which the seabed's damper under a node of a line fades in [m].
-    pub(crate) fn reach(&self, line: usize, node: usize) -> f64 {
-        self.lines[line].reach[node]
+    pub(crate) fn reach(&self, line: usize) -> &[f64] {
+        &self.lines[line].reach
     }
 
     /// The same of a free point.

@@ -1,11 +1,11 @@
 //! A seabed that is more than a level plane without friction.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::{Contact, Line, Model, PointContact};
 use crate::physics::friction::Friction;
 use crate::physics::ground::{Ground, Touch};
-use crate::physics::seabed::{self, ContactCoefficients};
+use crate::physics::seabed::{self, ContactCoefficients, PARTS};
 
 /// Shape and friction of a seabed.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,25 +41,83 @@ impl Contact {
         self.level[node] - self.bed
     }
 
-    /// Spring and damper of a node.
-    pub fn coefficients(&self, node: usize) -> ContactCoefficients {
+    /// Spring and damper of a segment.
+    pub fn coefficients(&self, segment: usize) -> ContactCoefficients {
         ContactCoefficients {
-            stiffness: self.stiffness[node],
-            damping: self.damping[node],
+            stiffness: self.stiffness[segment],
+            damping: self.damping[segment],
         }
     }
 
-    /// Force of spring and damper [N] on a node at a place [m] with a velocity [m/s]; friction is not in it.
-    pub fn push(&self, node: usize, place: Vector3<f64>, velocity: Vector3<f64>) -> Vector3<f64> {
-        let (penetration, normal) = match &self.bottom {
-            None => (self.level[node] - place.z, Vector3::z()),
+    /// Half of the stiffnesses of the segments beside a node [N/m].
+    pub fn stiffness_under(&self, node: usize) -> f64 {
+        let beside = self.beside(node);
+        beside.map(|(segment, _)| 0.5 * self.stiffness[segment]).sum()
+    }
+
+    /// Segments beside a node, each with the node at its other end.
+    pub fn beside(&self, node: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let before = node.checked_sub(1).map(|segment| (segment, segment));
+        let after = (node < self.stiffness.len()).then_some((node, node + 1));
+        before.into_iter().chain(after)
+    }
+
+    /// Position of a node at a place [m] relative to the level from which the seabed pushes it.
+    pub fn touch(&self, node: usize, place: Vector3<f64>) -> Touch {
+        match &self.bottom {
+            Some(bottom) => bottom.touch(place, self.lift(node)),
+            None => Touch {
+                penetration: self.level[node] - place.z,
+                normal: Vector3::z(),
+                slope: -Vector3::z(),
+                turning: Matrix3::zeros(),
+            },
+        }
+    }
+
+    /// Penetration of a node at a place [m] and the normal of the seabed there.
+    pub fn stand(&self, node: usize, place: Vector3<f64>) -> (f64, Vector3<f64>) {
+        match &self.bottom {
             Some(bottom) => {
-                let touch = bottom.touch(place, self.lift(node));
-                (touch.penetration, touch.normal)
+                let (below, normal) = bottom.ground.stand(place);
+                (below + self.lift(node), normal)
             }
+            None => (self.level[node] - place.z, Vector3::z()),
+        }
+    }
+
+    /// Force of springs and dampers [N] on a node among nodes at places [m] with velocities [m/s]; friction is not in it.
+    pub fn push(
+        &self,
+        node: usize,
+        place: &[Vector3<f64>],
+        velocity: impl Fn(usize) -> Vector3<f64>,
+    ) -> Vector3<f64> {
+        let depth = |node: usize| {
+            let (penetration, normal) = self.stand(node, place[node]);
+            (penetration, normal.dot(&velocity(node)), normal)
         };
-        let rise = normal.dot(&velocity);
-        seabed::normal_force(self.coefficients(node), penetration, rise) * normal
+        let (near, rise, normal) = depth(node);
+        let mut force = 0.0;
+        for (segment, other) in self.beside(node) {
+            let (k, (far, far_rise, _)) = (self.coefficients(segment), depth(other));
+            for part in PARTS {
+                let at = [part.between(near, far), part.between(rise, far_rise)];
+                force += part.share * seabed::normal_force(k, at[0], at[1]);
+            }
+        }
+        force * normal
+    }
+
+    /// Length of which the springs carry the weight, of nodes at places [m], per unstretched length of a segment [-].
+    pub fn laid_part(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
+        let (weight, stiffness) = (self.weight[segment], self.stiffness[segment]);
+        if weight <= 0.0 {
+            return 0.0;
+        }
+        let [near, far] = [segment, segment + 1].map(|node| self.stand(node, place[node]).0);
+        let carried = PARTS.map(|part| (stiffness * part.between(near, far) / weight).clamp(0.0, 1.0));
+        carried.iter().sum::<f64>() / PARTS.len() as f64
     }
 
     /// z of the bed under a place [m].
@@ -83,12 +141,6 @@ impl Line {
     pub fn bottom(&self) -> Option<(&Contact, &Bottom)> {
         let contact = self.nodes.contact.as_ref()?;
         Some((contact, contact.bottom.as_deref()?))
-    }
-
-    /// The bed under the line, where it is a level plane without friction.
-    pub fn level_bed(&self) -> Option<&Contact> {
-        let contact = self.nodes.contact.as_ref()?;
-        contact.bottom.is_none().then_some(contact)
     }
 
     /// The friction under the line.

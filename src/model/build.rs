@@ -644,11 +644,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
         tangent: lump(&|law| law.displaced + law.added_tangent),
     });
     let mass_normal = lump(&|law| law.mass + law.added_normal);
-    let contact = (may_touch_bed && any(&|law| law.contact.is_some())).then(|| {
-        let stiffness = lump(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
-        let damping = lump(&|law| law.contact.map_or(0.0, |contact| contact.damping));
-        contact(scene, &length, [&weight, &mass_normal], stiffness, damping)
-    });
+    let contact = (may_touch_bed && any(&|law| law.contact.is_some())).then(|| contact(scene, parts));
     let mut arc = vec![0.0];
     arc.extend(parts.iter().scan(0.0, |arc, part| {
         *arc += part.length;
@@ -679,42 +675,41 @@ fn lumped(parts: &[SegmentPart], density: &dyn Fn(&LineLaw) -> f64) -> Vec<f64> 
     nodes
 }
 
-fn contact(
-    scene: &Scene,
-    length: &[f64],
-    [weight, mass]: [&[f64]; 2],
-    mut stiffness: Vec<f64>,
-    mut damping: Vec<f64>,
-) -> Contact {
+fn contact(scene: &Scene, parts: &[SegmentPart]) -> Contact {
     let bed = scene
         .seabed
         .as_ref()
         .expect("contact is built only over a seabed");
-    let mut level = vec![-bed.depth; length.len()];
+    let of = |density: &dyn Fn(&LineLaw) -> f64| -> Vec<f64> {
+        parts.iter().map(|part| part.length * density(part.law)).collect()
+    };
+    let (weight, mass) = (of(&|law| law.weight), of(&|law| law.mass + law.added_normal));
+    let mut stiffness = of(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
+    let mut damping = of(&|law| law.contact.map_or(0.0, |contact| contact.damping));
+    let mut sinks = vec![0.0; parts.len()]; // compression of softened contact under a segment at rest [m]
     if bed.contact == ContactLaw::Regularised {
-        let last = length.len() - 1; // an end is half a node: it sinks in like its neighbours
-        for i in 0..=last {
+        for i in 0..parts.len() {
             let given = ContactCoefficients {
                 stiffness: stiffness[i],
                 damping: damping[i],
             };
-            let spacing = if i == 0 || i == last {
-                2.0 * length[i]
-            } else {
-                length[i]
-            };
-            let soft = regularised(given, [weight[i], mass[i]], spacing);
+            let soft = regularised(given, [weight[i], mass[i]], parts[i].length);
             if soft.stiffness < given.stiffness {
-                level[i] += weight[i] / soft.stiffness; // so that a resting node lies on the bed; see also `resting`
+                sinks[i] = weight[i] / soft.stiffness;
             }
             (stiffness[i], damping[i]) = (soft.stiffness, soft.damping);
         }
     }
+    // a line at rest lies on the bed; see also `resting`
+    let beside = |i: usize| &sinks[i.saturating_sub(1)..(i + 1).min(sinks.len())];
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     Contact {
         bed: -bed.depth,
-        level,
+        level: (0..=parts.len()).map(|i| mean(beside(i)) - bed.depth).collect(),
         stiffness,
         damping,
+        weight,
+        mass,
         bottom: None,
         stick: Vec::new(),
     }

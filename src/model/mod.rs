@@ -359,18 +359,22 @@ impl FroudeKrylov {
     }
 }
 
-/// Lumped contact coefficients of the nodes.
+/// Contact of the segments with the seabed.
 #[derive(Debug, Clone)]
 pub struct Contact {
     /// z of the bed [m].
     pub bed: f64,
-    /// z below which the springs push [m]: the bed, or the level of regularised contact at which a node at rest lies
+    /// z below which the springs push, per node [m]: the bed, or the level of regularised contact at which a line at rest lies
     /// on it.
     pub level: Vec<f64>,
-    /// Stiffness [N/m].
+    /// Stiffness, per segment [N/m].
     pub stiffness: Vec<f64>,
-    /// Damping [N s/m].
+    /// Damping, per segment [N s/m].
     pub damping: Vec<f64>,
+    /// Weight less buoyancy, per segment [N].
+    pub weight: Vec<f64>,
+    /// Mass across the line with the added mass, per segment [kg].
+    pub mass: Vec<f64>,
     /// Properties of the bed other than a level plane without friction.
     pub bottom: Option<Arc<Bottom>>,
     /// Stiffness along the bed of a node that sticks [N/m]; empty without friction.

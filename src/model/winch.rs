@@ -10,9 +10,9 @@
 //! time.
 //!
 //! The masses and coefficients of the nodes are linear in the adjacent lengths. Contact keeps the penetration of a
-//! node of nominal length.
+//! segment of nominal length.
 
-use super::{Line, Nodes};
+use super::{Contact, Line, Nodes};
 use crate::scene::TimeFunction;
 
 /// Length of the end segment above which it splits, over its nominal one [-].
@@ -144,6 +144,9 @@ impl Line {
         if let (Some(contact), Some(full)) = (&mut self.nodes.contact, &longest.nodes.contact) {
             keep(&mut contact.level, &full.level, count + 1);
             contact.level[count] = full.level[longest.segment_count()];
+            for (values, of) in of_segments(contact, full) {
+                keep(values, of, count);
+            }
             keep(&mut contact.stick, &full.stick, full.stick.len().min(count + 1));
         }
         self.winch = Some(winch);
@@ -165,6 +168,11 @@ impl Line {
             values[count - 1] = of[count - 1] + 0.5 * (end - nominal) * density;
             values[count] = 0.5 * end * density;
         }
+        if let (Some(contact), Some(full)) = (&mut self.nodes.contact, &longest.nodes.contact) {
+            for (values, of) in of_segments(contact, full) {
+                values[count - 1] = end / nominal * of[count - 1];
+            }
+        }
         let before: f64 = self.sections.iter().rev().skip(1).map(|s| s.length).sum();
         if let Some(section) = self.sections.last_mut() {
             section.length = self.nodes.arc[count] - before;
@@ -181,7 +189,6 @@ fn extensive<'a>(
     let (drag, froude_krylov) = (&mut nodes.drag, &mut nodes.froude_krylov);
     let drag = drag.as_mut().zip(longest.drag.as_ref());
     let froude_krylov = froude_krylov.as_mut().zip(longest.froude_krylov.as_ref());
-    let contact = nodes.contact.as_mut().zip(longest.contact.as_ref());
     let always = [
         (&mut nodes.length, &longest.length),
         (&mut nodes.mass, &longest.mass),
@@ -192,9 +199,17 @@ fn extensive<'a>(
     let drag = drag.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
     let froude_krylov =
         froude_krylov.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
-    let contact = contact.map(|(a, b)| [(&mut a.stiffness, &b.stiffness), (&mut a.damping, &b.damping)]);
     let damping = nodes.mass_damping.as_mut().zip(longest.mass_damping.as_ref());
     let pairs = drag.into_iter().chain(froude_krylov).flatten();
-    let bed = contact.into_iter().flatten();
-    always.into_iter().chain(pairs).chain(bed).chain(damping)
+    always.into_iter().chain(pairs).chain(damping)
+}
+
+/// Quantities of the contact with the seabed in proportion to the length of a segment, with those of the longest line.
+fn of_segments<'a>(contact: &'a mut Contact, longest: &'a Contact) -> [(&'a mut Vec<f64>, &'a Vec<f64>); 4] {
+    [
+        (&mut contact.stiffness, &longest.stiffness),
+        (&mut contact.damping, &longest.damping),
+        (&mut contact.weight, &longest.weight),
+        (&mut contact.mass, &longest.mass),
+    ]
 }

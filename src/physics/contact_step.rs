@@ -11,7 +11,7 @@
 use super::fading_damper::fade;
 use super::seabed::ContactCoefficients;
 
-/// Action of the bed on a node over a step.
+/// Action of the bed on a part of a segment over a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactStep {
     /// Upward force [N].

@@ -4,7 +4,7 @@
 //! normal n and its plane's axes a, b, the actual velocity v and the impulses λ obey
 //!
 //! ```text
-//! M (v − u) = λ_n n + λ_a a + λ_b b,   λ_n = Δt (k p − (k Δt + c) v_n) ≥ 0,   (λ_a, λ_b) in the ellipse of λ_n
+//! M (v − u) = λ_n n + λ_a a + λ_b b,   λ_n = a − b v_n ≥ 0,   (λ_a, λ_b) in the ellipse of λ_n
 //! ```
 //!
 //! A node that sticks leaves with v_a = v_b = 0 to the last digit and does not drift. λ_n of the ellipse is that of a
@@ -26,12 +26,10 @@ pub struct Landing<V: RealVector> {
     pub tangent: V,
     /// Normal n of the seabed [-].
     pub normal: V,
-    /// Distance p below the level from which the seabed pushes [m].
-    pub penetration: V::Real,
-    /// Stiffness [N/m] and damping [N s/m] of the contact.
-    pub contact: [V::Real; 2],
-    /// Δt of the velocities and of the positions [s].
-    pub steps: [V::Real; 2],
+    /// Impulse a of the seabed's spring and damper on a node that does not leave it [N s].
+    pub spring: V::Real,
+    /// Loss b of that impulse with the velocity at which the node leaves the seabed [kg].
+    pub resistance: V::Real,
 }
 
 /// Motion of a node after the step.
@@ -50,38 +48,25 @@ impl<V: RealVector> Landing<V> {
     #[inline(always)]
     pub fn solve(&self, free: V, friction: Option<&Friction>) -> Landed<V> {
         let one = V::Real::splat(1.0);
-        let ([kick, drift], [stiffness, damping]) = (self.steps, self.contact);
-        let resistance = kick * (stiffness * drift + damping);
+        let (spring, resistance) = (self.spring, self.resistance);
         let rise = self.normal.inner(free);
         let response = self.inverse_mass.times(self.normal, self.tangent);
-        let spring = kick * stiffness * self.penetration;
         let push = (spring - resistance * rise) * (one + resistance * self.normal.inner(response)).recip();
-        let none = Landed {
-            velocity: free,
-            friction: V::of([V::Real::splat(0.0); 3]),
-            pushed: (self.penetration - drift * rise).choose(push, V::Real::splat(-1.0)),
-        };
         let landed = Landed {
-            velocity: choose(none.pushed, free + response.scaled(push), free),
-            ..none
+            velocity: choose(push, free + response.scaled(push), free),
+            friction: V::of([V::Real::splat(0.0); 3]),
+            pushed: push,
         };
         match friction {
-            Some(friction) if landed.pushed.any_positive() => {
-                self.rub(free, [spring, resistance], friction, landed)
-            }
+            Some(friction) if landed.pushed.any_positive() => self.rub(free, friction, landed),
             _ => landed,
         }
     }
 
     /// The same with friction, where the seabed pushes a node that sticks; `smooth` is the motion without.
     #[inline(always)]
-    fn rub(
-        &self,
-        free: V,
-        [spring, resistance]: [V::Real; 2],
-        friction: &Friction,
-        smooth: Landed<V>,
-    ) -> Landed<V> {
+    fn rub(&self, free: V, friction: &Friction, smooth: Landed<V>) -> Landed<V> {
+        let (spring, resistance) = (self.spring, self.resistance);
         let Slender { across: m, excess } = self.inverse_mass.inverted();
         let axes = Axes::new(self.normal, self.tangent);
         let upright = self.normal.inner(self.tangent);
@@ -130,9 +115,8 @@ mod tests {
             inverse_mass: Slender::inverse([120.0, 100.0]),
             tangent: Vector3::new(0.9, 0.2, 0.15).normalize(),
             normal: Vector3::z(),
-            penetration: 0.01,
-            contact: [5e4, 3e3],
-            steps: [0.02, 0.025],
+            spring: 10.0,
+            resistance: 85.0,
         }
     }
 
@@ -154,10 +138,7 @@ mod tests {
             let free = Vector3::from(free);
             for friction in [None, Some(&ROUGH)] {
                 let landed = node.solve(free, friction);
-                let [stiffness, damping] = node.contact;
-                let resistance = stiffness * node.steps[1] + damping;
-                let force = stiffness * node.penetration - resistance * landed.velocity.z;
-                let impulse = node.steps[0] * force * Vector3::z();
+                let impulse = (node.spring - node.resistance * landed.velocity.z) * Vector3::z();
                 assert_relative_eq!(push(&node, free, &landed), impulse, epsilon = 1e-10);
             }
         }
@@ -192,7 +173,7 @@ mod tests {
         let landed = landing().solve(rises, Some(&ROUGH));
         assert!(landed.velocity == rises && landed.friction == Vector3::zeros());
         let above = Landing {
-            penetration: -0.01,
+            spring: -10.0,
             ..landing()
         };
         assert_eq!(
@@ -223,9 +204,8 @@ mod tests {
             },
             tangent: each(&|_| node.tangent),
             normal: each(&|_| node.normal),
-            penetration: Lanes::splat(node.penetration),
-            contact: node.contact.map(Lanes::splat),
-            steps: node.steps.map(Lanes::splat),
+            spring: Lanes::splat(node.spring),
+            resistance: Lanes::splat(node.resistance),
         };
         let together = lanes.solve(each(&|lane| frees[lane]), Some(&ROUGH));
         for (lane, free) in frees.into_iter().enumerate() {

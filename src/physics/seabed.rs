@@ -1,37 +1,79 @@
-//! Normal contact with a horizontal seabed: a spring and a damper that only push.
+//! Normal contact with a horizontal seabed: a spring and a damper that only push, integrated along the segments of a line.
 //!
-//! f = max(0, k·p − c·ż) for a penetration p = z_bed − z > 0, else 0.
+//! f = max(0, k·p − c·ż) per unstretched length, for a penetration p = z_bed − z > 0, else 0.
 //!
-//! k = kbot·d and c = cbot·d per unstretched length. Regularised contact softens both together,
+//! A segment is straight between its nodes: p and ż are linear in ξ from 0 to 1. The integral of f over it is the sum over four equal parts, each
+//! with the f in its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A line that is laid down therefore
+//! wets a segment gradually. With contact at nodes alone every node that lands is a blow, and the tension of a chain with 40 elements whose
+//! touchdown wanders has noise of a quarter of its deviation, at the frequency at which nodes land.
+//!
+//! k = kbot·d and c = cbot·d. Regularised contact softens both together,
 //!
 //! k_eff = min(k, w/(δ d h)·d),    c_eff = max(c·k_eff/k, min(c, 2ζ √(k_eff m))),    m the mass across the line,
 //!
-//! so that a node at rest penetrates by δ times the segment length h: with the usual kbot of 3 MPa/m the static
-//! penetration would be micrometres and every node that lands would ring. `model/build/resting.rs` sets the level of
-//! the contact so that the suspended part is right. A damper that is softened like its spring becomes too weak: of
-//! the chains in the tank 1 % of critical damping is left, and nodes that land ring for periods of the motion. The
-//! damper therefore keeps the part ζ of critical damping, 2√(k m) of a mass on a spring, unless the damping of the
-//! scene is less. Both tend to the values of the scene as the mesh is refined, and reach them where the spring does.
+//! so that a segment at rest penetrates by δ times its length h: with the usual kbot of 3 MPa/m the static penetration would be micrometres and
+//! every part that lands would ring. `model/build/resting.rs` sets the level of the contact so that the suspended part is right. A damper that is
+//! softened like its spring becomes too weak: of the chains in the tank 1 % of critical damping is left. It therefore keeps the part ζ of
+//! critical damping, 2√(k m) of a mass on a spring, unless the damping of the scene is less. Both tend to the values of the scene as the mesh
+//! is refined, and reach them where the spring does.
 //!
-//! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper
-//! pulls on a rising node); the regularisation and its δ were chosen by the convergence study described in the README. On the public scenes
-//! and ten variants, n = 14 to 40, δ = 0.01 and 0.005 have 4 and 8 % more RMS error of tension, and 24 and 37 % less of the position half-way
-//! where that lies on the bed: a node rests 0.01 h deep, and that falls with h only. δh = c h²w/H, λ of constant elements, gives 1.01, 0.97
-//! and 1.06 of the error of tension with c = ¼, ½ and 1. There the damper × 0 to × 3 changes nothing above 2 %, × 10 costs 6 %. ζ: on
-//! lindahl_slow, 56, 80 and 160 elements, the RMS error of tension is 1.24, 1.30 and 0.55 % with the damper softened like the spring, and 1.03,
-//! 0.85 and 0.39 % with ζ = 0.2.
+//! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper pulls on a rising node);
+//! work-equivalent loads as in any finite element. Parts, δ and ζ were chosen on three chains in storms, `docs/hard-cases.md`: one or two parts are worse
+//! and erratic, eight no better; δ = 0.05 is better in shallow water and worse in deep; a curved segment gains nothing.
 //! Valid where penetrations are small compared with the segment length.
 
-/// Static penetration of a resting node under regularised contact, per nodal length [-].
-pub const REGULARISED_PENETRATION: f64 = 0.02;
+use crate::math::real::Real;
 
-/// Part of critical damping that a node on a softened spring keeps, if its damper as given has as much [-].
+/// Static penetration of a resting segment under regularised contact, per segment length [-].
+pub const REGULARISED_PENETRATION: f64 = 0.03;
+
+/// Part of critical damping that a segment on a softened spring keeps, if its damper as given has as much [-].
 const REGULARISED_DAMPING: f64 = 0.2;
+
+/// Part of a segment, seen from one of its nodes.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    /// Distance of its middle from the node, per segment length [-].
+    pub at: f64,
+    /// Share of the force on a segment under uniform load that goes from this part to the node [-].
+    pub share: f64,
+}
+
+/// Parts of a segment at which the contact is evaluated.
+pub const PARTS: [Part; 4] = [part(0.125), part(0.375), part(0.625), part(0.875)];
+
+const fn part(at: f64) -> Part {
+    Part {
+        at,
+        share: 0.25 * (1.0 - at),
+    }
+}
+
+impl Part {
+    /// Shares of the force on a segment under uniform load that go from this part to the node and to the other one [-].
+    #[inline(always)]
+    pub fn shares(self) -> [f64; 2] {
+        [self.share, 0.25 * self.at]
+    }
+
+    /// Slopes of the forces on the two nodes with their own penetrations, over the stiffness of the segment, where this part is pressed [-].
+    #[inline(always)]
+    pub fn products(self) -> [[f64; 2]; 2] {
+        self.shares()
+            .map(|share| [share * (1.0 - self.at), share * self.at])
+    }
+
+    /// Value at the middle of the part of a quantity that is linear along the segment.
+    #[inline(always)]
+    pub fn between<R: Real>(self, near: R, far: R) -> R {
+        near + R::splat(self.at) * (far - near)
+    }
+}
 
 /// Static penetration of a point that rests with all of its weight, the stiffness being chosen for it [m].
 pub const POINT_PENETRATION: f64 = 0.02;
 
-/// Lumped contact coefficients of a node.
+/// Contact coefficients of a segment, or of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactCoefficients {
     /// Stiffness [N/m].
@@ -40,19 +82,17 @@ pub struct ContactCoefficients {
     pub damping: f64,
 }
 
-/// Softens the contact of a node of `weight` [N] in water and `mass` across the line [kg], water included, whose neighbours are
-/// `spacing` [m] away; buoyant nodes are left as they are.
+/// Softens the contact of a segment of `weight` [N] in water, `mass` across the line [kg], water included, and `length` [m]; buoyant segments are
+/// left as they are.
 pub fn regularised(
     contact: ContactCoefficients,
     [weight, mass]: [f64; 2],
-    spacing: f64,
+    length: f64,
 ) -> ContactCoefficients {
     if weight <= 0.0 || contact.stiffness <= 0.0 {
         return contact;
     }
-    let stiffness = contact
-        .stiffness
-        .min(weight / (REGULARISED_PENETRATION * spacing));
+    let stiffness = contact.stiffness.min(weight / (REGULARISED_PENETRATION * length));
     let damping = contact.damping;
     let kept = 2.0 * REGULARISED_DAMPING * (stiffness * mass).sqrt();
     ContactCoefficients {
@@ -114,10 +154,11 @@ mod tests {
             soft.damping / (2.0 * (soft.stiffness * mass).sqrt())
         };
         assert_relative_eq!(part(1e4), REGULARISED_DAMPING, max_relative = 1e-12);
-        let own = |damping: f64| damping / (2.0 * (weight / 0.01 * mass).sqrt());
+        let depth = REGULARISED_PENETRATION * length;
+        let own = |damping: f64| damping / (2.0 * (weight / depth * mass).sqrt());
         assert_relative_eq!(part(100.0), own(100.0), max_relative = 1e-12);
         assert_eq!(part(0.0), 0.0);
-        assert_relative_eq!(part(1e6), own(1e6 * weight / 0.01 / 1e6), max_relative = 1e-12);
+        assert_relative_eq!(part(1e6), own(1e6 * weight / depth / 1e6), max_relative = 1e-12);
     }
 
     #[test]

@@ -510,28 +510,10 @@ fn laid_length(line: &Line, state: &LineState) -> f64 {
     let Some(contact) = &line.nodes.contact else {
         return 0.0;
     };
-    let carried = |i: usize| {
-        let penetration = match &contact.bottom {
-            None => contact.level[i] - state.position[i].z,
-            Some(bottom) => bottom.touch(state.position[i], contact.lift(i)).penetration,
-        };
-        let weight = line.nodes.weight[i];
-        if weight <= 0.0 {
-            0.0
-        } else {
-            (contact.stiffness[i] * penetration / weight).clamp(0.0, 1.0)
-        }
-    };
-    let n = line.segment_count();
-    let share = |i: usize| match i {
-        0 => carried(1),
-        i if i == n => carried(n - 1),
-        i => carried(i),
-    };
-    if n < 2 {
-        return 0.0;
-    }
-    (0..=n).map(|i| share(i) * line.nodes.length[i]).sum()
+    let segments = line.segments.length.iter().enumerate();
+    segments
+        .map(|(i, length)| length * contact.laid_part(i, &state.position))
+        .sum()
 }
 
 /// Greatest vertical distance of the nodes below the chord of the ends, or below the lower end beyond it and where it is vertical [m].

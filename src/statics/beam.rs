@@ -14,7 +14,7 @@ mod coarse;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use crate::elements::beam::{BeamCase, BeamEnd, LoadShare, NodeSpring, end_hold, folded};
+use crate::elements::beam::{BeamCase, BeamEnd, ElementSpring, LoadShare, end_hold, folded};
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, turned_to};
 use crate::model::{BeamElement, Model, PointState, State};
@@ -85,15 +85,18 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
             ..end_hold(point, beam.clamped[end].is_some())
         }
     };
-    let contact = line.nodes.contact.iter();
-    let springs = contact.flat_map(|contact| contact.level.iter().zip(&contact.stiffness));
+    let springs = line.nodes.contact.iter().flat_map(|contact| {
+        let springs = contact.stiffness.iter().zip(contact.level.windows(2));
+        springs.map(|(&stiffness, levels)| ElementSpring {
+            levels: [levels[0], levels[1]],
+            stiffness,
+        })
+    });
     let case = BeamCase {
         elements: beam.elements.clone(),
         rest: shape.rest.clone(),
         weight: line.nodes.weight.clone(),
-        seabed: springs
-            .map(|(&level, &stiffness)| NodeSpring { level, stiffness })
-            .collect(),
+        seabed: springs.collect(),
         ends: [end(0), end(1)],
         bodies: line.ends.map(|point| model.points[point].free()),
     };

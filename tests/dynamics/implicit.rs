@@ -158,7 +158,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
     for (axial_stiffness, contact, solves) in [
         (1e4, "regularised", 2.5),
         (1e6, "regularised", 4.0),
-        (1e4, "as_given", 5.0),
+        (1e4, "as_given", 10.0),
     ] {
         let model = snapping(axial_stiffness, contact);
         let held = swing(&model, Vector3::new(-0.4, 0.0, 0.4), 1.25);
@@ -167,7 +167,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
         let fastest = greatest(state.lines[0].velocity.iter().map(|v| v.norm()));
         assert!(fastest < 2.0, "EA {axial_stiffness}: {fastest} m/s");
         assert!(state.lines[0].position.iter().all(|r| r.z > -3.1 && r.z < 0.5));
-        let few = counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 60;
+        let few = counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 70;
         assert!(few, "EA {axial_stiffness}, {contact}: {counters:?}");
     }
 }

@@ -362,7 +362,7 @@ fn forces_on_all_points_balance_weight_and_bed() {
             .sum();
         let shape = &simulation.state().lines[0].position;
         let bed: f64 = line.nodes.contact.as_ref().map_or(0.0, |contact| {
-            let push = |i: usize| contact.stiffness[i] * (contact.level[i] - shape[i].z).max(0.0);
+            let push = |i: usize| contact.push(i, shape, |_| Vector3::zeros()).z;
             (0..shape.len()).map(push).sum()
         });
         let weight: f64 = line.nodes.weight.iter().sum();

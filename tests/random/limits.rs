@@ -250,8 +250,9 @@ const NUDGES: usize = 12;
 const NUDGED_MAX: f64 = 5e-9;
 /// Least tension of a line at rest that is determined by forces, over its greatest [-].
 const TAUT: f64 = 1e-9;
-/// Greatest share of the scenes of a relation that may fail because they are not smooth [-].
-const ROUGH_MAX: f64 = 0.2;
+/// Greatest share of the scenes of a relation that may fail because they are not smooth [-]: over some seconds parts of elements land and leave
+/// the bed.
+const ROUGH_MAX: f64 = 0.25;
 
 /// Returns true where a scene is smooth: small displacements of its points change its run in proportion. A line that
 /// snaps is not smooth, nor is one that may rest in many places, where rounding changes the run as much.

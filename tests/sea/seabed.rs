@@ -98,14 +98,14 @@ fn chain(bed: &str, span: f64, elements: usize) -> Scene {
 
 #[test]
 fn tension_falls_by_mu_w_along_the_bed_and_there_is_none_beyond() {
-    // on a seabed that gives way by micrometres all nodes that lie there lie at one height
+    // on a seabed that gives way by millimetres the nodes lie at one height, but for those beside the touchdown, which are pressed in turns
     let simulation = start(&chain("friction = 0.5, contact = \"as_given\"", 560.0, 60));
     let (w, l) = (simulation.model().lines[0].sections[0].weight, 10.0);
     let nodes = nodes(&simulation);
     let count = simulation.model().lines[0].segment_count();
     let tension: Vec<f64> = (0..count).map(|i| segment(&simulation, i)).collect();
-    let at_rest = nodes[2].z + 1e-6; // where the spring carries all of a node
-    let laid = nodes.iter().rposition(|r| r.z < at_rest).unwrap();
+    let at_rest = nodes[20].z + 1e-6;
+    let laid = nodes.iter().rposition(|r| r.z < at_rest).unwrap() - 6;
     let mut slid = 0;
     for i in (1..laid).filter(|i| tension[i - 1] > w * l) {
         assert_relative_eq!(tension[i] - tension[i - 1], 0.5 * w * l, max_relative = 1e-4);
@@ -204,7 +204,8 @@ fn a_line_dragged_across_itself_resists_with_the_transverse_coefficient() {
         let forces = [End::A, End::B].map(|end| simulation.line_end_force(0, end));
         let pulled = -(forces[0].y + forces[1].y);
         println!("{integrator:?}: {pulled} N of {} N", 0.8 * 100.0 * G * 95.0);
-        assert_relative_eq!(pulled, 0.8 * 100.0 * G * 95.0, max_relative = 0.02);
+        // the ends, held on the bed by a tension of 200 kN, carry part of the weight: half as much where a line rests half as deep
+        assert_relative_eq!(pulled, 0.8 * 100.0 * G * 95.0, max_relative = 0.025);
     }
 }
 
@@ -463,7 +464,7 @@ fn a_point_under_a_bed_that_is_not_level_is_noted() {
 #[test]
 fn a_line_that_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
     // at 20 elements the length of an element itself decides, where the line leaves the seabed
-    for (elements, bar) in [(20, 2.5e-3), (40, 6e-4), (80, 2e-4)] {
+    for (elements, bar) in [(20, 2.5e-3), (40, 2.5e-4), (80, 5e-5)] {
         for (name, shift) in ["oc3_catenary", "oc4_chain"]
             .into_iter()
             .flat_map(|name| [0.0, -3.0, 5.0].map(|shift| (name, shift)))
@@ -476,10 +477,10 @@ fn a_line_that_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
             let error = simulation.tension_b(0) / rigid.tension_b() - 1.0;
             assert!(error.abs() < bar, "{case}: {error:e}");
             let lifts = simulation.line_end_force(0, End::A).z.abs() / rigid.horizontal();
-            assert!(lifts < 3e-3, "{case}: {lifts:e} at the anchor");
+            assert!(lifts < 4.6e-3, "{case}: {lifts:e} at the anchor");
             let laid = simulation.laid_length(0) - rigid.laid_length();
-            // 0.31 of an element; it was 0.25 with a rise to held ends over five elements, which costs up to 1.45 times the error of tension
-            assert!(laid.abs() < 280.0 / elements as f64, "{laid} m");
+            // the anchor lifts what it carries; a rise to held ends over five elements would lift less, and cost up to 1.45 times the error of tension
+            assert!(laid.abs() < 5.0, "{laid} m");
         }
     }
 }

@@ -143,7 +143,7 @@ fn the_estimated_error_of_inputs_is_that_of_tension_within_a_factor() {
             } = hosted(&model, period, points, velocities);
             let ratio = estimate / error;
             let what = format!("{name}, {points} points, velocities {velocities}");
-            assert!(ratio > 0.4 && ratio < 2.5, "{what}: {error} estimated {estimate}");
+            assert!(ratio > 0.4 && ratio < 3.0, "{what}: {error} estimated {estimate}");
             assert_eq!(warning.is_some(), estimate > 0.02, "{what}: {estimate}");
         }
     }

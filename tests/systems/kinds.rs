@@ -97,8 +97,13 @@ fn loads(
         }
     }
     if let Some(contact) = contact {
-        for (i, force) in forces.iter_mut().enumerate() {
-            force.z += contact.stiffness[i] * (contact.level[i] - nodes[i].z).max(0.0);
+        for (i, stiffness) in contact.stiffness.iter().enumerate() {
+            let depth = |node: usize| contact.level[node] - nodes[node].z;
+            for at in [0.125, 0.375, 0.625, 0.875] {
+                let pressed = ((1.0 - at) * depth(i) + at * depth(i + 1)).max(0.0);
+                forces[i].z += 0.25 * (1.0 - at) * stiffness * pressed;
+                forces[i + 1].z += 0.25 * at * stiffness * pressed;
+            }
         }
     }
     (forces, pulls)

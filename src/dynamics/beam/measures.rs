@@ -6,7 +6,6 @@ use super::{beam_state, drag_of, node_mass};
 use crate::dynamics::energy_balance::Energy;
 use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
 use crate::physics::morison::drag;
-use crate::physics::seabed::{ContactCoefficients, normal_force};
 use crate::physics::section::{
     Mixture, Section, Sextuple, StrainEnergy, join, response, split, strain, strain_gradient,
 };
@@ -174,12 +173,14 @@ impl<'a> BeamView<'a> {
             force -= damping[node] * point.velocity;
         }
         if let Some(contact) = &self.nodes.contact {
-            let k = ContactCoefficients {
-                stiffness: contact.stiffness[node],
-                damping: contact.damping[node],
+            let velocity = |i: usize| {
+                if i == node {
+                    point.velocity
+                } else {
+                    self.shape.velocity[i]
+                }
             };
-            let penetration = contact.level[node] - self.shape.position[node].z;
-            force.z += normal_force(k, penetration, point.velocity.z);
+            force += contact.push(node, &self.shape.position, velocity);
         }
         (force, -moment)
     }

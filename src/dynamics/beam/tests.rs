@@ -1,6 +1,7 @@
 use super::*;
 use crate::model::{BeamElement, BeamState, FreePoint, PointContact};
 use crate::physics::point::Sphere;
+use crate::physics::seabed::ContactCoefficients;
 use crate::physics::section::SectionLaw;
 use approx::assert_relative_eq;
 
@@ -184,8 +185,10 @@ fn dragged(n: usize) -> (Flight, impl Fn(f64) -> Section) {
     nodes.contact = Some(crate::model::Contact {
         bed: -0.2,
         level: vec![-0.2; count],
-        stiffness: vec![200.0; count],
-        damping: vec![5.0; count],
+        stiffness: vec![200.0; count - 1],
+        damping: vec![5.0; count - 1],
+        weight: vec![0.0; count - 1],
+        mass: vec![1.0; count - 1],
         bottom: None,
         stick: Vec::new(),
     });

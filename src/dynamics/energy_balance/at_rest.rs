@@ -100,15 +100,9 @@ fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
         let positions = shapes.map(|shape| &shape.position[..]);
         return friction_work(contact.bed, positions, [before, after]);
     }
-    let push = |shape: &LineState, i: usize| match line.bottom() {
-        None => {
-            let penetration = contact.level[i] - shape.position[i].z;
-            contact.stiffness[i] * penetration.max(0.0) * Vector3::z()
-        }
-        Some(_) => {
-            let push = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
-            push.map_or(Vector3::zeros(), |push| push.force)
-        }
+    let push = |shape: &LineState, i: usize| {
+        let node = resting_node(line, shape, i, None, 1.0);
+        node.map_or(Vector3::zeros(), |node| node.push().force)
     };
     let on_node = |i: usize| {
         work(
@@ -146,8 +140,8 @@ fn point_bed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) -> 
             spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
         }
         Some(bottom) => {
-            let push = resting_point(free, bottom, at, 0.0, 1.0).and_then(|point| point.push());
-            push.map_or(Vector3::zeros(), |push| push.force)
+            let point = resting_point(free, bottom, at, None, 1.0);
+            point.map_or(Vector3::zeros(), |point| point.push().force)
         }
     };
     work(points.map(push), points.map(|at| at.position))

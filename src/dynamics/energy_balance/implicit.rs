@@ -28,7 +28,6 @@ use crate::elements::{
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::morison::drag;
-use crate::physics::seabed::ContactCoefficients;
 use crate::physics::slender::Slender;
 
 /// Completed step of an implicit integrator.
@@ -342,22 +341,11 @@ impl Side<'_> {
         if let Some(damping) = &nodes.mass_damping {
             flow.dissipation += damping[i] * velocity.dot(&mean);
         }
-        let Some(contact) = &nodes.contact else {
-            return flow;
-        };
-        let reach = self.passed.work.reach(index, i);
-        if line.bottom().is_some() {
-            let push = resting_node(line, shape, i, reach, 1.0).and_then(|node| node.push());
-            let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
-            flow.dissipation -= force.map_or(0.0, |force| force.dot(&mean));
-        } else {
-            let k = ContactCoefficients {
-                stiffness: contact.stiffness[i],
-                damping: contact.damping[i],
-            };
-            let penetration = contact.level[i] - shape.position[i].z;
-            let bed = FadingContact::new(k, penetration, velocity.z, reach);
-            flow.dissipation -= bed.map_or(0.0, |bed| bed.force) * mean.z;
+        let reach = self.passed.work.reach(index);
+        if let Some(node) = resting_node(line, shape, i, Some(reach), 1.0) {
+            let push = node.push();
+            let force = push.force + (self.friction - 1.0) * push.friction;
+            flow.dissipation -= force.dot(&mean);
         }
         flow
     }
@@ -434,8 +422,8 @@ impl Side<'_> {
         flow.dissipation -= drag.dot(&(mean - water));
         let reach = self.passed.work.point_reach(point);
         if let Some(bottom) = model.bottom.as_deref() {
-            let push = resting_point(free, bottom, state, reach, 1.0);
-            let push = push.and_then(|point| point.push());
+            let push = resting_point(free, bottom, state, Some(reach), 1.0);
+            let push = push.map(|point| point.push());
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
             flow.dissipation -= force.map_or(0.0, |force| force.dot(&mean));
         } else if let Some(contact) = &free.contact {

@@ -46,7 +46,6 @@
 //! [`crate::dynamics::limit::transverse_step`].
 
 mod balance;
-mod contact;
 mod coupling;
 mod friction;
 mod prepare;
@@ -367,10 +366,11 @@ impl AxialLine {
         self.prepare_drag::<CURRENT>(step);
         self.prepare_nodes::<CURRENT>(&sizes);
         self.prepare_ends(step, ends);
+        self.layout.press_seabed(step);
         match BED {
             under::NOTHING => {}
-            under::LEVEL => self.prepare_contact(step),
-            _ => self.meet_seabed(step, &sizes),
+            under::LEVEL => self.prepare_contact(&sizes),
+            _ => self.meet_seabed(&sizes),
         }
         self.weigh_nodes::<BED>();
         sizes

@@ -215,7 +215,7 @@ impl Kernel for Explicit {
         held: &impl Fn(usize, f64) -> Kinematics,
     ) -> usize {
         for line in &mut network.lines {
-            line.layout.vector_unit.dispatch(Pull(line));
+            line.layout.vector_unit.dispatch(Pull(line, step));
             line.weigh_end_segment();
         }
         network.step_points(model, t, step);
@@ -328,9 +328,8 @@ impl ExplicitLine {
             froude_krylov.map_or(Vector3::zeros(), |waves| waves.froude_krylov_of(at, tangent));
         let inverse = self.kernel.inverse_mass[at];
         let mass = Slender::inverse([inverse, inverse + excess]);
-        let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
-            [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
-        });
+        let contact = line.contact.as_ref();
+        let contact = contact.and_then(|c| ContactSpring::of_line([c.spring[at], c.resistance[at]]));
         PointLoad {
             force: force + resistance + froude_krylov,
             resistance,

@@ -20,7 +20,7 @@ use crate::math::unit;
 use crate::model::{End, Line, Model};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
-use ground::ContactArrays;
+pub(super) use ground::{BottomArrays, ContactArrays};
 use handover::padded_positions;
 pub(super) use water::Water;
 pub(super) use water::{CurrentNow, WaveArrays, water_flow};
@@ -176,11 +176,11 @@ impl Layout {
         self.close_halo();
     }
 
-    /// The same, for what needs no more than the positions of the nodes beside a node and the velocity of the one after.
+    /// The same, without the velocities of the step before.
     #[inline(always)]
     pub fn renew_neighbours(&mut self) {
         self.position.wrap();
-        self.velocity.wrap_after();
+        self.velocity.wrap();
         self.close_halo();
     }
 

@@ -8,9 +8,9 @@ use super::network::LeapfrogNetwork;
 use super::step::Step;
 use crate::dynamics::limit::least_mass;
 use crate::elements::friction::point_stick;
-use crate::model::{End, FreePoint, Model, Network};
+use crate::model::{Bottom, End, FreePoint, Model, Network};
 use crate::physics::airy::Orbit;
-use crate::physics::friction::{Axes, Friction};
+use crate::physics::friction::Axes;
 use crate::physics::slender::Slender;
 
 /// Loads and mass of a free point, of its own or of the half node of a line that is tied to it.
@@ -28,19 +28,19 @@ pub(super) struct PointLoad {
     pub current_power_loss: Vector3<f64>,
     /// Mass matrix [kg], with the part of the resistance that is implicit.
     pub mass: Matrix3<f64>,
-    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a seabed with a slope, soundings or friction [N].
-    pub contact: [f64; 3],
+    /// Contact with the seabed, where there is one.
+    pub contact: Option<ContactSpring>,
 }
 
 /// Spring and damper of the seabed under a point: its own, or that of the half node of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSpring {
-    /// Stiffness [N/m].
-    stiffness: f64,
-    /// Stiffness times drift and damping [N s/m].
-    resistance: f64,
     /// Force at no velocity [N].
     push: f64,
+    /// Loss of the force with the velocity at which the point leaves the seabed [N s/m].
+    resistance: f64,
+    /// Loss of it through the drift alone [N s/m]: it decides whether the point lands.
+    drift: f64,
 }
 
 impl<K: Kernel> LeapfrogNetwork<K> {
@@ -111,14 +111,14 @@ impl LeapfrogNetwork<Explicit> {
             let waves = self.waves_at(free, t);
             let mut load = load_in_water((model, index, law), [height, t], now, waves, None);
             springs.clear();
-            springs.extend(ContactSpring::new(load.contact, bed.height, step));
+            springs.extend(ContactSpring::under_point(law, &bed, step));
             for &(at, end) in &self.attached[free] {
                 if self.lines[at].is_released(end) {
                     continue;
                 }
                 let share = self.lines[at].end_load(end, now);
                 load.add(&share);
-                springs.extend(ContactSpring::new(share.contact, bed.height, step));
+                springs.extend(share.contact);
             }
             let kicked = load.kicked(last, law.axes, &springs, &bed, step);
             self.move_point(free, model, &load, kicked, (t, step));
@@ -172,28 +172,34 @@ pub(super) fn load_in_water(
         current_power: drag.dot(&water),
         current_power_loss: implicit * water / kick.unwrap_or(1.0),
         mass: at.mass * Matrix3::identity() + implicit,
-        contact: law.contact.map_or([0.0; 3], |contact| {
-            let k = contact.coefficients;
-            let level = match model.bottom {
-                Some(_) => contact.lift(),
-                None => contact.level,
-            };
-            [k.stiffness, k.damping, k.stiffness * level]
-        }),
+        contact: None,
     }
 }
 
 impl ContactSpring {
-    /// The spring of stiffness, damping and force at no height under a point at `height` [m]; `None` where there is none.
-    pub fn new(
-        [stiffness, damping, force_at_zero]: [f64; 3],
-        height: f64,
-        step: Step,
-    ) -> Option<ContactSpring> {
-        (stiffness > 0.0).then_some(ContactSpring {
-            stiffness,
-            resistance: stiffness * step.drift + damping,
-            push: force_at_zero - stiffness * height,
+    /// The spring and damper under a free point itself; `None` where there are none.
+    pub(super) fn under_point(law: &FreePoint, bed: &SeabedBelow, step: Step) -> Option<ContactSpring> {
+        let contact = law
+            .contact
+            .filter(|contact| contact.coefficients.stiffness > 0.0)?;
+        let (k, level) = match bed.bottom {
+            Some(_) => (contact.coefficients, contact.lift()),
+            None => (contact.coefficients, contact.level),
+        };
+        let drift = k.stiffness * step.drift;
+        Some(ContactSpring {
+            push: k.stiffness * (level - bed.height),
+            resistance: drift + k.damping,
+            drift,
+        })
+    }
+
+    /// Contact of the half segment of a line over the step, of a force at no velocity [N] and its loss with velocity [N s/m]; `None` where there is none.
+    pub fn of_line([push, resistance]: [f64; 2]) -> Option<ContactSpring> {
+        (resistance > 0.0).then_some(ContactSpring {
+            push,
+            resistance,
+            drift: resistance,
         })
     }
 
@@ -203,14 +209,14 @@ impl ContactSpring {
     }
 
     /// Force on a point that leaves the seabed at `rise` [m/s], in [N]; `None` where it does not push.
-    pub fn pushes(&self, rise: f64, step: Step) -> Option<f64> {
+    pub fn pushes(&self, rise: f64) -> Option<f64> {
         let force = self.push - self.resistance * rise;
-        (self.lands(rise, step) && force > 0.0).then_some(force)
+        (self.lands(rise) && force > 0.0).then_some(force)
     }
 
     /// Returns whether the point would be in the seabed after a step with the velocity ż [m/s].
-    fn lands(&self, velocity: f64, step: Step) -> bool {
-        self.push - self.stiffness * step.drift * velocity > 0.0
+    fn lands(&self, velocity: f64) -> bool {
+        self.push - self.drift * velocity > 0.0
     }
 }
 
@@ -225,7 +231,7 @@ impl PointLoad {
             current_power: 0.0,
             current_power_loss: zero,
             mass: Matrix3::zeros(),
-            contact: [0.0; 3],
+            contact: None,
         }
     }
 
@@ -264,7 +270,7 @@ impl PointLoad {
         let response = inverse * bed.normal.component_mul(&free);
         let mut push = pushed(velocity, response, springs, bed, step);
         let mut friction = zero;
-        if let (Some(law), true) = (bed.friction, push > 0.0) {
+        if let (Some(law), true) = (bed.bottom.and_then(|bottom| bottom.friction.as_ref()), push > 0.0) {
             let sliding = Sliding::new(bed.normal, &inverse, &free);
             let scale = push;
             for _ in 0..ROUNDS_MAX {
@@ -306,25 +312,21 @@ pub(super) struct SeabedBelow<'a> {
     pub height: f64,
     /// Unit normal of the seabed, upwards.
     pub normal: Vector3<f64>,
-    pub friction: Option<&'a Friction>,
+    /// The seabed, where it has a slope, soundings or friction.
+    pub bottom: Option<&'a Bottom>,
 }
 
 impl SeabedBelow<'_> {
     pub(super) fn under(model: &Model, place: Vector3<f64>) -> SeabedBelow<'_> {
-        match model.bottom.as_deref() {
-            None => SeabedBelow {
-                height: place.z,
-                normal: Vector3::z(),
-                friction: None,
-            },
-            Some(bottom) => {
-                let touch = bottom.ground.touch(place);
-                SeabedBelow {
-                    height: -touch.penetration,
-                    normal: touch.normal,
-                    friction: bottom.friction.as_ref(),
-                }
-            }
+        let bottom = model.bottom.as_deref();
+        let (height, normal) = bottom.map_or((place.z, Vector3::z()), |bottom| {
+            let (below, normal) = bottom.ground.stand(place);
+            (-below, normal)
+        });
+        SeabedBelow {
+            height,
+            normal,
+            bottom,
         }
     }
 }
@@ -343,7 +345,7 @@ fn pushed(
     for _ in 0..springs.len() {
         let rising = rise + yielding * impulse;
         let (mut push, mut resistance) = (0.0, 0.0);
-        for spring in springs.iter().filter(|spring| spring.lands(rise, step)) {
+        for spring in springs.iter().filter(|spring| spring.lands(rise)) {
             let force = spring.push - spring.resistance * rising;
             if force > 0.0 {
                 push += force;

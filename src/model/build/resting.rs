@@ -46,11 +46,12 @@ pub(super) fn sink(line: &mut Line, points: &[Point]) {
     else {
         return;
     };
+    let springs: Vec<f64> = (0..arc.len()).map(|i| contact.stiffness_under(i)).collect();
     let lies = line.ends.map(|end| lies_on(contact, &points[end], spacing[0]));
     for (i, level) in contact.level.iter_mut().enumerate() {
         let compression = *level - contact.bed; // δ
         let element = compression / REGULARISED_PENETRATION;
-        let settles = (4.0 * stiffness * spacing[i] / contact.stiffness[i]).powf(0.25); // ℓ
+        let settles = (4.0 * stiffness * spacing[i] / springs[i]).powf(0.25); // ℓ
         let bent = RISE_BENT * settles.min(element);
         let rise = bent.max(RISE * element); // R
         let near = |distance: f64| {

@@ -153,11 +153,9 @@ fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -
 fn beside_soundings(simulation: &Simulation, line: usize, soundings: [[f64; 2]; 2]) -> Option<String> {
     let of = &simulation.model.lines[line];
     let contact = of.nodes.contact.as_ref()?;
-    let bottom = contact.bottom.as_ref()?;
     let outside = |[least, most]: [f64; 2], at: f64| least < most && !(least..=most).contains(&at);
     let lies = |node: usize, r: Vector3<f64>| {
-        let lift = contact.lift(node);
-        (outside(soundings[0], r.x) || outside(soundings[1], r.y)) && bottom.touch(r, lift).penetration > 0.0
+        (outside(soundings[0], r.x) || outside(soundings[1], r.y)) && contact.stand(node, r).0 > 0.0
     };
     let nodes = &simulation.snapshot.state.lines[line].position;
     let (_, r) = nodes.iter().enumerate().find(|(node, r)| lies(*node, **r))?;

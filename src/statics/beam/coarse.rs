@@ -1,12 +1,12 @@
 //! A beam on half as many elements, and its sections on the elements of the finer beam.
 //!
 //! Two neighbouring elements become one, soft in each of its stiffnesses as both in a row, l/k = l₁/k₁ + l₂/k₂, with the mean of their strains
-//! without stress. The node between them leaves half of its weight and of its seabed to each neighbour. On the way back it lies on the cubic
+//! without stress. The node between them leaves half of its weight to each neighbour; the springs of the seabed add. On the way back it lies on the cubic
 //! through both neighbours along their directors d₃, turned by its part of the turn between them.
 
 use nalgebra::Vector3;
 
-use crate::elements::beam::{BeamCase, NodeSpring};
+use crate::elements::beam::{BeamCase, ElementSpring};
 use crate::math::rotation::{cayley, cayley_vector};
 use crate::model::BeamElement;
 use crate::physics::section::{Section, SectionLaw, Sextuple};
@@ -23,7 +23,7 @@ pub(super) fn coarser<'a>(case: &BeamCase<'a>) -> BeamCase<'a> {
         elements: pairs().map(|(pair, _)| joined(pair)).collect(),
         rest: pairs().map(|(pair, rest)| mean_rest(pair, rest)).collect(),
         weight: gathered(&case.weight),
-        seabed: gathered_springs(&case.seabed),
+        seabed: case.seabed.chunks(2).map(joined_spring).collect(),
         ..case.clone()
     }
 }
@@ -68,17 +68,12 @@ fn gathered(values: &[f64]) -> Vec<f64> {
     sums
 }
 
-fn gathered_springs(springs: &[NodeSpring]) -> Vec<NodeSpring> {
-    if springs.is_empty() {
-        return Vec::new();
+/// One spring under one or two elements in a row.
+fn joined_spring(row: &[ElementSpring]) -> ElementSpring {
+    ElementSpring {
+        levels: [row[0].levels[0], row[row.len() - 1].levels[1]],
+        stiffness: row.iter().map(|spring| spring.stiffness).sum(),
     }
-    let stiffness: Vec<f64> = springs.iter().map(|spring| spring.stiffness).collect();
-    let kept = kept(springs.len() - 1).into_iter().zip(gathered(&stiffness));
-    kept.map(|(node, stiffness)| NodeSpring {
-        level: springs[node].level,
-        stiffness,
-    })
-    .collect()
 }
 
 /// Sections on the `elements` of the finer beam from those of the coarser one.
@@ -137,15 +132,15 @@ mod tests {
                 frame: turned_to(&Matrix3::identity(), Vector3::new(cos, 0.0, sin)),
             }
         };
-        let spring = |i: usize| NodeSpring {
-            level: 0.1,
+        let spring = |i: usize| ElementSpring {
+            levels: [0.1; 2],
             stiffness: 1.0 + i as f64,
         };
         let case = BeamCase {
             elements: (0..elements).map(element).collect(),
             rest: vec![straight(); elements],
             weight: (0..=elements).map(|i| 2.0 + i as f64).collect(),
-            seabed: (0..=elements).map(spring).collect(),
+            seabed: (0..elements).map(spring).collect(),
             ends: [BeamEnd::free(); 2],
             bodies: [None; 2],
         };

@@ -16,6 +16,7 @@ use moorline::scene::Integrator;
 
 mod energy;
 mod falls;
+mod landing;
 mod motion;
 mod stiffness;
 

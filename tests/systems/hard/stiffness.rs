@@ -59,7 +59,7 @@ fn a_stiffer_line_tends_to_an_inextensible_one_in_steps_that_stay_affordable() {
 #[test]
 fn a_hundred_times_harder_bed_takes_the_same_steps_to_the_same_answers() {
     for integrator in INTEGRATORS {
-        for (contact, bound) in [(ContactLaw::Regularised, 1e-9), (ContactLaw::AsGiven, 0.1)] {
+        for (contact, bound) in [(ContactLaw::Regularised, 1e-9), (ContactLaw::AsGiven, 0.12)] {
             let run = |factor: f64| {
                 let mut scene = harder_bed(shipped("oc3_catenary"), factor);
                 if let Some(bed) = &mut scene.seabed {
@@ -98,7 +98,7 @@ fn a_segment_1000_times_shorter_than_its_neighbours_changes_nothing_but_the_step
         let case = Case(format!("segment of 5 mm, {integrator:?}"));
         case.sound(&graded, 5e-3, steps);
         let excess = slow(&graded) / slow(&plain);
-        case.at_most(1.2, "error over that without it", excess);
+        case.at_most(1.25, "error over that without it", excess);
         let peak = (graded.peak() / plain.peak() - 1.0).abs();
         case.at_most(5e-3, "peak", peak);
     }

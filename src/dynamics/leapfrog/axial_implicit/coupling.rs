@@ -215,16 +215,13 @@ impl CoupledPoint {
         let mut load = load_in_water((model, index, law), place, last, waves, Some(step.kick));
         let rise = bed.normal.dot(&last);
         self.springs.clear();
-        let mut add = |contact: [f64; 3]| {
-            if let Some(spring) = ContactSpring::new(contact, bed.height, step) {
-                self.springs.push((spring, spring.pushes(rise, step).is_some()));
-            }
-        };
-        add(load.contact);
+        let with_state = |spring: ContactSpring| (spring, spring.pushes(rise).is_some());
+        let own = ContactSpring::under_point(law, &bed, step);
+        self.springs.extend(own.map(with_state));
         for (line, end) in network.ends_at(free) {
             let share = line.end_share(end, step);
             load.add(&share);
-            add(share.contact);
+            self.springs.extend(share.contact.map(with_state));
         }
         (self.load, self.last, self.velocity) = (load, last, last);
         self.normal = bed.normal;
@@ -236,7 +233,7 @@ impl CoupledPoint {
         let rise = self.normal.dot(&self.velocity);
         let (mut push, mut holds) = (0.0, true);
         for (spring, pushes) in &mut self.springs {
-            let now = spring.pushes(rise, step);
+            let now = spring.pushes(rise);
             holds &= now.is_some() == *pushes;
             *pushes = now.is_some();
             push += step.kick * now.unwrap_or(0.0);
@@ -380,8 +377,7 @@ impl AxialLine {
         let damping = layout.mass_damping.as_ref().map(|damping| damping.load(at.row));
         share.mass = Slender::new(masses(damping)).matrix(tangent);
         if let Some(contact) = &layout.contact {
-            let stiffness = contact.stiffness[at];
-            share.contact = [stiffness, contact.damping[at], stiffness * contact.level[at]];
+            share.contact = ContactSpring::of_line([contact.spring[at], contact.resistance[at]]);
         }
         share
     }

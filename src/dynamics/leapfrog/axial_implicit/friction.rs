@@ -9,12 +9,11 @@
 //! sticks    v = v_n n                                v_n = (n·M u + a + Δt n·pull)/(n·M n + b): of rank one itself
 //! ```
 //!
-//! a and b are those of [`super::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows of the impulse that would stop it
+//! a and b are those of [`crate::dynamics::leapfrog::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows of the impulse that would stop it
 //! ([`crate::physics::friction`]); the step is repeated until states and friction hold. The first assumption follows in the same way from the velocities that
 //! the nodes would have under the tensions expected from t_n, without friction. Without friction nodes slide with λ_t = 0.
 
 use super::AxialLine;
-use super::contact::NormalContact;
 use super::rows::{NodeRow, Sizes, under};
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
@@ -89,7 +88,7 @@ impl SeabedRow {
     ) -> Lanes {
         let [on, off] = [1.0, -1.0].map(Lanes::splat);
         let rise = self.normal.dot(velocity);
-        let pushes = node.bed.pushes(rise).where_positive(node.free);
+        let pushes = node.bed.push(rise).where_positive(node.free);
         let before = *self;
         (self.slides, self.sticks) = (pushes.choose(on, off), off);
         let mut changed = Lanes::splat(0.0);
@@ -152,9 +151,9 @@ impl NodeRow {
 impl AxialLine {
     /// Finds the nodes on the seabed, and the state and the friction that they are first assumed to have.
     #[inline(always)]
-    pub(super) fn meet_seabed(&mut self, step: Step, sizes: &Sizes) {
+    pub(super) fn meet_seabed(&mut self, sizes: &Sizes) {
         let line = &self.layout;
-        let (Some(contact), Some(ground)) = (&line.contact, line.ground()) else {
+        let (Some(contact), Some(bottom)) = (&line.contact, line.bottom()) else {
             return;
         };
         for at in line.rows() {
@@ -162,18 +161,14 @@ impl AxialLine {
                 &mut self.kernel.rows.nodes[at - 1],
                 &mut self.kernel.seabed[at - 1],
             );
-            let (below, normal) = ground.stand_of_four(line.position.load(at));
-            let velocity = line.velocity.load(at);
-            let upright = normal.dot(node.tangent);
-            let yields = node.across + node.excess * upright * upright;
-            let penetration = below + contact.level.load(at);
-            node.bed = NormalContact::new(contact.law(at), penetration, normal.dot(velocity), yields, step);
+            let (normal, velocity) = (bottom.normal.load(at), line.velocity.load(at));
+            node.bed = contact.over_step(at, sizes.kick);
             let inverse = Slender {
                 across: node.across,
                 excess: node.excess,
             };
             *seabed = SeabedRow::off(normal, inverse);
-            seabed.slides = node.bed.pushes(normal.dot(velocity)).where_positive(node.free);
+            seabed.slides = node.bed.push(normal.dot(velocity)).where_positive(node.free);
             node.settle_on(seabed);
         }
         if self.layout.friction().is_some() {

@@ -5,7 +5,6 @@
 use nalgebra::Vector3;
 
 use super::AxialLine;
-use super::contact::NormalContact;
 use super::rows::{NodeRow, Sizes, pulled, springs};
 use crate::dynamics::leapfrog::layout::inverse_norm;
 use crate::dynamics::leapfrog::step::Step;
@@ -225,21 +224,16 @@ impl AxialLine {
 
     /// Lets the nodes meet the level bed.
     #[inline(always)]
-    pub(super) fn prepare_contact(&mut self, step: Step) {
+    pub(super) fn prepare_contact(&mut self, sizes: &Sizes) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
         let Some(contact) = &line.contact else {
             return;
         };
-        let (position, velocity) = (line.position.rows(last), line.velocity.rows(last));
-        let level = contact.level.rows(last);
-        let nodes = &mut self.kernel.rows.nodes[..last];
+        let (velocity, nodes) = (line.velocity.rows(last), &mut self.kernel.rows.nodes[..last]);
         for at in 1..last + 1 {
             let node = &mut nodes[at - 1];
-            let penetration = level[at] - position[at].z;
-            let rise = velocity[at].z;
-            let yields = node.across + node.lift() * node.tangent.z;
-            node.bed = NormalContact::new(contact.law(at), penetration, rise, yields, step);
-            node.touches = node.pushed(rise);
+            node.bed = contact.over_step(at, sizes.kick);
+            node.touches = node.pushed(velocity[at].z);
             node.settle();
         }
     }
@@ -331,7 +325,7 @@ impl NodeRow {
     /// 1 where the level bed pushes nodes that rise at `rise` [m/s], else −1.
     #[inline(always)]
     pub(super) fn pushed(&self, rise: Lanes) -> Lanes {
-        let pushes = self.bed.pushes(rise).where_positive(self.free); // held ends yield to no bed
+        let pushes = self.bed.push(rise).where_positive(self.free); // held ends yield to no bed
         pushes.choose(Lanes::splat(1.0), Lanes::splat(-1.0))
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::contact::NormalContact;
+use crate::dynamics::leapfrog::contact::NodeContact;
 use crate::dynamics::leapfrog::layout::Layout;
 use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::math::striped_tridiagonal::{Eliminated, Equations};
@@ -278,7 +278,7 @@ pub(super) struct NodeRow {
     /// c, 0 off the bed [kg].
     pub held: Lanes,
     /// The level bed.
-    pub bed: NormalContact,
+    pub bed: NodeContact,
     /// 1 where the level bed pushes, −1 elsewhere.
     pub touches: Lanes,
     /// Velocity without tension, without and with the bed [m/s].
@@ -305,7 +305,7 @@ impl NodeRow {
             tangent: Vectors::zero(),
             response: Vectors::zero(),
             held: zero,
-            bed: NormalContact::none(),
+            bed: NodeContact::none(),
             touches: Lanes::splat(-1.0),
             fall: Vectors::zero(),
             loose: Vectors::zero(),

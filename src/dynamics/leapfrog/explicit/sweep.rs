@@ -42,8 +42,8 @@ mod under {
     pub(super) const ROUGH: u8 = 2;
 }
 
-/// [`ExplicitLine::pull`] for the vector unit of the machine.
-pub(super) struct Pull<'a>(pub &'a mut ExplicitLine);
+/// Forces of the segments and of the seabed over a step for the vector unit of the machine.
+pub(super) struct Pull<'a>(pub &'a mut ExplicitLine, pub Step);
 
 impl NullaryFnOnce for Pull<'_> {
     type Output = ();
@@ -51,6 +51,7 @@ impl NullaryFnOnce for Pull<'_> {
     #[inline(always)]
     fn call(self) {
         self.0.pull_segments();
+        self.0.layout.press_seabed(self.1);
     }
 }
 
@@ -104,7 +105,6 @@ impl NullaryFnOnce for Drift<'_> {
 #[derive(Clone, Copy)]
 struct Sizes {
     kick: Lanes,
-    drift: Lanes,
     extrapolation: Lanes,
 }
 
@@ -145,9 +145,10 @@ struct WaterRows<'a> {
 /// Contact with the seabed; empty without one.
 #[derive(Default)]
 struct ContactRows<'a> {
-    level: &'a [Lanes],
-    stiffness: &'a [Lanes],
-    damping: &'a [Lanes],
+    spring: &'a [Lanes],
+    resistance: &'a [Lanes],
+    /// Normals of a seabed with a slope, soundings or friction.
+    normal: &'a [Vectors],
 }
 
 impl ExplicitLine {
@@ -229,11 +230,12 @@ impl ExplicitLine {
         }
         if let Some(contact) = &mut line.contact {
             nodes.contact = ContactRows {
-                level: contact.level.rows(last),
-                stiffness: contact.stiffness.rows(last),
-                damping: contact.damping.rows(last),
+                spring: contact.spring.rows(last),
+                resistance: contact.resistance.rows(last),
+                normal: &[],
             };
             if let Some(rough) = &mut contact.bottom {
+                nodes.contact.normal = rough.normal.rows(last);
                 nodes.bottom = Some(&rough.bottom);
                 moving.friction = rough.friction.rows_mut(last);
             }
@@ -244,8 +246,6 @@ impl ExplicitLine {
 
 /// Geometry and forces of a row of nodes.
 struct Kicking {
-    /// Position [m].
-    place: Vectors,
     /// Sum of the forces of the segments [N].
     pull: Vectors,
     /// Resistance of water and damping [N].
@@ -287,7 +287,7 @@ impl NodeRows<'_> {
         response.z = response.z + inverse_mass;
         let mut kicked = velocity + kick;
         if UNDER == under::LEVEL {
-            let push = self.contact.push(at, by.place.z, [kicked.z, response.z], sizes);
+            let push = self.contact.push(at, [kicked.z, response.z]);
             kicked = kicked + response.scale(push);
         }
         kicked
@@ -297,17 +297,11 @@ impl NodeRows<'_> {
     #[inline(always)]
     fn land(&self, at: usize, by: &Kicking, free: Vectors, sizes: Sizes) -> (Vectors, Vectors) {
         let none = (free, Vectors::zero());
-        let (Some(bottom), level) = (self.bottom, self.contact.level[at]) else {
+        let (Some(bottom), interior) = (self.bottom, self.interior[at]) else {
             return none;
         };
-        let highest = Lanes::splat(bottom.ground.highest()) + level - by.place.z;
-        if !(highest + sizes.drift * free.dot(free).sqrt()).any_positive() {
-            return none;
-        }
-        let (below, normal) = bottom.ground.stand_of_four(by.place);
-        let penetration = below + level;
-        let lands = (penetration - sizes.drift * normal.dot(free)) * self.interior[at];
-        if !lands.any_positive() {
+        let resistance = self.contact.resistance[at] * interior;
+        if !resistance.any_positive() {
             return none;
         }
         let inverse = self.inverse_mass[at];
@@ -318,16 +312,15 @@ impl NodeRows<'_> {
                 excess,
             },
             tangent: by.chord.scale(inverse_norm(by.chord.dot(by.chord))),
-            normal,
-            penetration,
-            contact: [self.contact.stiffness[at], self.contact.damping[at]],
-            steps: [sizes.kick, sizes.drift],
+            normal: self.contact.normal[at],
+            spring: sizes.kick * self.contact.spring[at] * interior,
+            resistance: sizes.kick * resistance,
         };
         let landed = landing.solve(free, bottom.friction.as_ref());
         let friction = landed.friction.scale(sizes.kick.recip());
         (
-            choose(lands, landed.velocity, free),
-            choose(lands, friction, Vectors::zero()),
+            choose(interior, landed.velocity, free),
+            choose(interior, friction, Vectors::zero()),
         )
     }
 }
@@ -345,20 +338,15 @@ impl WaterRows<'_> {
 }
 
 impl ContactRows<'_> {
-    /// Force of the bed: F = k(p − Δt u') − c u' ≥ 0 with u' = u + Δt μ F, only if p − Δt u > 0; `rise` is u [m/s], and `yields` Δt μ [s/kg].
+    /// Force of the bed: F = P − R u' ≥ 0 with u' = u + Δt μ F; `rise` is u [m/s], and `yields` Δt μ [s/kg].
     #[inline(always)]
-    fn push(&self, at: usize, z: Lanes, [rise, yields]: [Lanes; 2], sizes: Sizes) -> Lanes {
-        let drift = sizes.drift;
-        let penetration = self.level[at] - z;
-        let lands = penetration - drift * rise;
-        if !lands.any_positive() {
+    fn push(&self, at: usize, [rise, yields]: [Lanes; 2]) -> Lanes {
+        let resistance = self.resistance[at];
+        if !resistance.any_positive() {
             return Lanes::splat(0.0);
         }
-        let stiffness = self.stiffness[at];
-        let resistance = stiffness * drift + self.damping[at]; // b = kΔt + c
-        let push = stiffness * penetration - resistance * rise;
         let yielding = Lanes::splat(1.0) + yields * resistance;
-        (push.positive() * yielding.recip()).where_positive(lands)
+        (self.spring[at] - resistance * rise).positive() * yielding.recip()
     }
 }
 
@@ -385,7 +373,6 @@ impl ExplicitLine {
     fn sweep<const AROUND: u8, const UNDER: u8>(&mut self, step: &Step, drift: f64) {
         let sizes = Sizes {
             kick: Lanes::splat(step.kick),
-            drift: Lanes::splat(step.drift),
             extrapolation: Lanes::splat(step.extrapolation),
         };
         let mut swept = self.cut();
@@ -447,7 +434,6 @@ impl Swept<'_> {
             let (here, velocity) = (moving.position[at], moving.velocity[at]);
             let pull = moving.pull[at];
             let mut by = Kicking {
-                place: here,
                 pull: pull - pull_low,
                 resistance: moving.resistance[at],
                 froude_krylov: Vectors::zero(),

@@ -331,8 +331,9 @@ impl ExplicitLine {
                 None => contact.level[i],
             };
             put(&mut into.level, from, n + 1, level, 0.0);
-            put(&mut into.stiffness, from, n + 1, |i| contact.stiffness[i], 0.0);
-            put(&mut into.damping, from, n + 1, |i| contact.damping[i], 0.0);
+            put(&mut into.stiffness, from, n, |i| contact.stiffness[i], 0.0);
+            put(&mut into.damping, from, n, |i| contact.damping[i], 0.0);
+            put(&mut into.yields, from, n, |i| 1.0 / contact.mass[i], 0.0);
             if let (Some(bottom), false) = (&mut into.bottom, contact.stick.is_empty()) {
                 put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
             }

@@ -3,23 +3,32 @@
 use std::sync::Arc;
 
 use super::Layout;
-use crate::math::lanes::{Lanes, Vectors};
+use crate::math::lanes::Vectors;
 use crate::math::striping::{Column, Field, Striping};
 use crate::model::{Bottom, Contact};
 use crate::physics::friction::Friction;
 use crate::physics::ground::Ground;
 
-/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a seabed with a slope, soundings or friction the height above it, along its normal.
+/// Contact with the seabed.
 #[derive(Debug, Clone)]
 pub struct ContactArrays {
+    /// z below which the nodes are pushed [m]; over a seabed with a slope, soundings or friction the height above it, along its normal.
     pub level: Column,
+    /// Stiffness of the segments [N/m].
     pub stiffness: Column,
+    /// Damping of the segments [N s/m].
     pub damping: Column,
+    /// Inverse masses of the segments across the line [1/kg].
+    pub yields: Column,
+    /// Force on the nodes over the step, at no velocity [N].
+    pub spring: Column,
+    /// Loss of that force with the velocity at which a node leaves the bed [N s/m].
+    pub resistance: Column,
     /// The seabed where it has a slope, soundings or friction.
     pub bottom: Option<BottomArrays>,
 }
 
-/// a seabed with a slope, soundings or friction.
+/// A seabed with a slope, soundings or friction.
 #[derive(Debug, Clone)]
 pub struct BottomArrays {
     pub bottom: Arc<Bottom>,
@@ -27,15 +36,11 @@ pub struct BottomArrays {
     pub stick: Column,
     /// Friction on the nodes in the last step [N].
     pub friction: Field,
+    /// Normals at the nodes at t_n [-]; zero in rows above the highest place of the seabed.
+    pub normal: Field,
 }
 
 impl ContactArrays {
-    /// Stiffness [N/m] and damping [N s/m] of a row.
-    #[inline(always)]
-    pub fn law(&self, at: usize) -> [Lanes; 2] {
-        [self.stiffness.load(at), self.damping.load(at)]
-    }
-
     pub(super) fn new(contact: &Contact, striping: Striping) -> ContactArrays {
         let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
         let bottom = contact.bottom.as_ref();
@@ -46,10 +51,14 @@ impl ContactArrays {
                 bottom: bottom.clone(),
                 stick: keep(&contact.stick),
                 friction: Field::zeros(striping),
+                normal: Field::zeros(striping),
             }),
             level: keep(&level),
             stiffness: keep(&contact.stiffness),
             damping: keep(&contact.damping),
+            yields: keep(&contact.mass.iter().map(|mass| 1.0 / mass).collect::<Vec<_>>()),
+            spring: Column::new(striping, 0.0),
+            resistance: Column::new(striping, 0.0),
         }
     }
 }
