@@ -85,7 +85,7 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
         .as_ref()
         .map_or(0.0, |saved| saved.course.counters.simulated);
     if let Some(until) = course.until.filter(|until| *until <= done) {
-        let text = format!("--until {until}: the run has come to t = {done} s already");
+        let text = format!("--until {until}: the run has already reached t = {done} s");
         return Err(Failure::Argument(text));
     }
     let _open = Folder::open(folder)?;
@@ -136,7 +136,7 @@ fn remark_driven(loaded: &LoadedScene, before: &Scene, drive: &Drive) {
     }
 }
 
-/// Everything that an interrupted run must have in common with the one that continues it.
+/// Input that must be the same when an interrupted run continues.
 struct Given {
     scene: String,
     coupling: String,
@@ -179,7 +179,7 @@ impl Given {
             let (then, now) = differ.unwrap_or_default();
             let shown = |line: Option<&str>| line.map_or("nothing".to_string(), |line| format!("`{line}`"));
             return refuse(format!(
-                "it is of another scene or motion, with {} where this one has {}; give the same ones, or run the scene from the start",
+                "it belongs to another scene or motion: {} there, {} here; use the same scene and motion, or run from the start",
                 shown(then),
                 shown(now)
             ));
@@ -275,7 +275,7 @@ impl<'r> Run<'r> {
         Ok(run)
     }
 
-    /// Steps until the run ends in one way or another, with a row at every step.
+    /// Steps until the end of the run, an interruption or the time to stop, with a row at every step.
     fn finish(mut self) -> Result<(Record, End), Failure> {
         let listener = Listener::new();
         let (count, first) = (self.times.count, self.record.course.rows);
@@ -361,7 +361,7 @@ impl<'r> Run<'r> {
         Ok(())
     }
 
-    /// Saves the state, and writes all rows that it stands behind.
+    /// Writes all buffered rows, and saves the state.
     fn save(&mut self) -> Result<(), Failure> {
         let state = RunState {
             scene: self.given.scene.clone(),

@@ -378,7 +378,7 @@ impl BeamWork {
     fn add_seabed(&mut self, case: &BeamStep) {
         for element in 0..case.beam.elements.len() {
             for (part, bed) in self.contact(case, element) {
-                let force = part.shares().map(|share| share * bed.force);
+                let force = part.shares.map(|share| share * bed.force);
                 let slope = part.products().map(|row| row.map(|product| product * bed.slope));
                 add_rise(&mut self.chain, element, force, slope);
             }
@@ -450,9 +450,7 @@ impl BeamWork {
         if let Some(contact) = &case.nodes.contact {
             for (element, _) in contact.beside(i) {
                 let beds = self.contact(case, element).into_iter();
-                let push: f64 = beds
-                    .map(|(part, bed)| part.shares()[i - element] * bed.force)
-                    .sum();
+                let push: f64 = beds.map(|(part, bed)| part.shares[i - element] * bed.force).sum();
                 lost -= push * moved.z;
             }
         }

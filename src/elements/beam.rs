@@ -169,7 +169,7 @@ impl BeamCase<'_> {
         }
         for (i, spring) in self.seabed.iter().enumerate() {
             for (part, depth) in spring.pressed(&sections[i..]) {
-                let force = part.shares().map(|share| share * spring.stiffness * depth);
+                let force = part.shares.map(|share| share * spring.stiffness * depth);
                 let slope = part
                     .products()
                     .map(|row| row.map(|product| product * spring.stiffness));
@@ -226,7 +226,7 @@ impl BeamCase<'_> {
         }
         for (spring, sections) in self.seabed.iter().zip(sections.windows(2)) {
             for (part, depth) in spring.pressed(sections) {
-                let share: f64 = part.shares().iter().sum();
+                let share: f64 = part.shares.iter().sum();
                 add(0.5 * share * spring.stiffness * depth * depth);
             }
         }

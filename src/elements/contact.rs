@@ -3,8 +3,6 @@
 //! The force on a node is the sum over the parts of the two segments beside it ([`crate::physics::seabed`]); it has slopes with the penetration of
 //! the node and with those of its neighbours.
 
-use nalgebra::Vector3;
-
 use super::LineWork;
 use crate::model::{Contact, Line, LineState};
 use crate::physics::fading_damper::{FadingContact, damper_reach};
@@ -41,7 +39,7 @@ impl Bearing {
                 let Some(bed) = FadingContact::new(k, penetration, rise, reach) else {
                     continue;
                 };
-                sum.bed.force += part.share * bed.force;
+                sum.bed.force += part.shares[0] * bed.force;
                 let [[own, after], _] = part.products();
                 sum.bed.stiffness += own * bed.stiffness;
                 sum.bed.damping += own * bed.damping;
@@ -63,7 +61,7 @@ impl LineWork {
             return;
         };
         let rise = |node: usize| {
-            let (_, normal): (f64, Vector3<f64>) = contact.stand(node, state.position[node]);
+            let (_, normal) = contact.stand(node, state.position[node]);
             normal.dot(&state.velocity[node]).abs()
         };
         let mut low = rise(0);

@@ -169,20 +169,22 @@ pub fn resting_node<'a>(
     let contact = line.nodes.contact.as_ref()?;
     let still = Vector3::zeros();
     let velocity = |node: usize| reach.map_or(still, |_| state.velocity[node]);
+    let last = state.position.len() - 1;
+    let stands =
+        [i.saturating_sub(1), i, (i + 1).min(last)].map(|node| contact.stand(node, state.position[node]));
     let depth = |node: usize| {
-        let (penetration, normal) = contact.stand(node, state.position[node]);
+        let (penetration, normal) = stands[node + 1 - i];
         [penetration, normal.dot(&velocity(node))]
     };
     let bearing = Bearing::new(contact, i, depth, |segment| {
         reach.map_or(0.0, |reach| reach[segment])
     })?;
     let place = state.position[i];
-    let after = (i + 1).min(state.position.len() - 1);
     let friction = line.friction().zip(state.anchor.get(i));
     Some(Resting {
         touch: contact.touch(i, place),
         bearing,
-        normal_after: contact.stand(after, state.position[after]).1,
+        normal_after: stands[2].1,
         place,
         velocity: velocity(i),
         rub: friction.map(|(friction, anchor)| Rub {

@@ -103,13 +103,13 @@ impl Contact {
             let (k, (far, far_rise, _)) = (self.coefficients(segment), depth(other));
             for part in PARTS {
                 let at = [part.between(near, far), part.between(rise, far_rise)];
-                force += part.share * seabed::normal_force(k, at[0], at[1]);
+                force += part.shares[0] * seabed::normal_force(k, at[0], at[1]);
             }
         }
         force * normal
     }
 
-    /// Length of which the springs carry the weight, of nodes at places [m], per unstretched length of a segment [-].
+    /// Part of the weight of a segment that the springs carry [-], with the nodes of the line at places [m].
     pub fn laid_part(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
         let (weight, stiffness) = (self.weight[segment], self.stiffness[segment]);
         if weight <= 0.0 {

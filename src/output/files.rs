@@ -85,7 +85,7 @@ struct Shapes {
     written: usize,
 }
 
-/// Places up to which the files of a run are written.
+/// Positions up to which the files of a run are written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Marks {
     results: Mark,
@@ -94,7 +94,7 @@ pub struct Marks {
     shapes: Option<(Mark, usize)>,
 }
 
-/// Strides of the rows [-] that a shape is kept at.
+/// Rows from one shape to the next [-].
 #[derive(Debug, Clone, Copy)]
 struct Strides {
     /// Of the figures.
@@ -215,7 +215,7 @@ impl RunFiles {
         Ok(())
     }
 
-    /// Writes all that is kept; the marks of what the files hold now.
+    /// Writes all buffered rows and returns the marks of the files.
     ///
     /// # Errors
     /// A file that the operating system refuses.
@@ -232,7 +232,7 @@ impl RunFiles {
         })
     }
 
-    /// Writes all that is kept.
+    /// Writes all buffered rows.
     ///
     /// # Errors
     /// A file that the operating system refuses.

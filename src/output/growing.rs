@@ -19,7 +19,7 @@ pub(super) struct Growing {
     mark: Mark,
 }
 
-/// Place in a file up to which it is kept when it is continued.
+/// Position in a file up to which it is kept when the run continues.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Mark {
     /// Bytes of the data.
@@ -120,7 +120,7 @@ impl Growing {
         self.mark.end
     }
 
-    /// A failure of another part of the writer, as one of this file.
+    /// An error of the encoder, as an error of this file.
     pub(super) fn failure(&self, source: io::Error) -> OutputError {
         of_file(&self.path, source)
     }

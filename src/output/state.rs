@@ -31,9 +31,9 @@ pub struct RunState {
     pub discretised: String,
     /// The simulation.
     pub snapshot: Snapshot,
-    /// Remains of the rows so far.
+    /// Ranges and histories of the rows so far.
     pub course: Course,
-    /// Places in the files.
+    /// Positions in the files.
     pub marks: Marks,
 }
 
@@ -63,15 +63,14 @@ impl RunState {
         };
         let bytes = fs::read(&path).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => {
-                refuse("there is none: no run was interrupted here, or it is complete")
+                refuse("not found: no run was interrupted in this folder, or the run is complete")
             }
             _ => refuse(&error.to_string()),
         })?;
         let rest = bytes.strip_prefix(MARK.as_bytes());
-        let rest = rest.ok_or_else(|| {
-            refuse("it is no state of this version of moorline: run the scene from the start")
-        })?;
-        let damaged = || refuse("it is damaged: run the scene from the start");
+        let rest = rest
+            .ok_or_else(|| refuse("not a state of this version of moorline: run the scene from the start"))?;
+        let damaged = || refuse("damaged: run the scene from the start");
         let (sum, body) = rest.split_at_checked(SUM).ok_or_else(damaged)?;
         if sum != Sha256::digest(body).as_slice() {
             return Err(damaged());

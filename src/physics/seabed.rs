@@ -3,9 +3,9 @@
 //! f = max(0, k·p − c·ż) per unstretched length, for a penetration p = z_bed − z > 0, else 0.
 //!
 //! A segment is straight between its nodes: p and ż are linear in ξ from 0 to 1. The integral of f over it is the sum over four equal parts, each
-//! with the f in its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A line that is laid down therefore
-//! wets a segment gradually. With contact at nodes alone every node that lands is a blow, and the tension of a chain with 40 elements whose
-//! touchdown wanders has noise of a quarter of its deviation, at the frequency at which nodes land.
+//! with the f in its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A segment that
+//! is laid down therefore takes up its load gradually. With contact at nodes alone every node that lands is an impact. The tension of a chain with
+//! 40 elements in a storm then has noise of a quarter of its standard deviation, at the frequency at which nodes land.
 //!
 //! k = kbot·d and c = cbot·d. Regularised contact softens both together,
 //!
@@ -35,8 +35,8 @@ const REGULARISED_DAMPING: f64 = 0.2;
 pub struct Part {
     /// Distance of its middle from the node, per segment length [-].
     pub at: f64,
-    /// Share of the force on a segment under uniform load that goes from this part to the node [-].
-    pub share: f64,
+    /// Shares of the force on a segment under uniform load that this part gives to the node and to the other one [-].
+    pub shares: [f64; 2],
 }
 
 /// Parts of a segment at which the contact is evaluated.
@@ -45,21 +45,16 @@ pub const PARTS: [Part; 4] = [part(0.125), part(0.375), part(0.625), part(0.875)
 const fn part(at: f64) -> Part {
     Part {
         at,
-        share: 0.25 * (1.0 - at),
+        shares: [0.25 * (1.0 - at), 0.25 * at],
     }
 }
 
 impl Part {
-    /// Shares of the force on a segment under uniform load that go from this part to the node and to the other one [-].
-    #[inline(always)]
-    pub fn shares(self) -> [f64; 2] {
-        [self.share, 0.25 * self.at]
-    }
-
-    /// Slopes of the forces on the two nodes with their own penetrations, over the stiffness of the segment, where this part is pressed [-].
+    /// Slopes of the forces on the two nodes (rows) with the penetrations of both (columns) where this part is pressed, over the stiffness of the
+    /// segment [-].
     #[inline(always)]
     pub fn products(self) -> [[f64; 2]; 2] {
-        self.shares()
+        self.shares
             .map(|share| [share * (1.0 - self.at), share * self.at])
     }
 

@@ -80,14 +80,14 @@ fn what_a_run_left_is_continued_by_the_same_run_only() {
     let folder = folder();
     folder.refused(
         "run scene.toml -o out --resume",
-        &["cannot continue from out/run.state: there is none: no run was interrupted here, or it is complete"],
+        &["cannot continue from out/run.state: not found: no run was interrupted in this folder, or the run is complete"],
     );
     folder.done("run scene.toml -o out --until 0.5");
     let other = SCENE.replace("mass = 0.05", "mass = 0.06");
     folder.write("other.toml", &other);
     folder.refused(
         "run other.toml -o out --resume",
-        &["it is of another scene or motion, with `mass = 0.05` where this one has `mass = 0.06`; give the same ones"],
+        &["it belongs to another scene or motion: `mass = 0.05` there, `mass = 0.06` here"],
     );
     folder.refused(
         "run scene.toml -o out --resume --communication-step 0.1",
@@ -99,7 +99,7 @@ fn what_a_run_left_is_continued_by_the_same_run_only() {
     );
     folder.refused(
         "run scene.toml -o out --resume --until 0.5",
-        &["--until 0.5: the run has come to t = 0.5 s already"],
+        &["--until 0.5: the run has already reached t = 0.5 s"],
     );
     let (rows, state) = (
         folder.read("out/results.csv"),
@@ -116,7 +116,7 @@ fn what_a_run_left_is_continued_by_the_same_run_only() {
     folder.write("out/run.state", damaged);
     folder.refused(
         "run scene.toml -o out --resume",
-        &["out/run.state: it is damaged"],
+        &["out/run.state: damaged"],
     );
     folder.write("out/run.state", "something else");
     folder.refused(

@@ -1,7 +1,7 @@
 //! Spring and damper of the seabed over a step of the leapfrogs.
 //!
 //! A step changes the velocity v⁻ of t_{n−½} to the v of t_{n+½}. A part of a segment ([`crate::physics::seabed`]) with the penetration p at t_n, which
-//! leaves the bed at v_n, goes from p_a = p + (1−θ) Δt v⁻_n to p_b = p − θ Δt v_n, and what spring and damper push in that time is
+//! leaves the bed at v_n, goes from p_a = p + (1−θ) Δt v⁻_n to p_b = p − θ Δt v_n. The impulse of spring and damper over the step is
 //!
 //! λ = Δt k (θ p_b⁺ + (1−θ) p_a⁺) + c (p_b⁺ − p_a⁺) ≥ 0,    only if p_b > 0,    p⁺ = max(p, 0).
 //!
@@ -12,9 +12,10 @@
 //!
 //! goes to backward Euler, which takes such a part to rest. On a bed softened to the mesh r is below 2 at all steps that the line allows.
 //!
-//! v_n of a part between two nodes would couple these. To the node whose share of λ it is, the part changes its velocity as the node does, and its p_b > 0 is
-//! decided with v⁻: the bed gives each node a force P − R v_n of its own, R = Σ ∂λ/∂v_n of all parts with their shares. This lumps the consistent matrix by
-//! rows, which keeps the step stable for any k and c: with a hard bed the shortest wave of nodes on it decays by 0.8 a step and longer ones faster.
+//! The velocity of a part depends on those of both nodes of its segment, which would couple all nodes on the bed. Two approximations avoid that: p_b > 0 is
+//! decided with v⁻, and in the share of λ on a node every part changes its velocity by as much as that node. Each node then gets a force P − R v_n of its
+//! own, with R the sum of the shares of −∂λ/∂v_n over the parts beside it: the consistent matrix, lumped by rows. The step stays stable for any k and c: on
+//! a hard bed the shortest wave of nodes decays by a factor of 0.8 a step, and longer ones decay faster.
 //!
 //! Source: the θ-method, e.g. Hairer & Wanner (1996), Solving Ordinary Differential Equations II, section IV.3; row sums as a bound of a consistent matrix,
 //! Hughes (2000), The Finite Element Method, section 7.3.2. Stable for any k and c.
@@ -27,8 +28,9 @@ use crate::physics::seabed::PARTS;
 /// Contact of nodes with the seabed in a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodeContact {
-    /// Impulse on nodes that do not leave the bed [N s], and what it loses with the speed at which they do [kg].
+    /// Impulse on nodes at rest [N s].
     pub spring: Lanes,
+    /// Decrease of the impulse with the velocity at which the nodes leave the bed [kg].
     pub resistance: Lanes,
 }
 
@@ -54,7 +56,7 @@ impl NodeContact {
 struct Depth {
     penetration: Lanes,
     rise: Lanes,
-    /// True if all of the nodes are above the highest place of the seabed, and this has stood for it.
+    /// True if all nodes of the row are above the highest place of the seabed: the penetration is then an upper bound.
     is_bound: bool,
 }
 
@@ -70,8 +72,8 @@ struct ContactRule {
     behind: Lanes,
 }
 
-/// Forces of the seabed on the two nodes of the segments of a row at unchanged velocities [N], and what they lose with the velocity at which a node leaves
-/// the bed [N s/m].
+/// Forces of the seabed on the two nodes of the segments of a row at unchanged velocities [N], and their decrease with the velocity at which a node
+/// leaves the bed [N s/m].
 #[derive(Debug, Clone, Copy)]
 struct Pressed {
     force: [Lanes; 2],
@@ -124,7 +126,7 @@ impl ContactRule {
             let force = self.slope * after + self.start * before;
             let active = force.where_positive(after);
             let (force, resistance) = (active.positive(), resistance.where_positive(active));
-            for (end, share) in part.shares().map(Lanes::splat).into_iter().enumerate() {
+            for (end, share) in part.shares.map(Lanes::splat).into_iter().enumerate() {
                 pressed.force[end] = pressed.force[end] + share * force;
                 pressed.resistance[end] = pressed.resistance[end] + share * resistance;
             }
@@ -215,7 +217,7 @@ impl ContactArrays {
         }
     }
 
-    /// Depth of a row of nodes without a bound.
+    /// Depth of a row of nodes, with a bound replaced by the penetration itself.
     #[inline(always)]
     fn exact(&mut self, depth: Depth, at: usize, place: Vectors, velocity: Vectors) -> Depth {
         match &mut self.bottom {

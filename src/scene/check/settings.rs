@@ -61,9 +61,10 @@ fn check_output(scene: &Scene, findings: &mut Findings) {
         Some(Frames::Every(shapes)) if shapes > 0.0 => shapes,
         _ => output.interval,
     };
+    let rows = shapes / output.interval;
     rules! { findings, "output";
-        "frames.every" if shapes < output.interval =>
-            "{} is shorter than the interval of {interval}: shapes are written with rows", quantity(shapes, "s");
+        "frames.every" if rows < 0.5 || (rows - rows.round()).abs() > 1e-6 * rows =>
+            "{} is not a multiple of the interval of {interval}: shapes are written with rows", quantity(shapes, "s");
         "interval" if output.interval > output.duration =>
             "{interval} is longer than the duration of {duration}";
         "interval" if output.duration / output.interval > STEPS_MAX =>
