@@ -95,7 +95,7 @@ fn what_a_run_left_is_continued_by_the_same_run_only() {
     );
     folder.refused(
         "run scene.toml -o out --resume --duration 2",
-        &["`duration = 1.0` where this one has `duration = 2.0`"],
+        &["`duration = 1.0` there, `duration = 2.0` here"],
     );
     folder.refused(
         "run scene.toml -o out --resume --until 0.5",
@@ -114,10 +114,7 @@ fn what_a_run_left_is_continued_by_the_same_run_only() {
     let mut damaged = state.clone();
     *damaged.last_mut().unwrap() ^= 1;
     folder.write("out/run.state", damaged);
-    folder.refused(
-        "run scene.toml -o out --resume",
-        &["out/run.state: damaged"],
-    );
+    folder.refused("run scene.toml -o out --resume", &["out/run.state: damaged"]);
     folder.write("out/run.state", "something else");
     folder.refused(
         "run scene.toml -o out --resume",
@@ -200,7 +197,7 @@ fn a_killed_run_leaves_whole_rows_but_for_the_last_one() {
     let (header, rows) = table(&folder.path("whole.csv"));
     assert!(rows.len() > 100 && rows.iter().all(|row| row.len() == header.len()));
     assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));
-    folder.refused(&format!("{command} --resume"), &["out/run.state: there is none"]);
+    folder.refused(&format!("{command} --resume"), &["out/run.state: not found"]);
 }
 
 /// The limit on the size of files stands for a full disk.

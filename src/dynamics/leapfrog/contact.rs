@@ -56,8 +56,6 @@ impl NodeContact {
 struct Depth {
     penetration: Lanes,
     rise: Lanes,
-    /// True if all nodes of the row are above the highest place of the seabed: the penetration is then an upper bound.
-    is_bound: bool,
 }
 
 /// Spring and damper of the segments of a row over a step.
@@ -113,25 +111,29 @@ impl ContactRule {
     #[inline(always)]
     fn press(&self, [low, high]: [Depth; 2]) -> Pressed {
         let zero = Lanes::splat(0.0);
-        let mut pressed = Pressed {
-            force: [zero; 2],
-            resistance: [zero; 2],
-        };
-        let resistance = self.slope * self.ahead;
-        for part in PARTS {
-            let penetration = part.between(low.penetration, high.penetration);
-            let rise = part.between(low.rise, high.rise);
-            let after = penetration - self.ahead * rise;
-            let before = (penetration + self.behind * rise).positive();
-            let force = self.slope * after + self.start * before;
-            let active = force.where_positive(after);
-            let (force, resistance) = (active.positive(), resistance.where_positive(active));
-            for (end, share) in part.shares.map(Lanes::splat).into_iter().enumerate() {
-                pressed.force[end] = pressed.force[end] + share * force;
-                pressed.resistance[end] = pressed.resistance[end] + share * resistance;
-            }
+        let after = low.penetration - self.ahead * low.rise;
+        let before = low.penetration + self.behind * low.rise;
+        let after_change = high.penetration - self.ahead * high.rise - after;
+        let before_change = high.penetration + self.behind * high.rise - before;
+        let stiff = self.slope * self.ahead;
+        let (mut force, mut force_high) = (zero, zero);
+        let (mut resistance, mut resistance_high) = (zero, zero);
+        for part in &PARTS {
+            let at = Lanes::splat(part.at);
+            let after = after + at * after_change;
+            let before = before + at * before_change;
+            let push = (self.slope * after + self.start * before.positive()).where_positive(after);
+            let (push, stiff) = (push.positive(), stiff.where_positive(push));
+            force = force + push;
+            force_high = force_high + at * push;
+            resistance = resistance + stiff;
+            resistance_high = resistance_high + at * stiff;
         }
-        pressed
+        let share = Lanes::splat(0.25);
+        Pressed {
+            force: [share * (force - force_high), share * force_high],
+            resistance: [share * (resistance - resistance_high), share * resistance_high],
+        }
     }
 }
 
@@ -144,27 +146,72 @@ impl Layout {
         let Some(contact) = &mut self.contact else {
             return;
         };
-        let zero = Lanes::splat(0.0);
-        let mut low = contact.depth(0, position[0], velocity[0], step);
-        let mut before = [zero; 2];
-        for at in 0..=last {
-            let mut high = contact.depth(at + 1, position[at + 1], velocity[at + 1], step);
-            if low.is_bound != high.is_bound {
-                low = contact.exact(low, at, position[at], velocity[at]);
-                high = contact.exact(high, at + 1, position[at + 1], velocity[at + 1]);
+        let level = contact.level.rows(last);
+        let segments = SegmentRows {
+            stiffness: contact.stiffness.rows(last),
+            damping: contact.damping.rows(last),
+            yields: contact.yields.rows(last),
+            step,
+        };
+        let found = [contact.spring.rows_mut(last), contact.resistance.rows_mut(last)];
+        match &mut contact.bottom {
+            None => segments.press(found, |at| Depth {
+                penetration: level[at] - position[at].z,
+                rise: velocity[at].z,
+            }),
+            Some(bottom) => {
+                bottom.find_depths(level, [position, velocity], step);
+                let (penetration, rise) = (bottom.penetration.rows(last), bottom.rise.rows(last));
+                segments.press(found, |at| Depth {
+                    penetration: penetration[at],
+                    rise: rise[at],
+                });
             }
-            let mut pressed = contact.press(at, [low, high], step);
-            if at == 0 {
-                // no segment precedes the first node
-                (pressed.force[1][0], pressed.resistance[1][0]) = (0.0, 0.0);
-            }
-            let resistance = pressed.resistance[0] + before[1];
-            let force = pressed.force[0] + before[0];
-            contact.spring.store(force + resistance * low.rise, at);
-            contact.resistance.store(resistance, at);
-            before = [pressed.force[1], pressed.resistance[1]];
+        }
+    }
+}
+
+/// Coefficients of the segments, row by row.
+struct SegmentRows<'a> {
+    stiffness: &'a [Lanes],
+    damping: &'a [Lanes],
+    yields: &'a [Lanes],
+    step: Step,
+}
+
+impl SegmentRows<'_> {
+    /// Writes spring and resistance of all rows of nodes, from the depths of rows.
+    #[inline(always)]
+    fn press(&self, [spring, resistance]: [&mut [Lanes]; 2], depth: impl Fn(usize) -> Depth) {
+        let (zero, last) = (Lanes::splat(0.0), spring.len() - 2);
+        let before = self.press_row(last, [depth(last), depth(last + 1)]);
+        let [mut force_before, mut resistance_before] =
+            [before.force[1], before.resistance[1]].map(|of| of.moved_up_after(zero));
+        let mut low = depth(1);
+        for at in 1..=last {
+            let high = depth(at + 1);
+            let pressed = self.press_row(at, [low, high]);
+            let total = pressed.resistance[0] + resistance_before;
+            spring[at] = pressed.force[0] + force_before + total * low.rise;
+            resistance[at] = total;
+            (force_before, resistance_before) = (pressed.force[1], pressed.resistance[1]);
             low = high;
         }
+    }
+
+    /// Forces on the nodes of a row of segments.
+    #[inline(always)]
+    fn press_row(&self, at: usize, [low, high]: [Depth; 2]) -> Pressed {
+        let lands = |depth: Depth| depth.penetration - Lanes::splat(self.step.drift) * depth.rise;
+        let zero = Lanes::splat(0.0);
+        if !lands(low).max(lands(high)).any_positive() {
+            return Pressed {
+                force: [zero; 2],
+                resistance: [zero; 2],
+            };
+        }
+        let law = [self.stiffness[at], self.damping[at]];
+        ContactRule::new(law, self.yields[at], self.step).press([low, high])
     }
 }
 
@@ -177,66 +224,31 @@ impl ContactArrays {
             resistance: kick * self.resistance.load(at),
         }
     }
-
-    /// Forces on the nodes of a row of segments.
-    #[inline(always)]
-    fn press(&self, at: usize, depths: [Depth; 2], step: Step) -> Pressed {
-        let lands = |depth: &Depth| depth.penetration - Lanes::splat(step.drift) * depth.rise;
-        let zero = Lanes::splat(0.0);
-        if !lands(&depths[0]).max(lands(&depths[1])).any_positive() {
-            return Pressed {
-                force: [zero; 2],
-                resistance: [zero; 2],
-            };
-        }
-        let law = [self.stiffness.load(at), self.damping.load(at)];
-        ContactRule::new(law, self.yields.load(at), step).press(depths)
-    }
-
-    /// Depth of a row of nodes.
-    #[inline(always)]
-    fn depth(&mut self, at: usize, place: Vectors, velocity: Vectors, step: Step) -> Depth {
-        let level = self.level.load(at);
-        let Some(bottom) = &mut self.bottom else {
-            return Depth {
-                penetration: level - place.z,
-                rise: velocity.z,
-                is_bound: false,
-            };
-        };
-        let highest = Lanes::splat(bottom.bottom.ground.highest()) + level - place.z;
-        let moves = Lanes::splat(step.drift) * velocity.dot(velocity).sqrt();
-        if (highest + moves).any_positive() {
-            return bottom.depth(at, level, place, velocity);
-        }
-        bottom.normal.store(Vectors::zero(), at);
-        Depth {
-            penetration: highest,
-            rise: Lanes::splat(0.0),
-            is_bound: true,
-        }
-    }
-
-    /// Depth of a row of nodes, with a bound replaced by the penetration itself.
-    #[inline(always)]
-    fn exact(&mut self, depth: Depth, at: usize, place: Vectors, velocity: Vectors) -> Depth {
-        match &mut self.bottom {
-            Some(bottom) if depth.is_bound => bottom.depth(at, self.level.load(at), place, velocity),
-            _ => depth,
-        }
-    }
 }
 
 impl BottomArrays {
-    /// Depth of a row of nodes whose contact begins at a height above the bed [m].
+    /// Finds the depths of all rows of nodes whose contact begins at `lift` [m] above the bed, and the normals there. A row above the highest place of
+    /// the seabed, whose neighbours are so too, gets a bound of its penetration and no normal.
     #[inline(always)]
-    fn depth(&mut self, at: usize, lift: Lanes, place: Vectors, velocity: Vectors) -> Depth {
-        let (below, normal) = self.bottom.ground.stand_of_four(place);
-        self.normal.store(normal, at);
-        Depth {
-            penetration: below + lift,
-            rise: normal.dot(velocity),
-            is_bound: false,
+    fn find_depths(&mut self, lift: &[Lanes], [position, velocity]: [&[Vectors]; 2], step: Step) {
+        let highest = Lanes::splat(self.bottom.ground.highest());
+        let drift = Lanes::splat(step.drift);
+        let bound = |at: usize| highest + lift[at] - position[at].z;
+        let reaches = |at: usize| (bound(at) + drift * velocity[at].dot(velocity[at]).sqrt()).any_positive();
+        let last = lift.len() - 1;
+        let mut near = [false, reaches(0), reaches(1)];
+        for at in 0..=last {
+            if near.contains(&true) {
+                let (below, normal) = self.bottom.ground.stand_of_four(position[at]);
+                self.normal.store(normal, at);
+                self.penetration.store(below + lift[at], at);
+                self.rise.store(normal.dot(velocity[at]), at);
+            } else {
+                self.normal.store(Vectors::zero(), at);
+                self.penetration.store(bound(at), at);
+                self.rise.store(Lanes::splat(0.0), at);
+            }
+            near = [near[1], near[2], at + 2 <= last && reaches(at + 2)];
         }
     }
 }
@@ -257,7 +269,6 @@ mod tests {
         let depth = Depth {
             penetration: Lanes::splat(penetration),
             rise: Lanes::splat(rise),
-            is_bound: false,
         };
         [depth; 2]
     }

@@ -38,6 +38,10 @@ pub struct BottomArrays {
     pub friction: Field,
     /// Normals at the nodes at t_n [-]; zero in rows above the highest place of the seabed.
     pub normal: Field,
+    /// Penetrations of the nodes at t_n [m]; in such rows bounds of them.
+    pub penetration: Column,
+    /// Velocities at which the nodes leave the seabed [m/s].
+    pub rise: Column,
 }
 
 impl ContactArrays {
@@ -52,6 +56,8 @@ impl ContactArrays {
                 stick: keep(&contact.stick),
                 friction: Field::zeros(striping),
                 normal: Field::zeros(striping),
+                penetration: Column::new(striping, 0.0),
+                rise: Column::new(striping, 0.0),
             }),
             level: keep(&level),
             stiffness: keep(&contact.stiffness),
