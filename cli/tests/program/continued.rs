@@ -118,12 +118,12 @@ fn what_a_run_left_is_continued_by_the_same_run_only() {
     folder.write("out/run.state", "something else");
     folder.refused(
         "run scene.toml -o out --resume",
-        &["no state of this version of moorline"],
+        &["not a state of this version of moorline"],
     );
     folder.write("out/run.state", state);
     folder.done("run scene.toml -o out --resume");
     assert!(!folder.path("out/run.state").exists());
-    folder.refused("run scene.toml -o out --resume", &["or it is complete"]);
+    folder.refused("run scene.toml -o out --resume", &["or the run is complete"]);
 }
 
 #[test]
