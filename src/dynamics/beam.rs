@@ -26,7 +26,7 @@ mod measures;
 use nalgebra::{Matrix3, Vector3};
 
 use super::energy_balance::Flow;
-use crate::elements::beam::{BeamEnd, Span, add_elements, add_rise, folded};
+use crate::elements::beam::{BeamEnd, Span, add_elements, add_lift, add_rise, folded};
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, cayley_vector, skew, spin_of_cayley};
 use crate::model::{Beam, LineState, Nodes};
@@ -35,7 +35,7 @@ use crate::physics::fading_damper::damper_reach;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::{PARTS, Part};
 use crate::physics::section::{
-    Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
+    Mixture, Section, Sextuple, StepStrain, StrainGradient, corrected, join, split, strain,
 };
 use crate::physics::slender::Slender;
 
@@ -47,6 +47,10 @@ pub use measures::{BeamView, Momentum};
 const TOLERANCE: f64 = 1e-12;
 /// Change [-] below which a change that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-7;
+/// Greatest change after which the tangent is used again [-].
+const REUSED_MAX: f64 = 0.05;
+/// Ratio of successive changes [-] above which the tangent is evaluated anew.
+const FALL: f64 = 0.05;
 /// Iterations of a step [-].
 const SOLVES_MAX: usize = 30;
 /// Largest change of θ in an iteration [-].
@@ -149,10 +153,10 @@ impl BeamWork {
     pub fn step(&mut self, case: &BeamStep, shape: &mut LineState) -> Result<(usize, Flow), Stuck> {
         self.predict(case, shape);
         let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
-        let mut last = f64::INFINITY;
-        for solves in 1..=SOLVES_MAX {
-            self.assemble(case, shape);
-            if !self.chain.solve() {
+        let (mut last, mut solves, mut exact) = (f64::INFINITY, 0, true);
+        for _ in 0..SOLVES_MAX {
+            solves += usize::from(exact);
+            if !self.solve(case, shape, exact) {
                 break;
             }
             let (node, change) = self.correct(length);
@@ -161,7 +165,7 @@ impl BeamWork {
                 let reason = StuckReason::Turned;
                 return Err(Stuck { node, reason });
             }
-            if change <= TOLERANCE || (change <= ROUNDING && change >= 0.5 * last) {
+            if change <= TOLERANCE || (exact && change <= ROUNDING && change >= 0.5 * last) {
                 if let Some(node) = folded(&self.now) {
                     let reason = StuckReason::Folded;
                     return Err(Stuck { node, reason });
@@ -174,6 +178,7 @@ impl BeamWork {
                 self.store(case, shape);
                 return Ok((solves, flow));
             }
+            exact = change > REUSED_MAX || (!exact && change > FALL * last);
             last = change;
         }
         let (node, _) = self.largest_change(length);
@@ -270,8 +275,23 @@ impl BeamWork {
         changes.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most })
     }
 
-    fn assemble(&mut self, case: &BeamStep, shape: &LineState) {
-        self.chain.clear();
+    /// Solves for the changes of positions and θ, with the `exact` tangent or the one before; false where there is no solution.
+    fn solve(&mut self, case: &BeamStep, shape: &LineState, exact: bool) -> bool {
+        if exact {
+            self.chain.clear();
+        } else {
+            self.chain.clear_right();
+        }
+        self.assemble(case, shape, exact);
+        if exact {
+            self.chain.solve()
+        } else {
+            self.chain.solve_again()
+        }
+    }
+
+    /// Adds the forces out of balance and, with a `tangent`, their slopes.
+    fn assemble(&mut self, case: &BeamStep, shape: &LineState, tangent: bool) {
         let state = beam_state(shape);
         let span = Span {
             mean: &self.mean,
@@ -285,6 +305,7 @@ impl BeamWork {
             &state.rest,
             &span,
             mixture(case.length),
+            tangent,
         );
         for i in 0..self.now.len() {
             self.add_translation(case, shape, i);
@@ -292,14 +313,18 @@ impl BeamWork {
             self.add_surroundings(case, i);
         }
         if case.nodes.contact.is_some() {
-            self.add_seabed(case);
+            self.add_seabed(case, tangent);
         }
         let last = self.now.len() - 1;
         for (node, end) in [0, last].into_iter().zip(&case.ends) {
             self.chain.right[node] += end.load;
-            (0..6)
-                .filter(|&unknown| end.held[unknown])
-                .for_each(|unknown| self.chain.hold(node, unknown, 0.0));
+            for unknown in (0..6).filter(|&unknown| end.held[unknown]) {
+                if tangent {
+                    self.chain.hold(node, unknown, 0.0);
+                } else {
+                    self.chain.right[node][unknown] = 0.0;
+                }
+            }
         }
     }
 
@@ -375,12 +400,16 @@ impl BeamWork {
     }
 
     /// Adds the seabed under the elements.
-    fn add_seabed(&mut self, case: &BeamStep) {
+    fn add_seabed(&mut self, case: &BeamStep, tangent: bool) {
         for element in 0..case.beam.elements.len() {
             for (part, bed) in self.contact(case, element) {
                 let force = part.shares.map(|share| share * bed.force);
-                let slope = part.products().map(|row| row.map(|product| product * bed.slope));
-                add_rise(&mut self.chain, element, force, slope);
+                if tangent {
+                    let slope = part.products().map(|row| row.map(|product| product * bed.slope));
+                    add_rise(&mut self.chain, element, force, slope);
+                } else {
+                    add_lift(&mut self.chain, element, force);
+                }
             }
         }
     }
@@ -423,10 +452,15 @@ impl BeamWork {
         let i = end * (case.beam.elements.len() - 1);
         let (element, rest) = (&case.beam.elements[i], &beam_state(shape).rest[i]);
         let after = strain(&self.now[i], &self.now[i + 1], element.length);
-        let (laws, plain) = ([&element.law, &element.damping], [&self.strain_before[i], &after]);
-        let stress = response(laws, element.length, plain, rest, mixture(case.length)).stress;
-        let gradient = strain_gradient(&self.mean[i], &self.mean[i + 1], element.length);
-        element.length * gradient[end].tr_mul(&stress)
+        let step = StepStrain {
+            laws: [&element.law, &element.damping],
+            length: element.length,
+            strains: [&self.strain_before[i], &after],
+            rest,
+            mixture: mixture(case.length),
+        };
+        let gradient = StrainGradient::new(&self.mean[i], &self.mean[i + 1], element.length);
+        element.length * gradient.tr_mul(&step.stress())[end]
     }
 
     /// Work of the loads on the free unknowns of an end, and of the prescribed motion of the held ones [J].

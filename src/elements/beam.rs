@@ -10,13 +10,13 @@
 //! A beam whose ends do not prevent its rotation about its axis has no resistance to it: its first node then resists
 //! a turn about d₃, which changes the iteration but not the equilibrium.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix6, Vector3};
 
 use crate::math::pivoted_chain::PivotedChain;
 use crate::model::{BeamElement, FreePoint, Point};
 use crate::physics::seabed::{PARTS, Part};
 use crate::physics::section::{
-    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain, strain_gradient,
+    GeometricStiffness, Mixture, Section, Sextuple, StepStrain, StrainGradient, join, split, strain,
 };
 
 /// Constraints and loads of an end of a beam.
@@ -127,12 +127,19 @@ impl ElementSpring {
 
 /// Adds vertical forces on the two nodes of an element [N] and minus their slopes with the heights of these [N/m].
 pub(crate) fn add_rise(chain: &mut PivotedChain, element: usize, force: [f64; 2], slope: [[f64; 2]; 2]) {
-    for (end, force) in force.into_iter().enumerate() {
-        chain.right[element + end].z += force;
-        chain.diagonal[element + end][(2, 2)] += slope[end][end];
+    add_lift(chain, element, force);
+    for (end, slope) in slope.into_iter().enumerate() {
+        chain.diagonal[element + end][(2, 2)] += slope[end];
     }
     chain.upper[element][(2, 2)] += slope[0][1];
     chain.lower[element][(2, 2)] += slope[1][0];
+}
+
+/// Adds vertical forces on the two nodes of an element [N].
+pub(crate) fn add_lift(chain: &mut PivotedChain, element: usize, force: [f64; 2]) {
+    for (end, force) in force.into_iter().enumerate() {
+        chain.right[element + end].z += force;
+    }
 }
 
 /// Potential energy of a beam.
@@ -163,7 +170,7 @@ impl BeamCase<'_> {
             share: 1.0,
             rate: 0.0,
         };
-        add_elements(chain, &self.elements, &self.rest, &span, still);
+        add_elements(chain, &self.elements, &self.rest, &span, still, true);
         for (i, weight) in self.weight.iter().enumerate() {
             chain.right[i].z -= share.force * weight;
         }
@@ -262,13 +269,14 @@ pub(crate) struct Span<'a> {
     pub spin: &'a [Matrix3<f64>],
 }
 
-/// Subtracts the forces of all elements from the right-hand side and adds their slopes to the matrix.
+/// Subtracts the forces of all elements from the right-hand side and, with a `tangent`, adds their slopes to the matrix.
 pub(crate) fn add_elements(
     chain: &mut PivotedChain,
     elements: &[BeamElement],
     rest: &[Sextuple],
     span: &Span,
     mixture: Mixture,
+    tangent: bool,
 ) {
     for (i, element) in elements.iter().enumerate() {
         let (now, mean) = (
@@ -277,24 +285,40 @@ pub(crate) fn add_elements(
         );
         let after = strain(now[0], now[1], element.length);
         let before = span.strain_before.map_or(after, |strains| strains[i]);
-        let laws = [&element.law, &element.damping];
-        let Response { stress, slope } = response(laws, element.length, [&before, &after], &rest[i], mixture);
-        let weights = strain_gradient(mean[0], mean[1], element.length);
-        let slopes =
-            strain_gradient(now[0], now[1], element.length).map(|gradient| element.length * slope * gradient);
-        let geometric = geometric_stiffness(mean, now, &stress, mixture.share);
-        let block = |row: usize, column: usize| {
-            let mut block = weights[row].tr_mul(&slopes[column]) + geometric[row][column];
-            let turned = block.fixed_view::<6, 3>(0, 3) * span.spin[i + column];
-            block.fixed_view_mut::<6, 3>(0, 3).copy_from(&turned);
-            block
+        let step = StepStrain {
+            laws: [&element.law, &element.damping],
+            length: element.length,
+            strains: [&before, &after],
+            rest: &rest[i],
+            mixture,
         };
-        chain.diagonal[i] += block(0, 0);
-        chain.diagonal[i + 1] += block(1, 1);
-        chain.upper[i] = block(0, 1);
-        chain.lower[i] = block(1, 0);
-        for (node, weight) in [i, i + 1].into_iter().zip(&weights) {
-            chain.right[node] -= element.length * weight.tr_mul(&stress);
+        let (stress, gradient) = (
+            step.stress(),
+            StrainGradient::new(mean[0], mean[1], element.length),
+        );
+        for (node, action) in [i, i + 1].into_iter().zip(gradient.tr_mul(&stress)) {
+            chain.right[node] -= element.length * action;
+        }
+        if tangent {
+            let after = StrainGradient::new(now[0], now[1], element.length);
+            let material = gradient.stiffness(&step.slope(), &after);
+            let geometric = GeometricStiffness::new(mean, now, &stress, mixture.share);
+            let block = |row: usize, column: usize| {
+                let (material, geometric) = (material.block(row, column), geometric.block(row, column));
+                let spin = &span.spin[i + column];
+                let mut whole = Matrix6::zeros();
+                for part in 0..2 {
+                    let shift = element.length * material[part][0] + geometric[part][0];
+                    let turn = (element.length * material[part][1] + geometric[part][1]) * spin;
+                    whole.fixed_view_mut::<3, 3>(3 * part, 0).copy_from(&shift);
+                    whole.fixed_view_mut::<3, 3>(3 * part, 3).copy_from(&turn);
+                }
+                whole
+            };
+            chain.diagonal[i] += block(0, 0);
+            chain.diagonal[i + 1] += block(1, 1);
+            chain.upper[i] = block(0, 1);
+            chain.lower[i] = block(1, 0);
         }
     }
 }

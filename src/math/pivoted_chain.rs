@@ -19,6 +19,102 @@ pub struct PivotedChain {
     pub lower: Vec<Matrix6<f64>>,
     /// Right-hand side, then solution.
     pub right: Vec<Vector6<f64>>,
+    factors: Vec<Lu6>,
+}
+
+/// LU factors of a 6×6 block with row exchanges.
+#[derive(Debug, Clone, Copy, Default)]
+struct Lu6 {
+    /// Rows of the factors: L below the diagonal, the inverse pivots on it, U above.
+    rows: [[f64; 6]; 6],
+    /// Rows of the block in the order of the factors.
+    order: [usize; 6],
+}
+
+impl Lu6 {
+    /// Factors of a block; `None` where it is singular.
+    fn new(block: &Matrix6<f64>) -> Option<Lu6> {
+        let mut rows = rows(block);
+        let mut order = [0, 1, 2, 3, 4, 5];
+        for k in 0..6 {
+            let greater = |a: usize, b: usize| if rows[b][k].abs() > rows[a][k].abs() { b } else { a };
+            let greatest = (k + 1..6).fold(k, greater);
+            rows.swap(k, greatest);
+            order.swap(k, greatest);
+            let pivot = rows[k][k];
+            if pivot == 0.0 || !pivot.is_finite() {
+                return None;
+            }
+            rows[k][k] = 1.0 / pivot;
+            let above = rows[k];
+            for row in &mut rows[k + 1..] {
+                let factor = row[k] * above[k];
+                row[k] = factor;
+                for j in k + 1..6 {
+                    row[j] -= factor * above[j];
+                }
+            }
+        }
+        Some(Lu6 { rows, order })
+    }
+
+    /// Solves for rows of right-hand sides.
+    #[inline(always)]
+    fn solve<const N: usize>(&self, b: &[[f64; N]; 6]) -> [[f64; N]; 6] {
+        let mut x = [[0.0; N]; 6];
+        for i in 0..6 {
+            let mut row = b[self.order[i]];
+            for (factor, known) in self.rows[i][..i].iter().zip(&x) {
+                subtract(&mut row, *factor, known);
+            }
+            x[i] = row;
+        }
+        for i in (0..6).rev() {
+            let mut row = x[i];
+            for (factor, known) in self.rows[i].iter().zip(&x).skip(i + 1) {
+                subtract(&mut row, *factor, known);
+            }
+            x[i] = row.map(|x| x * self.rows[i][i]);
+        }
+        x
+    }
+
+    fn solve_vector(&self, b: &Vector6<f64>) -> Vector6<f64> {
+        let mut rows = [[0.0]; 6];
+        for (row, b) in rows.iter_mut().zip(b.iter()) {
+            row[0] = *b;
+        }
+        let x = self.solve(&rows);
+        Vector6::new(x[0][0], x[1][0], x[2][0], x[3][0], x[4][0], x[5][0])
+    }
+
+    fn solve_block(&self, block: &mut Matrix6<f64>) {
+        let x = self.solve(&rows(block));
+        for (i, row) in x.iter().enumerate() {
+            for (j, x) in row.iter().enumerate() {
+                block[(i, j)] = *x;
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn subtract<const N: usize>(row: &mut [f64; N], factor: f64, other: &[f64; N]) {
+    for (x, y) in row.iter_mut().zip(other) {
+        *x -= factor * y;
+    }
+}
+
+/// Rows of a block.
+#[inline(always)]
+fn rows(block: &Matrix6<f64>) -> [[f64; 6]; 6] {
+    let mut rows = [[0.0; 6]; 6];
+    for (i, row) in rows.iter_mut().enumerate() {
+        for (j, x) in row.iter_mut().enumerate() {
+            *x = block[(i, j)];
+        }
+    }
+    rows
 }
 
 impl PivotedChain {
@@ -29,6 +125,7 @@ impl PivotedChain {
             upper: vec![Matrix6::zeros(); nodes.saturating_sub(1)],
             lower: vec![Matrix6::zeros(); nodes.saturating_sub(1)],
             right: vec![Vector6::zeros(); nodes],
+            factors: vec![Lu6::default(); nodes],
         }
     }
 
@@ -55,24 +152,41 @@ impl PivotedChain {
 
     /// Solves in place; false where a block is singular or the solution is not finite.
     pub fn solve(&mut self) -> bool {
+        for i in 0..self.diagonal.len() {
+            if i > 0 {
+                self.diagonal[i] -= self.lower[i - 1] * self.upper[i - 1];
+            }
+            let Some(factors) = Lu6::new(&self.diagonal[i]) else {
+                return false;
+            };
+            self.factors[i] = factors;
+            if let Some(upper) = self.upper.get_mut(i) {
+                factors.solve_block(upper);
+            }
+        }
+        self.solve_again()
+    }
+
+    /// Solves for another right-hand side, after [`PivotedChain::solve`]; false where the solution is not finite.
+    pub fn solve_again(&mut self) -> bool {
         let nodes = self.diagonal.len();
         for i in 0..nodes {
             if i > 0 {
-                let (lower, solved) = (&self.lower[i - 1], self.right[i - 1]);
-                self.diagonal[i] -= lower * self.upper[i - 1];
-                self.right[i] -= lower * solved;
+                let known = self.right[i - 1];
+                self.right[i] -= self.lower[i - 1] * known;
             }
-            let factors = self.diagonal[i].lu();
-            let coupled = self.upper.get_mut(i).is_none_or(|u| factors.solve_mut(u));
-            if !(coupled && factors.solve_mut(&mut self.right[i])) {
-                return false;
-            }
+            self.right[i] = self.factors[i].solve_vector(&self.right[i]);
         }
         for i in (0..nodes.saturating_sub(1)).rev() {
             let next = self.right[i + 1];
             self.right[i] -= self.upper[i] * next;
         }
         self.right.iter().all(|block| block.iter().all(|x| x.is_finite()))
+    }
+
+    /// Sets the right-hand side to zero.
+    pub fn clear_right(&mut self) {
+        self.right.fill(Vector6::zeros());
     }
 }
 

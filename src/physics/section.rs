@@ -28,7 +28,7 @@
 //! J. Nonlinear Sci. 6, 449-467; starred strains and slopes derived here, checked by differences. Valid for small strain; neighbouring
 //! sections must differ by less than a quarter turn, at which K goes through its maximum.
 
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 use crate::math::rotation::{axial, skew};
 
@@ -123,14 +123,22 @@ pub struct Mixture {
     pub rate: f64,
 }
 
-/// Stress of a step and its slope.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Response {
-    /// Stress: its product with the change of the plain strains is the work on an element, per length.
-    pub stress: Sextuple,
-    /// Slope of the stress with the plain strains at the end of the step: stiffness [N] for forces over stretches,
-    /// and so on.
-    pub slope: Matrix6<f64>,
+/// Slopes of forces and moments (rows) with stretches and curvatures, or with positions and spins (columns).
+pub type Blocks = [[Matrix3<f64>; 2]; 2];
+
+/// An element over a step, or at rest.
+#[derive(Debug, Clone, Copy)]
+pub struct StepStrain<'a> {
+    /// Stiffness and damping of the section.
+    pub laws: [&'a SectionLaw; 2],
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Plain strains before and after the step.
+    pub strains: [&'a Sextuple; 2],
+    /// Starred strains without stress.
+    pub rest: &'a Sextuple,
+    /// Weights of both strains.
+    pub mixture: Mixture,
 }
 
 /// Starred strains (Γ*, K*) of plain ones (Γ, K) over an unstretched length [m].
@@ -149,23 +157,35 @@ fn turns(strain: &Sextuple, length: f64) -> (f64, f64) {
     (v + length * length * strain[5] * strain[5], v)
 }
 
-/// D: its product with the change of the plain strains is the change of the starred ones.
-#[inline(always)]
-fn correction_gradient(before: &Sextuple, now: &Sextuple, length: f64) -> Matrix6<f64> {
-    let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
-    let curvature = split(&(0.5 * (before + now))).1;
-    let h = 1.0 + (u0 + u1) / 12.0 + 0.0375 * (u0 * u0 + u1 * u1);
-    let twice = 2.0 * length * length;
-    let (turning, shortening) = (
-        twice * (1.0 / 6.0 + 0.075 * (u0 + u1)),
-        twice * (1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1)),
-    );
-    let mut gradient = Matrix6::identity();
-    gradient[(2, 3)] = shortening * curvature.x;
-    gradient[(2, 4)] = shortening * curvature.y;
-    let block = Matrix3::from_diagonal_element(h) + turning * curvature * curvature.transpose();
-    gradient.fixed_view_mut::<3, 3>(3, 3).copy_from(&block);
-    gradient
+/// D = [[I, ẑ sᵀ], [0, H]]: its product with the change of the plain strains is the change of the starred ones.
+struct Correction {
+    /// H.
+    turn: Matrix3<f64>,
+    /// s.
+    shortening: Vector3<f64>,
+}
+
+impl Correction {
+    #[inline(always)]
+    fn new(before: &Sextuple, now: &Sextuple, length: f64) -> Correction {
+        let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
+        let curvature = split(&(0.5 * (before + now))).1;
+        let h = 1.0 + (u0 + u1) / 12.0 + 0.0375 * (u0 * u0 + u1 * u1);
+        let twice = 2.0 * length * length;
+        let turning = twice * (1.0 / 6.0 + 0.075 * (u0 + u1));
+        let shortening = twice * (1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1));
+        Correction {
+            turn: Matrix3::from_diagonal_element(h) + turning * curvature * curvature.transpose(),
+            shortening: shortening * Vector3::new(curvature.x, curvature.y, 0.0),
+        }
+    }
+
+    /// Dᵀ S.
+    #[inline(always)]
+    fn tr_mul(&self, stress: &Sextuple) -> Sextuple {
+        let (n, m) = split(stress);
+        join(n, self.turn.tr_mul(&m) + n.z * self.shortening)
+    }
 }
 
 /// Change of Dᵀ S with the plain strains at the end of the step, at constant S = `stress`.
@@ -186,30 +206,42 @@ fn correction_curvature(before: &Sextuple, now: &Sextuple, stress: &Sextuple, le
         + 17.0 / 90.0 * square * square * n * bent * bent_last.transpose()
 }
 
-/// Stress of a step between the plain strains `before` and `now`, from the starred strains at `rest`.
-#[inline(always)]
-pub fn response(
-    [law, damping]: [&SectionLaw; 2],
-    length: f64,
-    [before, now]: [&Sextuple; 2],
-    rest: &Sextuple,
-    mixture: Mixture,
-) -> Response {
-    let (c, d) = (law.diagonal(), mixture.rate * damping.diagonal());
-    let (start, end) = (corrected(before, length), corrected(now, length));
-    let starred = c.component_mul(&(0.5 * (start + end) - rest)) + d.component_mul(&(end - start));
-    let gradient = correction_gradient(before, now, length);
-    let mut slopes = correction_gradient(now, now, length);
-    let stiffness = mixture.share * c + d;
-    for (mut row, factor) in slopes.row_iter_mut().zip(&stiffness) {
-        row *= *factor;
+impl StepStrain<'_> {
+    /// Mean stress conjugate to the starred strains.
+    #[inline(always)]
+    fn starred(&self) -> Sextuple {
+        let [law, damping] = self.laws;
+        let [start, end] = self.strains.map(|strain| corrected(strain, self.length));
+        let elastic = law.diagonal().component_mul(&(0.5 * (start + end) - self.rest));
+        elastic + (self.mixture.rate * damping.diagonal()).component_mul(&(end - start))
     }
-    let mut slope = gradient.tr_mul(&slopes);
-    let mut turned = slope.fixed_view_mut::<3, 3>(3, 3);
-    turned += 2.0 * mixture.share * correction_curvature(before, now, &starred, length);
-    Response {
-        stress: gradient.tr_mul(&starred),
-        slope,
+
+    /// Mean stress: its product with the change of the plain strains is the work on an element, per length.
+    #[inline(always)]
+    pub fn stress(&self) -> Sextuple {
+        let [before, now] = self.strains;
+        Correction::new(before, now, self.length).tr_mul(&self.starred())
+    }
+
+    /// Slope of the stress with the plain strains at the end of the step: stiffness [N] for forces over stretches, and so on.
+    #[inline(always)]
+    pub fn slope(&self) -> Blocks {
+        let ([law, damping], [before, now], length) = (self.laws, self.strains, self.length);
+        let share = self.mixture.share;
+        let stiffness = share * law.diagonal() + self.mixture.rate * damping.diagonal();
+        let (forces, moments) = split(&stiffness);
+        let [mean, end] = [before, now].map(|from| Correction::new(from, now, length));
+        let mut turned = mean.turn.transpose() * Matrix3::from_diagonal(&moments) * end.turn;
+        turned += forces.z * mean.shortening * end.shortening.transpose();
+        turned += 2.0 * share * correction_curvature(before, now, &self.starred(), length);
+        let axial = forces.z * Vector3::z();
+        [
+            [
+                Matrix3::from_diagonal(&forces),
+                axial * end.shortening.transpose(),
+            ],
+            [mean.shortening * axial.transpose(), turned],
+        ]
     }
 }
 
@@ -226,22 +258,102 @@ pub fn strain(a: &Section, b: &Section, length: f64) -> Sextuple {
     join(stretch, turn) / length
 }
 
-/// ∂(Γ, K)/∂(φ, spin) of both sections, K [1/m] over φ [m] and spin [rad]. Its transpose times a stress and the length gives the sections' forces and moments.
+/// ∂(Γ, K)/∂(φ, spin) of sections a and b, K [1/m] over φ [m] and spin [rad]: [[∓A, R], [0, ∓Q]] with the upper signs for a.
+#[derive(Debug, Clone, Copy)]
+pub struct StrainGradient {
+    /// A = ½ (Λ_a + Λ_b)ᵀ/L [1/m].
+    along: Matrix3<f64>,
+    /// R = ½ Λᵀ (φ' ×) of both sections [-].
+    swept: [Matrix3<f64>; 2],
+    /// Q, of the rows q_k/L [1/m].
+    turn: Matrix3<f64>,
+}
+
+/// Values for sections a and b. (`map` of an array moves its elements through memory.)
 #[inline(always)]
-pub fn strain_gradient(a: &Section, b: &Section, length: f64) -> [Matrix6<f64>; 2] {
-    let slope = skew((b.position - a.position) / length); // φ' ×
-    let along = 0.5 * (a.frame + b.frame).transpose() / length;
-    let turn = turn_gradient(a, b) / length;
-    let block = |sign: f64, own: &Section| {
-        let mut gradient = Matrix6::zeros();
-        gradient.fixed_view_mut::<3, 3>(0, 0).copy_from(&(sign * along));
-        gradient
-            .fixed_view_mut::<3, 3>(0, 3)
-            .copy_from(&(0.5 * own.frame.tr_mul(&slope)));
-        gradient.fixed_view_mut::<3, 3>(3, 3).copy_from(&(sign * turn));
-        gradient
-    };
-    [block(-1.0, a), block(1.0, b)]
+pub(crate) fn both<T>(value: impl Fn(usize) -> T) -> [T; 2] {
+    [value(0), value(1)]
+}
+
+/// Signs of A and Q for sections a and b.
+const SIGNS: [f64; 2] = [-1.0, 1.0];
+
+impl StrainGradient {
+    /// Gradient between two sections an unstretched length [m] apart.
+    #[inline(always)]
+    pub fn new(a: &Section, b: &Section, length: f64) -> StrainGradient {
+        let per_length = 1.0 / length;
+        let slope = skew(0.5 * per_length * (b.position - a.position)); // ½ φ' ×
+        StrainGradient {
+            along: 0.5 * per_length * (a.frame + b.frame).transpose(),
+            swept: [a.frame.tr_mul(&slope), b.frame.tr_mul(&slope)],
+            turn: per_length * turn_gradient(a, b),
+        }
+    }
+
+    /// Change of the strains by those of positions and spins of both sections.
+    pub fn times(&self, [a, b]: [Sextuple; 2]) -> Sextuple {
+        let [(shift_a, spin_a), (shift_b, spin_b)] = [split(&a), split(&b)];
+        let stretch = self.along * (shift_b - shift_a) + self.swept[0] * spin_a + self.swept[1] * spin_b;
+        join(stretch, self.turn * (spin_b - spin_a))
+    }
+
+    /// Forces and moments per length of a stress on both sections.
+    #[inline(always)]
+    pub fn tr_mul(&self, stress: &Sextuple) -> [Sextuple; 2] {
+        let (n, m) = split(stress);
+        let (pull, moment) = (self.along.tr_mul(&n), self.turn.tr_mul(&m));
+        both(|side| {
+            join(
+                SIGNS[side] * pull,
+                self.swept[side].tr_mul(&n) + SIGNS[side] * moment,
+            )
+        })
+    }
+
+    /// Change of [`StrainGradient::tr_mul`] with positions and spins of the sections at which the strains change by the gradient `now`, the
+    /// stress having the `slope`.
+    #[inline(always)]
+    pub fn stiffness(&self, slope: &Blocks, now: &StrainGradient) -> Stiffness {
+        let shift = both(|part| slope[part][0] * now.along);
+        let turn = both(|part| slope[part][1] * now.turn);
+        let spin =
+            |part: usize, column: usize| slope[part][0] * now.swept[column] + SIGNS[column] * turn[part];
+        let force = both(|column| spin(0, column));
+        Stiffness {
+            stretched: self.along.tr_mul(&shift[0]),
+            bent: self.turn.tr_mul(&shift[1]),
+            pulled: both(|column| self.along.tr_mul(&force[column])),
+            twisted: both(|column| self.turn.tr_mul(&spin(1, column))),
+            swept: both(|row| self.swept[row].tr_mul(&shift[0])),
+            turned: both(|row| both(|column| self.swept[row].tr_mul(&force[column]))),
+        }
+    }
+}
+
+/// Products of strain gradients and the slope of a stress, from which the blocks of an element's tangent are composed.
+pub struct Stiffness {
+    stretched: Matrix3<f64>,
+    bent: Matrix3<f64>,
+    pulled: [Matrix3<f64>; 2],
+    twisted: [Matrix3<f64>; 2],
+    swept: [Matrix3<f64>; 2],
+    turned: [[Matrix3<f64>; 2]; 2],
+}
+
+impl Stiffness {
+    /// Change of force and moment on the section `row` with position and spin of the section `column`.
+    #[inline(always)]
+    pub fn block(&self, row: usize, column: usize) -> Blocks {
+        let (up, across) = (SIGNS[row], SIGNS[column]);
+        [
+            [up * across * self.stretched, up * self.pulled[column]],
+            [
+                across * (self.swept[row] + up * self.bent),
+                self.turned[row][column] + up * self.twisted[column],
+            ],
+        ]
+    }
 }
 
 /// Rows q_k = ½ ε_kij d_i^b × d_j^a.
@@ -254,41 +366,50 @@ fn turn_gradient(a: &Section, b: &Section) -> Matrix3<f64> {
     Matrix3::from_columns(&[row(1, 2), row(2, 0), row(0, 1)]).transpose()
 }
 
-/// Change of the forces and moments of both sections, [`strain_gradient`] at `mean` transposed times length and `stress`, with positions
-/// and spins of the sections `now`, where the stress stays: [row][column], and the mean follows by the part `share` [-].
-#[inline(always)]
-pub fn geometric_stiffness(
-    mean: [&Section; 2],
-    now: [&Section; 2],
-    stress: &Sextuple,
-    share: f64,
-) -> [[Matrix6<f64>; 2]; 2] {
-    let (n, m) = split(stress);
-    let half = 0.5 * share;
-    let chord = skew(mean[1].position - mean[0].position);
-    let carried = mean.map(|section| skew(section.frame * n)); // ν ×
-    let turned = now.map(|section| skew(section.frame * n));
-    let moment = skew(m);
-    let by_b = now[1].frame * moment * mean[0].frame.transpose();
-    let by_a = mean[1].frame * moment * now[0].frame.transpose();
-    let of_b = by_b - Matrix3::from_diagonal_element(by_b.trace());
-    let of_a = Matrix3::from_diagonal_element(by_a.trace()) - by_a.transpose();
-    let block = |row: usize, column: usize| {
-        let (up, across) = ([-1.0, 1.0][row], [-1.0, 1.0][column]);
-        let mut turn = -up * [of_a, of_b][column];
-        if row == column {
-            turn += chord * turned[row];
+/// Change of the forces and moments of both sections, [`StrainGradient::tr_mul`] at the mean sections times the length, with positions and spins
+/// of the sections after the step, where the stress stays, and the mean follows by a part of the change.
+pub struct GeometricStiffness {
+    carried: [Matrix3<f64>; 2],
+    turned: [Matrix3<f64>; 2],
+    moment: [Matrix3<f64>; 2],
+    swept: [Matrix3<f64>; 2],
+}
+
+impl GeometricStiffness {
+    /// For the sections `mean` and `now`, a `stress`, and the part `share` [-].
+    #[inline(always)]
+    pub fn new(mean: [&Section; 2], now: [&Section; 2], stress: &Sextuple, share: f64) -> GeometricStiffness {
+        let (n, m) = split(stress);
+        let half = 0.5 * share;
+        let chord = skew(mean[1].position - mean[0].position);
+        let turned = both(|i| skew(half * now[i].frame * n));
+        let moment = skew(half * m);
+        let by_b = now[1].frame * moment * mean[0].frame.transpose();
+        let by_a = mean[1].frame * moment * now[0].frame.transpose();
+        GeometricStiffness {
+            carried: both(|i| skew(half * mean[i].frame * n)), // ν ×
+            moment: [
+                Matrix3::from_diagonal_element(by_a.trace()) - by_a.transpose(),
+                by_b - Matrix3::from_diagonal_element(by_b.trace()),
+            ],
+            swept: both(|i| chord * turned[i]),
+            turned,
         }
-        let mut stiffness = Matrix6::zeros();
-        let mut put = |i: usize, j: usize, block: Matrix3<f64>| {
-            stiffness.fixed_view_mut::<3, 3>(i, j).copy_from(&(half * block));
-        };
-        put(0, 3, -up * turned[column]);
-        put(3, 0, across * carried[row]);
-        put(3, 3, turn);
-        stiffness
-    };
-    [[block(0, 0), block(0, 1)], [block(1, 0), block(1, 1)]]
+    }
+
+    /// Change of force and moment on the section `row` with position and spin of the section `column`.
+    #[inline(always)]
+    pub fn block(&self, row: usize, column: usize) -> Blocks {
+        let (up, across) = (SIGNS[row], SIGNS[column]);
+        let mut turn = -up * self.moment[column];
+        if row == column {
+            turn += self.swept[row];
+        }
+        [
+            [Matrix3::zeros(), -up * self.turned[column]],
+            [across * self.carried[row], turn],
+        ]
+    }
 }
 
 /// The parts of a strain or stress that belong to forces [N] and to moments [N m].
@@ -350,6 +471,11 @@ mod tests {
         sections
     }
 
+    fn column_of(blocks: &Blocks, unknown: usize) -> Sextuple {
+        let part = |row: usize| blocks[row][unknown / 3].column(unknown % 3).into_owned();
+        join(part(0), part(1))
+    }
+
     fn strain_of([a, b]: [Section; 2]) -> Sextuple {
         strain(&a, &b, LENGTH)
     }
@@ -357,10 +483,12 @@ mod tests {
     #[test]
     fn the_strain_gradient_equals_central_differences() {
         let [a, b] = pair();
-        let gradient = strain_gradient(&a, &b, LENGTH);
+        let gradient = StrainGradient::new(&a, &b, LENGTH);
         for unknown in 0..12 {
             let difference = central(1e-6, |by| strain_of(moved(pair(), unknown, by)));
-            let column = gradient[unknown / 6].column(unknown % 6).into_owned();
+            let mut unit = [Sextuple::zeros(); 2];
+            unit[unknown / 6][unknown % 6] = 1.0;
+            let column = gradient.times(unit);
             assert_relative_eq!(column, difference, epsilon = 1e-8);
         }
     }
@@ -370,18 +498,17 @@ mod tests {
         let before = pair();
         let loads = |now: [Section; 2]| {
             let mean = means(&before, &now);
-            let [a, b] = strain_gradient(&mean[0], &mean[1], LENGTH);
-            [a, b].map(|gradient| LENGTH * gradient.tr_mul(&STRESS))
+            let gradient = StrainGradient::new(&mean[0], &mean[1], LENGTH);
+            gradient.tr_mul(&STRESS).map(|action| LENGTH * action)
         };
         let now = later();
         let mean = means(&before, &now);
         let [m, n] = [[&mean[0], &mean[1]], [&now[0], &now[1]]];
-        let stiffness = geometric_stiffness(m, n, &STRESS, 0.5);
+        let stiffness = GeometricStiffness::new(m, n, &STRESS, 0.5);
         for unknown in 0..12 {
-            for (row, blocks) in stiffness.iter().enumerate() {
+            for row in 0..2 {
                 let difference = central(1e-6, |by| loads(moved(now, unknown, by))[row]);
-                let block = &blocks[unknown / 6];
-                let column = block.column(unknown % 6).into_owned();
+                let column = column_of(&stiffness.block(row, unknown / 6), unknown % 6);
                 assert_relative_eq!(column, difference, epsilon = 1e-8);
             }
         }
@@ -396,10 +523,8 @@ mod tests {
         let shift = |i: usize| Vector3::new(0.2, i as f64, -0.3);
         let now = [0, 1].map(|i| section(before[i].position + shift(i), cayley(thetas[i]) * before[i].frame));
         let mean = means(&before, &now);
-        let gradient = strain_gradient(&mean[0], &mean[1], LENGTH);
-        let change: Sextuple = (0..2)
-            .map(|i| gradient[i] * join(now[i].position - before[i].position, thetas[i]))
-            .sum();
+        let gradient = StrainGradient::new(&mean[0], &mean[1], LENGTH);
+        let change = gradient.times([0, 1].map(|i| join(now[i].position - before[i].position, thetas[i])));
         assert_relative_eq!(change, strain_of(now) - strain_of(before), epsilon = 1e-14);
     }
 
@@ -414,8 +539,8 @@ mod tests {
     #[test]
     fn forces_and_moments_of_a_stress_are_in_balance() {
         let [a, b] = pair();
-        let gradient = strain_gradient(&a, &b, LENGTH);
-        let [at_a, at_b] = gradient.map(|g| split(&(LENGTH * g.tr_mul(&STRESS))));
+        let actions = StrainGradient::new(&a, &b, LENGTH).tr_mul(&STRESS);
+        let [at_a, at_b] = actions.map(|action| split(&(LENGTH * action)));
         assert_relative_eq!(at_a.0 + at_b.0, Vector3::zeros(), epsilon = 1e-14);
         let moment = at_a.1 + at_b.1 + (b.position - a.position).cross(&at_b.0);
         assert_relative_eq!(moment, Vector3::zeros(), epsilon = 1e-14);
@@ -457,18 +582,19 @@ mod tests {
         };
         let (share, rate) = (0.5, 3.0);
         let by = |damping| {
-            response(
-                [&LAW, damping],
-                LENGTH,
-                [&before, &now],
-                &rest,
-                Mixture { share, rate },
-            )
+            let step = StepStrain {
+                laws: [&LAW, damping],
+                length: LENGTH,
+                strains: [&before, &now],
+                rest: &rest,
+                mixture: Mixture { share, rate },
+            };
+            step.stress()
         };
         let (at, damped) = (by(&law([0.0; 4])), by(&DAMPING));
-        let work = LENGTH * at.stress.dot(&(now - before));
+        let work = LENGTH * at.dot(&(now - before));
         assert_relative_eq!(work, energy(&now) - energy(&before), epsilon = 1e-13);
-        assert!((damped.stress - at.stress).dot(&(now - before)) > 0.0);
+        assert!((damped - at).dot(&(now - before)) > 0.0);
     }
 
     #[test]
@@ -478,12 +604,18 @@ mod tests {
         for (share, rate, still) in [(0.5, 3.0, false), (1.0, 0.0, true)] {
             let at = |now: Sextuple| {
                 let from = if still { now } else { before };
-                let mixture = Mixture { share, rate };
-                response([&LAW, &DAMPING], LENGTH, [&from, &now], &rest, mixture)
+                let step = StepStrain {
+                    laws: [&LAW, &DAMPING],
+                    length: LENGTH,
+                    strains: [&from, &now],
+                    rest: &rest,
+                    mixture: Mixture { share, rate },
+                };
+                (step.stress(), step.slope())
             };
             for unknown in 0..6 {
-                let difference = central(1e-6, |h| at(now + h * Sextuple::ith(unknown, 1.0)).stress);
-                let column = at(now).slope.column(unknown).into_owned();
+                let difference = central(1e-6, |h| at(now + h * Sextuple::ith(unknown, 1.0)).0);
+                let column = column_of(&at(now).1, unknown);
                 assert_relative_eq!(column, difference, epsilon = 1e-7);
             }
         }

@@ -7,7 +7,7 @@ use crate::dynamics::energy_balance::Energy;
 use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
 use crate::physics::morison::drag;
 use crate::physics::section::{
-    Mixture, Section, Sextuple, StrainEnergy, join, response, split, strain, strain_gradient,
+    Mixture, Section, Sextuple, StepStrain, StrainEnergy, StrainGradient, join, split, strain,
 };
 
 /// Momenta of a beam's mass.
@@ -105,16 +105,21 @@ impl<'a> BeamView<'a> {
             share: 1.0,
             rate: 0.0,
         };
-        let laws = [&element.law, &element.damping];
-        let elastic = response(laws, element.length, [&now, &now], &state.rest[i], still);
+        let step = StepStrain {
+            laws: [&element.law, &element.damping],
+            length: element.length,
+            strains: [&now, &now],
+            rest: &state.rest[i],
+            mixture: still,
+        };
+        let elastic = step.stress();
         if !damped {
-            return elastic.stress;
+            return elastic;
         }
         let moving =
             [i, i + 1].map(|node| join(self.shape.velocity[node], state.frames[node] * state.spins[node]));
-        let gradient = strain_gradient(&a, &b, element.length);
-        let rate = gradient[0] * moving[0] + gradient[1] * moving[1];
-        elastic.stress + element.damping.diagonal().component_mul(&rate)
+        let rate = StrainGradient::new(&a, &b, element.length).times(moving);
+        elastic + element.damping.diagonal().component_mul(&rate)
     }
 
     /// Effective tension of an element: the axial component of its stress [N].
@@ -128,8 +133,8 @@ impl<'a> BeamView<'a> {
     /// Force [N] and moment [N m] that balance the stress of an element at its lower (0) or upper (1) end.
     fn end_stress(&self, i: usize, side: usize, damped: bool) -> (Vector3<f64>, Vector3<f64>) {
         let element = &self.beam.elements[i];
-        let gradient = strain_gradient(&self.section(i), &self.section(i + 1), element.length);
-        split(&(element.length * gradient[side].tr_mul(&self.stress(i, damped))))
+        let gradient = StrainGradient::new(&self.section(i), &self.section(i + 1), element.length);
+        split(&(element.length * gradient.tr_mul(&self.stress(i, damped))[side]))
     }
 
     /// Bending moment at a node [N m], from its elements' elastic stress: the mean of both sides, which differ by the
