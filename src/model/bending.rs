@@ -118,32 +118,30 @@ impl Model {
     }
 }
 
-/// Keeps coincident nodes from dividing by zero [m].
-const LENGTH_MIN: f64 = 1e-9;
-
 /// Turn at a node between its segments, or between a clamp and a segment; `None` at a pinned end.
 #[inline(always)]
 pub fn joint(clamps: [Option<Vector3<f64>>; 2], position: &[Vector3<f64>], node: usize) -> Option<Turn> {
     let segment = |i: usize| {
         let chord = position[i + 1] - position[i];
-        let length = chord.norm();
-        Direction {
-            along: if length > 0.0 {
-                chord / length
-            } else {
-                Vector3::x()
-            },
-            per_length: 1.0 / length.max(LENGTH_MIN),
-        }
+        Direction::new(chord, chord.norm())
     };
-    let held = |along: Vector3<f64>| Direction {
+    joint_of_segments(clamps, [node, position.len() - 1], segment)
+}
+
+/// [`joint`] of a node of those up to `last`, from the directions of the segments.
+#[inline(always)]
+pub fn joint_of_segments(
+    clamps: [Option<Vector3<f64>>; 2],
+    [node, last]: [usize; 2],
+    segment: impl Fn(usize) -> Direction,
+) -> Option<Turn> {
+    let clamp = |along: Vector3<f64>| Direction {
         along,
         per_length: 0.0,
     };
-    let last = position.len() - 1;
     Some(match node {
-        0 => Turn::new(held(clamps[0]?), segment(0)),
-        i if i == last => Turn::new(segment(i - 1), held(clamps[1]?)),
+        0 => Turn::new(clamp(clamps[0]?), segment(0)),
+        i if i == last => Turn::new(segment(i - 1), clamp(clamps[1]?)),
         i => Turn::new(segment(i - 1), segment(i)),
     })
 }

@@ -11,7 +11,8 @@
 //!
 //! h(s) = min(h_section, h_other + G·distance to it, h_fine + G·distance to its place).
 //!
-//! A cable that bends follows a clamp, and lifts off the bed, over √(EI/T): half of that is h_fine near both.
+//! A cable that bends follows a clamp, and lifts off the bed, over √(EI/T): h_fine is half of that at the touchdown. At a clamp it follows from
+//! the tolerance: elements of h there have an error of the curvature of 0.107 h²T/EI.
 //!
 //! Sections with a given number of elements have elements of equal length, regardless of their neighbours; an open
 //! neighbour with longer elements adapts.
@@ -64,6 +65,8 @@ pub(crate) struct Refinement {
     pub to: f64,
     /// Length of elements there [m].
     pub size: f64,
+    /// √(EI/T), over which the line bends there [m].
+    pub bend: f64,
     /// Reason for the refinement.
     pub place: Place,
 }
@@ -328,6 +331,7 @@ mod tests {
             from: 240.0,
             to: 250.0,
             size: 0.3,
+            bend: 1.0,
             place: Place::ClampB,
         };
         let mesh = lengths(&[piece(250.0, None)], 40.0, &[wanted]);
@@ -347,6 +351,7 @@ mod tests {
             from: 0.0,
             to: 250.0,
             size: 1e-3,
+            bend: 1.0,
             place: Place::Touchdown,
         };
         let mesh = lengths(&[piece(250.0, None)], 40.0, &[wanted]);

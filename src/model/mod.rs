@@ -33,7 +33,7 @@ use crate::physics::viscoelastic::Viscoelastic;
 use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
-pub use bending::{Bending, joint};
+pub use bending::{Bending, joint, joint_of_segments};
 pub use bottom::Bottom;
 pub use build::line_shares;
 pub use motion::{Derivatives, Kinematics, Motion, Pose};

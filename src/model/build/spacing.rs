@@ -9,8 +9,12 @@ use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Bed, Catenary};
 use crate::scene::{self, PointKind, Scene, percent};
 
-/// Elements over √(EI/T) [-].
-const ELEMENTS_PER_BEND: f64 = 2.0;
+/// Error of the curvature at a clamp times the square of the number of elements over √(EI/T) there [-], measured on `power_cable`.
+const CURVATURE_ERROR: f64 = 0.107;
+/// Elements over √(EI/T) at a clamp, least and most [-].
+const CLAMP_ELEMENTS: [f64; 2] = [1.0, 20.0];
+/// The same at the touchdown, where the moment rises without a step [-].
+const TOUCHDOWN_ELEMENTS: f64 = 2.0;
 /// Length that is finely meshed at a clamp and around the touchdown, over √(EI/T) [-].
 const BENDS: f64 = 2.0;
 /// Displacement of the touchdown to both sides where the motion of the ends is not given, over the length of the line
@@ -126,6 +130,10 @@ pub(super) fn refinements(
             greatest(Catenary::tension_b),
         ),
     ];
+    let [least, most] = CLAMP_ELEMENTS;
+    let at_clamp = (CURVATURE_ERROR / scene.solver.tolerance)
+        .sqrt()
+        .clamp(least, most);
     for (clamp, place, law, tension) in clamps {
         let stiffness = law.map_or(0.0, |law| law.bending_stiffness);
         if clamp.is_none() || stiffness == 0.0 || tension == 0.0 {
@@ -140,7 +148,8 @@ pub(super) fn refinements(
         wanted.push(Refinement {
             from,
             to,
-            size: bend / ELEMENTS_PER_BEND,
+            size: bend / at_clamp,
+            bend,
             place,
         });
     }
@@ -153,7 +162,8 @@ pub(super) fn refinements(
             wanted.push(Refinement {
                 from: (from - spread - BENDS * bend).max(0.0),
                 to: (to + spread + BENDS * bend).min(total),
-                size: bend / ELEMENTS_PER_BEND,
+                size: bend / TOUCHDOWN_ELEMENTS,
+                bend,
                 place: Place::Touchdown,
             });
         }
@@ -319,7 +329,7 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
         let inside = arc.windows(2).zip(lengths);
         let inside = inside.filter(|(arc, _)| arc[1] > wanted.from && arc[0] < wanted.to);
         let found = inside.map(|(_, length)| *length).fold(0.0, f64::max);
-        let bend = ELEMENTS_PER_BEND * wanted.size;
+        let bend = wanted.bend;
         reasons += &format!(", {found:.4} m at {place}, where it bends over {bend:.4} m");
         if found > bend {
             reasons += ": too long to resolve that";
