@@ -44,10 +44,12 @@ pub const SPECTRAL_RADIUS: f64 = 0.2;
 pub const BOSSAK_ALPHA: f64 = -0.3;
 /// Last correction, over the shortest segment [-].
 const NEWTON_TOLERANCE: f64 = 1e-7;
-/// Newton iterations of a step.
-const ITERATIONS_MAX: usize = 15;
+/// Greatest stretch and turn of a segment by a correction after which the tangent is used again [-]; the next correction is about the square of it.
+const REUSED_MAX: f64 = 1e-4;
+/// Newton iterations of a step, of which one may use the tangent of the one before.
+const ITERATIONS_MAX: usize = 16;
 /// Iterations after which corrections that fall too slowly are taken for a cycle.
-const CIRCLING: usize = 5;
+const CIRCLING: usize = 6;
 /// Parts that a step may be cut into by halving: twelve halvings.
 const PARTS_MAX: usize = 4096;
 
@@ -408,12 +410,10 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         hold(self.model, self.network, state, self.held, t1);
         let tolerance = NEWTON_TOLERANCE * self.shortest_segment();
         let (mut last, mut part) = (f64::INFINITY, 1.0);
+        let mut again = false;
         for iteration in 0..ITERATIONS_MAX {
-            work.assemble_dynamic::<true>(self.model, self.network, state, t1, &new);
-            work.add_remembered(self.model, self.network);
-            if !work.solve(self.model, self.network, self.number)
-                && !self.solve_indefinite(state, t1, &new, work)
-            {
+            again = again && self.solve_again(state, t1, &new, work);
+            if !again && !self.solve(state, t1, &new, work) {
                 return false;
             }
             let correction = work.greatest_solution(self.network);
@@ -433,8 +433,25 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
                 self.shift_accelerations(state, before);
                 return true;
             }
+            // The second correction of a smooth step is within the tolerance also by the tangent of the first; where it is not, none of the
+            // step is reused again.
+            again = iteration == 0 && consistent && work.greatest_strain(self.network) <= REUSED_MAX;
         }
         false
+    }
+
+    /// Solves with the exact tangent of a state.
+    fn solve(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
+        work.assemble_dynamic::<true>(self.model, self.network, state, t, weights);
+        work.add_remembered(self.model, self.network);
+        work.solve(self.model, self.network, self.number) || self.solve_indefinite(state, t, weights, work)
+    }
+
+    /// Solves with the last tangent.
+    fn solve_again(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
+        work.assemble_dynamic::<false>(self.model, self.network, state, t, weights);
+        work.add_remembered(self.model, self.network);
+        work.solve_again(self.model, self.network, self.number)
     }
 
     /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments

@@ -3,10 +3,12 @@
 //! The force on a node is the sum over the parts of the two segments beside it ([`crate::physics::seabed`]); it has slopes with the penetration of
 //! the node and with those of its neighbours.
 
+use nalgebra::Vector3;
+
 use super::LineWork;
 use crate::model::{Contact, Line, LineState};
 use crate::physics::fading_damper::{FadingContact, damper_reach};
-use crate::physics::seabed::PARTS;
+use crate::physics::seabed::{ContactCoefficients, PARTS};
 
 /// Seabed under the segments beside a node.
 #[derive(Debug, Clone, Copy, Default)]
@@ -19,41 +21,103 @@ pub struct Bearing {
     pub damping_after: f64,
 }
 
+/// Position of a node relative to the seabed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Stand {
+    /// Penetration [m], and velocity ż along the normal [m/s].
+    depth: [f64; 2],
+    /// Normal of the seabed [-].
+    pub normal: Vector3<f64>,
+}
+
+impl Stand {
+    /// Position of a node of a line in a state, at rest unless it `moves`.
+    pub(super) fn new(contact: &Contact, state: &LineState, node: usize, moves: bool) -> Stand {
+        let (penetration, normal) = contact.stand(node, state.position[node]);
+        let rise = if moves {
+            normal.dot(&state.velocity[node])
+        } else {
+            0.0
+        };
+        Stand {
+            depth: [penetration, rise],
+            normal,
+        }
+    }
+}
+
 impl Bearing {
-    /// Sum over the parts of the segments beside a node, from the penetrations [m] and the velocities ż [m/s] of nodes; the damper of a segment
-    /// fades in over ± `reach` [m]. `None` where the seabed does not act.
-    pub fn new(
+    /// Sum over the parts of the segments beside a node, from the positions of nodes; the damper of a segment fades in over ± `reach` [m]. `None`
+    /// where the seabed does not act.
+    pub(super) fn new(
         contact: &Contact,
         node: usize,
-        depth: impl Fn(usize) -> [f64; 2],
+        stand: impl Fn(usize) -> Stand,
         reach: impl Fn(usize) -> f64,
     ) -> Option<Bearing> {
-        let (mut sum, [near, rise]) = (Bearing::default(), depth(node));
-        for (segment, other) in contact.beside(node) {
-            let (k, [far, far_rise], reach) = (contact.coefficients(segment), depth(other), reach(segment));
-            if near.max(far) <= -reach {
-                continue;
-            }
-            for part in PARTS {
-                let [penetration, rise] = [part.between(near, far), part.between(rise, far_rise)];
-                let Some(bed) = FadingContact::new(k, penetration, rise, reach) else {
-                    continue;
-                };
-                sum.bed.force += part.shares[0] * bed.force;
-                let [[own, after], _] = part.products();
-                sum.bed.stiffness += own * bed.stiffness;
-                sum.bed.damping += own * bed.damping;
-                if other > node {
-                    sum.stiffness_after += after * bed.stiffness;
-                    sum.damping_after += after * bed.damping;
-                }
+        let mut sum = Bearing::default();
+        for (segment, _) in contact.beside(node) {
+            let ends = [stand(segment), stand(segment + 1)];
+            if let Some(both) = Bearing::of_segment(contact.coefficients(segment), ends, reach(segment)) {
+                sum.add(&both[node - segment]);
             }
         }
         (sum.bed.force > 0.0).then_some(sum)
     }
+
+    /// Bearing of both nodes of a segment whose damper fades in over ± `reach` [m]; `None` where the seabed does not act.
+    #[inline(always)]
+    fn of_segment(k: ContactCoefficients, [low, high]: [Stand; 2], reach: f64) -> Option<[Bearing; 2]> {
+        let ([low, low_rise], [high, high_rise]) = (low.depth, high.depth);
+        if low.max(high) <= -reach {
+            return None;
+        }
+        let mut ends = [Bearing::default(); 2];
+        for part in PARTS {
+            let [penetration, rise] = [part.between(low, high), part.between(low_rise, high_rise)];
+            let Some(bed) = FadingContact::new(k, penetration, rise, reach) else {
+                continue;
+            };
+            let products = part.products();
+            for (side, end) in ends.iter_mut().enumerate() {
+                end.bed.force += part.shares[side] * bed.force;
+                end.bed.stiffness += products[side][side] * bed.stiffness;
+                end.bed.damping += products[side][side] * bed.damping;
+            }
+            ends[0].stiffness_after += products[0][1] * bed.stiffness;
+            ends[0].damping_after += products[0][1] * bed.damping;
+        }
+        Some(ends)
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Bearing) {
+        self.bed.force += other.bed.force;
+        self.bed.stiffness += other.bed.stiffness;
+        self.bed.damping += other.bed.damping;
+        self.stiffness_after += other.stiffness_after;
+        self.damping_after += other.damping_after;
+    }
 }
 
 impl LineWork {
+    /// Finds the position of every node relative to the seabed and the bearing of the segments beside it; at rest nothing moves and no damper
+    /// fades.
+    pub(super) fn find_bearings(&mut self, contact: &Contact, state: &LineState, moves: bool) {
+        self.bearing.fill(Bearing::default());
+        for (node, stand) in self.stand.iter_mut().enumerate() {
+            *stand = Stand::new(contact, state, node, moves);
+        }
+        for i in 0..self.reach.len() {
+            let reach = if moves { self.reach[i] } else { 0.0 };
+            let ends = [self.stand[i], self.stand[i + 1]];
+            if let Some([low, high]) = Bearing::of_segment(contact.coefficients(i), ends, reach) {
+                self.bearing[i].add(&low);
+                self.bearing[i + 1].add(&high);
+            }
+        }
+    }
+
     /// Fades the dampers over the displacement of a segment in a step of `dt` [s], at least over the range of a resting
     /// segment.
     pub(super) fn fade_dampers(&mut self, line: &Line, state: &LineState, dt: f64) {

@@ -14,9 +14,9 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::contact::Bearing;
+use super::contact::{Bearing, Stand};
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
-use crate::model::{Bottom, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::model::{Bottom, Contact, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::friction::{Axes, Friction, node_friction};
 use crate::physics::ground::Touch;
@@ -83,11 +83,44 @@ pub struct Push {
 }
 
 impl<'a> Resting<'a> {
-    /// Contact with a case's part of the limit of friction, and the normal force `pressed` [N] where the case keeps it constant.
+    /// Contact of node `i` of a line, given its bearing and the normal at the node after; at rest unless it `moves`.
+    fn on(
+        contact: &Contact,
+        line: &'a Line,
+        state: &LineState,
+        i: usize,
+        (bearing, normal_after): (Bearing, Vector3<f64>),
+        moves: bool,
+    ) -> Resting<'a> {
+        let place = state.position[i];
+        let friction = line.friction().zip(state.anchor.get(i));
+        Resting {
+            touch: contact.touch(i, place),
+            bearing,
+            normal_after,
+            place,
+            velocity: if moves {
+                state.velocity[i]
+            } else {
+                Vector3::zeros()
+            },
+            rub: friction.map(|(friction, anchor)| Rub {
+                friction,
+                tangent: node_tangent(&state.position, i),
+                anchor: *anchor,
+                stick: contact.stick[i],
+                limit: 1.0,
+                normal_force: None,
+            }),
+        }
+    }
+
+    /// Contact with a case's parts of the stiffness and the limit of friction, and the normal force `pressed` [N] where the case keeps it constant.
     fn at_rest(self, case: &StaticCase, pressed: f64) -> Resting<'a> {
         Resting {
             rub: self.rub.map(|rub| Rub {
                 limit: case.limit,
+                stick: case.stick * rub.stick,
                 normal_force: case.keeps_pressure.then_some(pressed),
                 ..rub
             }),
@@ -157,55 +190,37 @@ impl Push {
     }
 }
 
-/// Contact of a node of a line with the seabed; it sticks with `part` of its stiffness. Dampers fade in over ± `reach` per segment [m]; at rest,
-/// without one, there are none. `None` where the seabed does not act.
+/// Contact of a node of a line with the seabed. Dampers fade in over ± `reach` per segment [m]; at rest, without one, there are none. `None` where
+/// the seabed does not act.
 pub fn resting_node<'a>(
     line: &'a Line,
     state: &LineState,
     i: usize,
     reach: Option<&[f64]>,
-    part: f64,
 ) -> Option<Resting<'a>> {
     let contact = line.nodes.contact.as_ref()?;
-    let still = Vector3::zeros();
-    let velocity = |node: usize| reach.map_or(still, |_| state.velocity[node]);
-    let last = state.position.len() - 1;
-    let stands =
-        [i.saturating_sub(1), i, (i + 1).min(last)].map(|node| contact.stand(node, state.position[node]));
-    let depth = |node: usize| {
-        let (penetration, normal) = stands[node + 1 - i];
-        [penetration, normal.dot(&velocity(node))]
-    };
-    let bearing = Bearing::new(contact, i, depth, |segment| {
+    let stand = |node: usize| Stand::new(contact, state, node, reach.is_some());
+    let bearing = Bearing::new(contact, i, stand, |segment| {
         reach.map_or(0.0, |reach| reach[segment])
     })?;
-    let place = state.position[i];
-    let friction = line.friction().zip(state.anchor.get(i));
-    Some(Resting {
-        touch: contact.touch(i, place),
-        bearing,
-        normal_after: stands[2].1,
-        place,
-        velocity: velocity(i),
-        rub: friction.map(|(friction, anchor)| Rub {
-            friction,
-            tangent: node_tangent(&state.position, i),
-            anchor: *anchor,
-            stick: part * contact.stick[i],
-            limit: 1.0,
-            normal_force: None,
-        }),
-    })
+    let after = stand((i + 1).min(state.position.len() - 1));
+    Some(Resting::on(
+        contact,
+        line,
+        state,
+        i,
+        (bearing, after.normal),
+        reach.is_some(),
+    ))
 }
 
-/// Contact of a free point with the seabed; it sticks with `part` of its stiffness. Its damper fades in over ± `reach` [m]; at rest, without one,
+/// Contact of a free point with the seabed. Its damper fades in over ± `reach` [m]; at rest, without one,
 /// there is none. `None` where the seabed does not act.
 pub fn resting_point<'a>(
     free: &FreePoint,
     bottom: &'a Bottom,
     state: &PointState,
     reach: Option<f64>,
-    part: f64,
 ) -> Option<Resting<'a>> {
     let contact = free.contact.as_ref()?;
     let place = state.position;
@@ -232,7 +247,7 @@ pub fn resting_point<'a>(
             friction,
             tangent: Vector3::z(), // a point is across all around
             anchor,
-            stick: part * POINT_STICK * contact.coefficients.stiffness,
+            stick: POINT_STICK * contact.coefficients.stiffness,
             limit: 1.0,
             normal_force: None,
         }),
@@ -248,13 +263,14 @@ pub fn point_stick(free: &FreePoint) -> f64 {
 impl LineWork {
     /// Adds the seabed's springs and friction under a line at rest.
     pub(super) fn add_contact_at_rest(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
-        if line.nodes.contact.is_none() {
+        let Some(contact) = &line.nodes.contact else {
             return;
-        }
+        };
+        self.find_bearings(contact, state, false);
         for i in 0..state.position.len() {
             let pressed = self.pressed.get(i).copied().unwrap_or(0.0);
-            let push = resting_node(line, state, i, None, case.stick)
-                .map(|resting| resting.at_rest(case, pressed).push());
+            let push = self.resting(contact, line, state, i, false);
+            let push = push.map(|resting| resting.at_rest(case, pressed).push());
             if let (Some(pressed), false) = (self.pressed.get_mut(i), case.keeps_pressure) {
                 *pressed = push.map_or(0.0, |push| push.normal_force);
             }
@@ -275,11 +291,14 @@ impl LineWork {
         state: &LineState,
         weights: &Weights,
     ) {
-        if line.nodes.contact.is_none() {
+        let Some(contact) = &line.nodes.contact else {
             return;
-        }
+        };
+        self.find_bearings(contact, state, true);
         for i in 0..state.position.len() {
-            let push = resting_node(line, state, i, Some(&self.reach), 1.0).map(|node| node.push());
+            let push = self
+                .resting(contact, line, state, i, true)
+                .map(|node| node.push());
             self.keep_friction(i, push.as_ref());
             let Some(push) = push else { continue };
             self.residual[i] -= push.weighted(weights);
@@ -290,6 +309,20 @@ impl LineWork {
                 }
             }
         }
+    }
+
+    /// Contact of node `i` with the bearing found for it; `None` where the seabed does not act.
+    fn resting<'a>(
+        &self,
+        contact: &Contact,
+        line: &'a Line,
+        state: &LineState,
+        i: usize,
+        moves: bool,
+    ) -> Option<Resting<'a>> {
+        let bearing = self.bearing[i];
+        let after = self.stand[(i + 1).min(self.stand.len() - 1)].normal;
+        (bearing.bed.force > 0.0).then(|| Resting::on(contact, line, state, i, (bearing, after), moves))
     }
 
     /// Keeps the friction on a node, where the seabed is more than a level plane without friction.
@@ -309,7 +342,7 @@ impl PointWork {
         state: &PointState,
         case: &StaticCase,
     ) {
-        let push = resting_point(free, bottom, state, None, case.stick)
+        let push = resting_point(free, bottom, state, None)
             .map(|resting| resting.at_rest(case, self.pressed).push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if !case.keeps_pressure {
@@ -329,7 +362,7 @@ impl PointWork {
         state: &PointState,
         weights: &Weights,
     ) {
-        let push = resting_point(free, bottom, state, Some(self.reach), 1.0).map(|point| point.push());
+        let push = resting_point(free, bottom, state, Some(self.reach)).map(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
             self.residual -= push.weighted(weights);

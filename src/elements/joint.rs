@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{LineWork, Weights};
 use crate::math::block_banded::{Blocks, Chain, Ends, Pivots};
-use crate::model::{Bending, End, Line, LineState, PointState, joint};
+use crate::model::{Bending, End, Line, LineState, PointState, joint, joint_of_segments};
 use crate::physics::bending::{Couple, Hessian};
 
 /// Scratch of a line with bending stiffness.
@@ -79,42 +79,35 @@ impl BendingWork {
             chain: Chain::new(nodes),
         }
     }
-
-    fn clear(&mut self) {
-        self.greatest = 0.0;
-        self.near.fill(Matrix3::zeros());
-        self.far.fill(Matrix3::zeros());
-    }
 }
 
 impl LineWork {
-    /// Adds the joints of a line to residual and tangent, without damping where no velocities are given.
+    /// Adds the joints of a line to residual and tangent, after its segments; without damping where no velocities are given.
     pub(super) fn add_bending(
         &mut self,
         bending: &Bending,
         clamps: [Option<Vector3<f64>>; 2],
-        [position, velocity]: [&[Vector3<f64>]; 2],
+        velocity: &[Vector3<f64>],
         parts: &Parts,
     ) {
         let Some(work) = &mut self.bending else {
             return;
         };
-        work.clear();
-        let last = position.len() - 1;
+        if parts.tangent {
+            work.near.fill(Matrix3::zeros());
+            work.far.fill(Matrix3::zeros());
+        }
+        let (last, mut greatest) = (self.direction.len(), 0.0_f64);
         for i in (0..=last).filter(|&i| bending.joint[i] > 0.0) {
-            let Some(turn) = joint(clamps, position, i) else {
+            let Some(turn) = joint_of_segments(clamps, [i, last], |segment| self.direction[segment]) else {
                 continue;
             };
             let (stiffness, rest) = (bending.joint[i], bending.rest[i]);
             let [mut first, mut second] = turn.energy(stiffness, rest).slope;
-            work.greatest = work.greatest.max(first.norm()).max(second.norm());
-            let mut tangent = parts.tangent.then(|| {
-                let stiff = if parts.convex {
-                    turn.convex_hessian(stiffness)
-                } else {
-                    turn.hessian(stiffness, rest)
-                };
-                stiff.times(parts.position)
+            greatest = greatest.max(first.norm_squared()).max(second.norm_squared());
+            let mut tangent = parts.tangent.then(|| match parts.convex {
+                true => turn.convex_hessian(parts.position * stiffness),
+                false => turn.hessian(parts.position * stiffness, rest),
             });
             if let Some(damping) = moving(bending, velocity) {
                 let damper = turn.damper(damping[i]);
@@ -133,6 +126,7 @@ impl LineWork {
                 work.add_tangent(&mut self.diagonal, i, &tangent);
             }
         }
+        work.greatest = greatest.sqrt();
     }
 
     /// Adds the moments [N m] on the ends of a line that bends; with no slope where the tangent must be positive
@@ -177,6 +171,17 @@ impl LineWork {
             far: &work.far,
         };
         work.chain.eliminate(blocks, &self.residual, first_free, pivots)
+    }
+
+    /// Right-hand sides of the condensed system by the present residual, after [`Self::eliminate`] with the present tangent.
+    pub(crate) fn eliminate_right(&mut self) -> [Vector3<f64>; 2] {
+        match self.bending.as_mut().filter(|work| work.active) {
+            Some(work) => {
+                let BendingWork { chain, far, .. } = work;
+                chain.eliminate_right(far, &self.residual)
+            }
+            None => self.chain.eliminate_right(&[], &self.residual),
+        }
     }
 
     /// Full solution from that of the ends.

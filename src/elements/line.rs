@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::contact::{Bearing, Stand};
 use super::joint::Parts;
 use super::released::Released;
 use super::segment::StepEnd;
@@ -9,6 +10,7 @@ use super::viscoelastic::ViscoelasticWork;
 use super::{BendingWork, StaticCase, Stretch, Weights, surface};
 use crate::math::block_banded::Chain;
 use crate::model::{Dry, Line, LineState, Model, WaterAlong};
+use crate::physics::bending::Direction;
 use crate::physics::morison::{drag, drag_slope};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::total_tension;
@@ -27,20 +29,25 @@ pub(crate) struct LineWork {
     pub diagonal: Vec<Matrix3<f64>>,
     /// J of neighbouring nodes on each other, per segment: −A.
     pub coupling: Vec<Matrix3<f64>>,
+    /// Unit tangent of every node of a moving line at the last assembly [-].
+    pub(super) tangent: Vec<Vector3<f64>>,
     /// Tension of the geometric stiffness, per segment [N]; predicted by statics.
     pub tension: Vec<f64>,
     /// Elastic and damping force of the segment at the last assembly [N], unclipped.
     pub elastic: Vec<f64>,
     /// Slope dN/dl [N/m].
     pub slope: Vec<f64>,
-    /// Direction q [-].
-    pub direction: Vec<Vector3<f64>>,
+    /// Direction q of every segment, and 1/l.
+    pub direction: Vec<Direction>,
     /// Segments at the start of the step.
     pub(super) start: Vec<Stretched>,
     /// Terms that the time integrator carries over from the last step, per node [N].
     pub history: Vec<Vector3<f64>>,
     /// Half the range of penetrations over which the seabed damper fades in, per segment [m].
     pub reach: Vec<f64>,
+    /// Position of every node relative to the seabed, and the bearing of the segments beside it, at the last assembly; empty without a seabed.
+    pub(super) stand: Vec<Stand>,
+    pub(super) bearing: Vec<Bearing>,
     /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
     pub push: Vec<f64>,
     /// Drag of the current that statics keeps constant, per node [N]; empty where none acts.
@@ -67,8 +74,8 @@ pub(crate) struct LineWork {
 pub(super) struct Geometry {
     /// Length [m].
     pub(super) length: f64,
-    /// Direction [-]; zero where both nodes coincide.
-    pub(super) direction: Vector3<f64>,
+    /// Direction q, zero where both nodes coincide, and 1/l.
+    pub(super) direction: Direction,
     /// l/l₀ − 1 [-], without the cancellation of the subtraction.
     pub(super) strain: f64,
 }
@@ -81,7 +88,7 @@ impl Geometry {
         let length = square.sqrt();
         Geometry {
             length,
-            direction: if length > 0.0 { d / length } else { d },
+            direction: Direction::new(d, length),
             strain: (square - unstretched * unstretched) / (unstretched * (length + unstretched)),
         }
     }
@@ -89,7 +96,8 @@ impl Geometry {
     /// q qᵀ.
     #[inline(always)]
     pub(super) fn along(&self) -> Matrix3<f64> {
-        self.direction * self.direction.transpose()
+        let q = self.direction.along;
+        q * q.transpose()
     }
 }
 
@@ -101,13 +109,16 @@ impl LineWork {
             residual: vec![Vector3::zeros(); n + 1],
             diagonal: vec![Matrix3::zeros(); n + 1],
             coupling: vec![Matrix3::zeros(); n],
+            tangent: vec![Vector3::zeros(); n + 1],
             tension: vec![0.0; n],
             elastic: vec![0.0; n],
             slope: vec![0.0; n],
-            direction: vec![Vector3::zeros(); n],
+            direction: vec![Direction::default(); n],
             start: vec![Stretched::default(); n],
             history: vec![Vector3::zeros(); n + 1],
             reach: vec![0.0; n],
+            stand: vec![Stand::default(); line.nodes.contact.as_ref().map_or(0, |_| n + 1)],
+            bearing: vec![Bearing::default(); line.nodes.contact.as_ref().map_or(0, |_| n + 1)],
             push: vec![0.0; n],
             load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
             dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
@@ -132,15 +143,20 @@ impl LineWork {
     }
 
     #[inline(always)]
-    fn clear(&mut self) {
+    fn clear(&mut self, tangent: bool) {
         self.residual.fill(Vector3::zeros());
-        self.diagonal.fill(Matrix3::zeros());
+        if tangent {
+            self.diagonal.fill(Matrix3::zeros());
+        }
     }
 
     #[inline(always)]
-    fn add_segment(&mut self, i: usize, force: Vector3<f64>, stiffness: Matrix3<f64>) {
+    fn add_segment<const TANGENT: bool>(&mut self, i: usize, force: Vector3<f64>, stiffness: Matrix3<f64>) {
         self.residual[i] -= force;
         self.residual[i + 1] += force;
+        if !TANGENT {
+            return;
+        }
         self.diagonal[i] += stiffness;
         self.diagonal[i + 1] += stiffness;
         self.coupling[i] = -stiffness;
@@ -155,14 +171,14 @@ impl LineWork {
         case: &StaticCase,
     ) {
         let position = &state.position;
-        self.clear();
+        self.clear(true);
         self.set_push(line, case.bends);
         for i in 0..line.segment_count() {
             self.add_static_segment(line, position, case, i);
         }
         if let (Some(bending), true) = (&line.bending, case.bends) {
             let parts = Parts::AT_REST;
-            self.add_bending(bending, clamps, [position, &[]], &parts);
+            self.add_bending(bending, clamps, &[], &parts);
         }
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
@@ -203,7 +219,7 @@ impl LineWork {
         };
         let across = predicted.max(least + case.tension_min) / g.length.max(FOLDED * unstretched);
         let stiffness = Matrix3::from_diagonal_element(across) + (slope - across) * g.along();
-        self.add_segment(i, tension * g.direction, stiffness);
+        self.add_segment::<true>(i, tension * g.direction.along, stiffness);
     }
 
     /// Segment whose tension T is complementary to the excess of T over the elastic force N except for m =
@@ -228,7 +244,7 @@ impl LineWork {
         self.slope[i] *= t / sum;
         let across = predicted / g.length.max(FOLDED * unstretched);
         let stiffness = Matrix3::from_diagonal_element(across) + (self.slope[i] - across) * g.along();
-        self.add_segment(i, self.elastic[i] * g.direction, stiffness);
+        self.add_segment::<true>(i, self.elastic[i] * g.direction.along, stiffness);
     }
 
     /// Residual and, if TANGENT, tangent of a moving line.
@@ -241,14 +257,17 @@ impl LineWork {
         weights: &Weights,
         negative_tension: bool,
     ) {
-        self.clear();
+        self.clear(TANGENT);
         self.set_push(line, true);
+        for (i, tangent) in self.tangent.iter_mut().enumerate() {
+            *tangent = node_tangent(&state.position, i);
+        }
         for i in 0..line.segment_count() {
             self.add_dynamic_segment::<TANGENT>(line, state, weights, negative_tension, i);
         }
         if let Some(bending) = &line.bending {
             let parts = Parts::of_step(weights, TANGENT);
-            self.add_bending(bending, clamps, [&state.position, &state.velocity], &parts);
+            self.add_bending(bending, clamps, &state.velocity, &parts);
         }
         self.add_surface(
             line,
@@ -261,7 +280,7 @@ impl LineWork {
         if line.nodes.drag.is_some() {
             self.add_drag::<TANGENT>(line, state, water, weights);
         }
-        self.add_froude_krylov(line, state, water, weights);
+        self.add_froude_krylov(line, water, weights);
         self.add_contact::<TANGENT>(line, state, weights);
         if let Some(damping) = &line.nodes.mass_damping {
             for (i, damping) in damping.iter().enumerate() {
@@ -283,11 +302,12 @@ impl LineWork {
         i: usize,
     ) {
         let unstretched = line.segments.length[i];
+        let per_unstretched = 1.0 / unstretched;
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
         let response = self.respond(line, state, i, g.strain, weights.stretch);
         let (elastic, ba) = (response.elastic, response.damping);
-        let total = elastic + ba * g.direction.dot(&rate) / unstretched;
+        let total = elastic + ba * g.direction.along.dot(&rate) * per_unstretched;
         let predicted = weights.stretch == Stretch::OverStep && !negative_tension;
         let least = 0.0 - self.push[i];
         let taut = match (negative_tension, predicted) {
@@ -304,23 +324,27 @@ impl LineWork {
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
             let damps = taut || negative_tension;
-            let spring = if taut { response.tangent / unstretched } else { 0.0 };
-            let damper = if damps { ba / unstretched } else { 0.0 };
+            let spring = if taut {
+                response.tangent * per_unstretched
+            } else {
+                0.0
+            };
+            let damper = if damps { ba * per_unstretched } else { 0.0 };
             let along = weights.position * spring + weights.velocity * damper;
             let least = if weights.convex { 0.0 } else { least };
-            let across = weights.position * pull.max(least) / g.length;
+            let across = weights.position * pull.max(least) * g.direction.per_length;
             stiffness = Matrix3::from_diagonal_element(across) + (along - across) * g.along();
             if damps && ba > 0.0 {
-                let turning = rate - rate.dot(&g.direction) * g.direction; // P ġ
-                let coefficient = weights.position * damper / g.length;
-                stiffness += g.direction * (coefficient * turning).transpose();
+                let turning = rate - rate.dot(&g.direction.along) * g.direction.along; // P ġ
+                let coefficient = weights.position * damper * g.direction.per_length;
+                stiffness += g.direction.along * (coefficient * turning).transpose();
             }
-            self.slope[i] = along / weights.position;
-        } else {
+            self.slope[i] = spring + weights.velocity / weights.position * damper;
+        } else if weights.stretch != Stretch::OverStep {
             self.tension[i] = tension;
         }
         (self.elastic[i], self.direction[i]) = (total, g.direction);
-        let mut force = weights.force * tension * g.direction;
+        let mut force = weights.force * tension * g.direction.along;
         if weights.stretch == Stretch::OverStep {
             let end = StepEnd {
                 keeps: taut && total <= least,
@@ -330,7 +354,7 @@ impl LineWork {
             force += beyond.force;
             stiffness += beyond.stiffness;
         }
-        self.add_segment(i, force, stiffness);
+        self.add_segment::<TANGENT>(i, force, stiffness);
     }
 
     #[inline(always)]
@@ -346,7 +370,7 @@ impl LineWork {
             let dry = self.dry(i);
             let mass = Slender::new(nodes.masses(i, dry.part));
             let a = state.acceleration[i];
-            let along = node_tangent(&state.position, i);
+            let along = self.tangent[i];
             let inertia = mass.times(a, along);
             if TANGENT {
                 self.diagonal[i] += weights.acceleration * mass.matrix(along);
@@ -362,14 +386,13 @@ impl LineWork {
     }
 
     /// Force of water that waves accelerate; it depends on the state only by the tangent, which is frozen.
-    fn add_froude_krylov(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
+    fn add_froude_krylov(&mut self, line: &Line, water: WaterAlong, weights: &Weights) {
         let (Some(pressed), Some(waves)) = (&line.nodes.froude_krylov, &water.waves) else {
             return;
         };
         for i in 0..self.residual.len() {
-            let tangent = node_tangent(&state.position, i);
             let wet = 1.0 - self.dry(i).part;
-            let force = pressed.force(i, waves.at(i).acceleration, tangent);
+            let force = pressed.force(i, waves.at(i).acceleration, self.tangent[i]);
             self.residual[i] -= weights.force * wet * force;
         }
     }
@@ -387,7 +410,7 @@ impl LineWork {
         for i in 0..coefficients.normal.len() {
             let dry = self.dry(i);
             let k = coefficients.at(i);
-            let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
+            let (t, z) = (self.tangent[i], state.position[i].z);
             let v = state.velocity[i] - water.velocity(i, z);
             if TANGENT && dry.slope > 0.0 {
                 self.diagonal[i] -= weights.position * surface::by_height(&dry, drag(k, v, t));
@@ -412,5 +435,9 @@ pub(crate) fn node_tangent(position: &[Vector3<f64>], i: usize) -> Vector3<f64> 
     let (before, after) = (i.saturating_sub(1), (i + 1).min(position.len() - 1));
     let chord = position[after] - position[before];
     let length = chord.norm();
-    if length > 0.0 { chord / length } else { chord }
+    if length > 0.0 {
+        (1.0 / length) * chord
+    } else {
+        chord
+    }
 }

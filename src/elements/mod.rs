@@ -347,10 +347,41 @@ impl Workspace {
         if !self.solve_points(model, number, pivots) {
             return false;
         }
+        self.substitute(model, network);
+        true
+    }
+
+    /// Solution at all nodes from that of the system of the free points.
+    fn substitute(&mut self, model: &Model, network: &Network) {
         for &index in &network.lines {
             let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
             self.lines[index].substitute_all(a, b);
         }
+    }
+
+    /// Solves J x = R for the present residual with the tangent of the last solution; false where ends are released, or a pivot cannot be taken.
+    pub(crate) fn solve_again(&mut self, model: &Model, network: &Network, number: usize) -> bool {
+        self.systems[number].clear_right();
+        for &index in &network.lines {
+            let slots = self.end_slots(model, index);
+            let work = &mut self.lines[index];
+            if work.released != [false; 2] {
+                return false;
+            }
+            for (slot, right) in slots.into_iter().zip(work.eliminate_right()) {
+                if let Some(slot) = slot {
+                    self.systems[number].add_right(slot, right);
+                }
+            }
+        }
+        for (slot, &index) in network.free_points.iter().enumerate() {
+            self.systems[number].add_right(slot, self.points[index].residual);
+        }
+        if !self.systems[number].solve_again(Pivots::Positive) {
+            return false;
+        }
+        self.take_solution(network, number);
+        self.substitute(model, network);
         true
     }
 
@@ -394,13 +425,16 @@ impl Workspace {
                 system.hold(self.points[index].slot.unwrap_or(0), axis);
             }
         });
-        if !system.solve(pivots) {
-            return false;
-        }
+        let solved = system.solve(pivots);
+        self.take_solution(network, number);
+        solved
+    }
+
+    /// Takes the solution at the free points from their system.
+    fn take_solution(&mut self, network: &Network, number: usize) {
         for (slot, &index) in network.free_points.iter().enumerate() {
-            self.points[index].solution = system.solution(slot);
+            self.points[index].solution = self.systems[number].solution(slot);
         }
-        true
     }
 
     /// Tensions after a `part` of the correction, by the linear system. False if a segment taken as taut is in
@@ -414,7 +448,7 @@ impl Workspace {
             );
             for i in 0..line.tension.len() {
                 let x = line.solution();
-                let growth = -line.direction[i].dot(&(x[i + 1] - x[i])); // of the segment's length [m]
+                let growth = -line.direction[i].along.dot(&(x[i + 1] - x[i])); // of the segment's length [m]
                 let predicted = line.elastic[i] + line.slope[i] * growth;
                 let least = 0.0 - line.push[i];
                 consistent &=
@@ -514,6 +548,16 @@ impl Workspace {
         let longer = |a: f64, b: f64| if a.is_nan() || a >= b { a } else { b };
         let lines = network.lines.iter().flat_map(|&line| self.lines[line].solution());
         lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
+    }
+
+    /// Greatest change of the vector along a segment by the last solution, over the length of the segment [-].
+    pub(crate) fn greatest_strain(&self, network: &Network) -> f64 {
+        let of_line = |&line: &usize| {
+            let line = &self.lines[line];
+            let pairs = line.solution().windows(2).zip(&line.direction);
+            pairs.map(|(x, direction)| direction.per_length * (x[1] - x[0]).norm())
+        };
+        network.lines.iter().flat_map(of_line).fold(0.0, f64::max)
     }
 
     /// Greatest force out of balance [N], with its place.

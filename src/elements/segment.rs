@@ -32,6 +32,7 @@ pub(crate) fn stretched(line: &Line, state: &LineState, i: usize) -> Stretched {
     Stretched {
         chord: high - low,
         length: g.length,
+        direction: g.direction.along,
         spring,
     }
 }
@@ -128,8 +129,9 @@ impl LineWork {
         let (start, least) = (&self.start[i], 0.0 - self.push[i]);
         let (unstretched, excess) = (line.segments.length[i], end.excess);
         let mut after = Stretched {
-            chord: g.length * g.direction,
+            chord: g.length * g.direction.along,
             length: g.length,
+            direction: g.direction.along,
             spring: line.spring(i, g.strain),
         };
         let pulls = end.keeps || response.elastic > least;
@@ -149,11 +151,11 @@ impl LineWork {
             };
         }
         let pull = (mean.tension + 0.5 * excess).max(least);
-        let across = 0.5 * (after.spring.tension + excess) / g.length;
+        let across = 0.5 * (after.spring.tension + excess) * g.direction.per_length;
         let along = 0.5 * after.spring.slope / unstretched - across;
         Beyond {
             force,
-            stiffness: step.stiffness(unstretched, g.direction, pull)
+            stiffness: step.stiffness(unstretched, g.direction.along, pull)
                 - Matrix3::from_diagonal_element(across)
                 - along * g.along(),
         }

@@ -37,6 +37,10 @@ pub struct Blocks<'a> {
 /// Scratch of one chain, whose nodes are coupled to their second neighbours too where it is `FAR`; never read before it is written.
 #[derive(Debug, Clone, Default)]
 pub struct Chain<const FAR: bool> {
+    /// D_i of the eliminated nodes, factorised; the blocks of nodes i + 1 and of the first end on them.
+    pivots: Vec<Lu3>,
+    last: Vec<Matrix3<f64>>,
+    border: Vec<Matrix3<f64>>,
     /// D_i⁻¹ times the blocks of the eliminated nodes on nodes i + 1 and i + 2, and on the first end.
     next: Vec<Matrix3<f64>>,
     far: Vec<Matrix3<f64>>,
@@ -107,6 +111,9 @@ impl<const FAR: bool> Chain<FAR> {
     pub fn new(nodes: usize) -> Chain<FAR> {
         let zeros = |count: usize| vec![Matrix3::zeros(); count];
         Chain {
+            pivots: vec![Lu3::default(); nodes],
+            last: zeros(nodes),
+            border: zeros(nodes),
             next: zeros(nodes),
             far: zeros(if FAR { nodes } else { 0 }),
             first: zeros(nodes),
@@ -150,6 +157,7 @@ impl<const FAR: bool> Chain<FAR> {
                 self.first[i] = first;
             }
             (self.next[i], self.solution[i]) = (next, solution);
+            (self.pivots[i], self.last[i], self.border[i]) = (pivot, after.last, row.border);
             if FAR {
                 let mut beyond = Row::new::<FAR>(&blocks, right, i + 2);
                 let given = blocks.far.get(i).copied().unwrap_or_else(Matrix3::zeros);
@@ -178,6 +186,27 @@ impl<const FAR: bool> Chain<FAR> {
         })
     }
 
+    /// Right-hand sides of the condensed system for another right-hand side of the chain, after [`Chain::eliminate`] with the same blocks `far`.
+    pub fn eliminate_right(&mut self, far: &[Matrix3<f64>], right: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
+        let last = right.len() - 1;
+        let at = |i: usize| right.get(i).copied().unwrap_or_else(Vector3::zeros);
+        let (mut corner, mut row, mut after) = (right[0], right[1], at(2));
+        for i in 1..last {
+            let solution = self.pivots[i].solve(row);
+            after -= self.last[i] * solution;
+            let mut beyond = at(i + 2);
+            if let (true, Some(far)) = (FAR, far.get(i)) {
+                beyond -= far.tr_mul(&solution);
+            }
+            if self.bordered {
+                corner -= self.border[i] * solution;
+            }
+            self.solution[i] = solution;
+            (row, after) = (after, beyond);
+        }
+        [corner, row]
+    }
+
     /// The whole solution, ends included, from that of the ends; after [`Chain::eliminate`].
     pub fn substitute(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
         let last = self.solution.len() - 1;
@@ -201,6 +230,7 @@ impl<const FAR: bool> Chain<FAR> {
 }
 
 /// LU factors of a 3×3 matrix; the pivots are stored inverted.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lu3 {
     /// Rows of the original matrix in the order of the factors.
     rows: [usize; 3],

@@ -152,6 +152,32 @@ impl PointSystem {
         self.held[self.order.place[point]][axis] = true;
     }
 
+    /// Sets the right-hand side to zero, for another one of the system that was solved last.
+    pub fn clear_right(&mut self) {
+        self.right.fill(Vector3::zeros());
+    }
+
+    /// Solves for another right-hand side, after [`PointSystem::solve`] of the same blocks; false if a pivot cannot be taken.
+    pub fn solve_again(&mut self, pivots: Pivots) -> bool {
+        for (right, held) in self.right.iter_mut().zip(&self.held) {
+            for axis in (0..3).filter(|&axis| held[axis]) {
+                right[axis] = 0.0;
+            }
+        }
+        for k in 0..self.diagonal.len() {
+            let Some(pivot) = Lu3::new(&self.diagonal[k], pivots) else {
+                return false;
+            };
+            let known = pivot.solve_dividing(self.right[k]);
+            self.right[k] = known;
+            for block in self.order.start[k]..self.order.start[k + 1] {
+                self.right[self.order.rows[block]] -= self.lower[block] * known;
+            }
+        }
+        self.substitute();
+        true
+    }
+
     /// Solves in place; false if a pivot cannot be taken.
     pub fn solve(&mut self, pivots: Pivots) -> bool {
         self.apply_holds();
@@ -184,6 +210,12 @@ impl PointSystem {
                 }
             }
         }
+        self.substitute();
+        true
+    }
+
+    fn substitute(&mut self) {
+        let order = &self.order;
         for k in (0..self.diagonal.len()).rev() {
             let mut x = self.right[k];
             for block in order.start[k]..order.start[k + 1] {
@@ -191,7 +223,6 @@ impl PointSystem {
             }
             self.right[k] = x;
         }
-        true
     }
 
     fn apply_holds(&mut self) {

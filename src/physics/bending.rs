@@ -44,12 +44,27 @@ use crate::math::circle;
 const REST_FADE: f64 = 1e-6;
 
 /// Direction of a segment, as used by the bending law.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Direction {
     /// Unit vector q [-].
     pub along: Vector3<f64>,
     /// 1/l [1/m]; 0 for a direction that is prescribed.
     pub per_length: f64,
+}
+
+/// Keeps coincident nodes from dividing by zero [m].
+const LENGTH_MIN: f64 = 1e-9;
+
+impl Direction {
+    /// Direction of a segment of the end-to-end vector `chord` and its length [m]; zero where both nodes coincide.
+    #[inline(always)]
+    pub fn new(chord: Vector3<f64>, length: f64) -> Direction {
+        let per_length = 1.0 / length.max(LENGTH_MIN);
+        Direction {
+            along: per_length * chord,
+            per_length,
+        }
+    }
 }
 
 /// Energy and its slopes with the end-to-end vectors e₁ and e₂ of the two segments.
@@ -165,7 +180,9 @@ impl Turn {
     /// dW/dc and d²W/dc² [J].
     #[inline(always)]
     fn slopes(&self, stiffness: f64, rest: f64) -> [f64; 2] {
-        let (d1, d2) = (-2.0 / self.sum.powi(2), 4.0 / self.sum.powi(3)); // f', f''
+        let per_sum = 1.0 / self.sum;
+        let d1 = -2.0 * per_sum * per_sum; // f'
+        let d2 = -2.0 * per_sum * d1; // f''
         if rest == 0.0 {
             return [2.0 * stiffness * d1, 2.0 * stiffness * d2];
         }
@@ -183,18 +200,30 @@ impl Turn {
     #[inline(always)]
     pub fn hessian(&self, stiffness: f64, rest: f64) -> Hessian {
         let [d1, d2] = self.slopes(stiffness, rest);
-        let [u1, u2] = self.gradient;
-        let (p1, p2) = (across(&self.first), across(&self.second));
-        let own = |direction: &Direction, u: Vector3<f64>, p: &Matrix3<f64>| {
-            let turned = direction.along * u.transpose();
-            let curved = turned + turned.transpose() + self.cosine * direction.per_length * p;
-            d2 * u * u.transpose() - d1 * direction.per_length * curved
+        let ([u1, u2], [q1, q2]) = (self.gradient, [self.first.along, self.second.along]);
+        // d₂ u uᵀ − d₁/l (q uᵀ + u qᵀ + c/l P)
+        let own = |u: Vector3<f64>, direction: &Direction| {
+            let (q, l) = (direction.along, d1 * direction.per_length);
+            let isotropic = l * self.cosine * direction.per_length;
+            let turned = 0.5 * isotropic * q - l * u;
+            from_columns(|j| {
+                let mut column = d2 * u[j] * u + turned[j] * q + q[j] * turned;
+                column[j] -= isotropic;
+                column
+            })
         };
-        let lengths = self.first.per_length * self.second.per_length;
+        // d₂ u₁ u₂ᵀ + d₁/(l₁l₂) P₁ P₂
+        let lengths = d1 * self.first.per_length * self.second.per_length;
+        let mixed = from_columns(|j| {
+            let along = [lengths * q1[j] - lengths * self.cosine * q2[j], lengths * q2[j]];
+            let mut column = d2 * u2[j] * u1 - along[0] * q1 - along[1] * q2;
+            column[j] += lengths;
+            column
+        });
         Hessian {
-            first: own(&self.first, u1, &p1),
-            mixed: d2 * u1 * u2.transpose() + d1 * lengths * p1 * p2,
-            second: own(&self.second, u2, &p2),
+            first: own(u1, &self.first),
+            mixed,
+            second: own(u2, &self.second),
         }
     }
 
@@ -254,6 +283,11 @@ impl Couple {
             slope: per_square * (moment.cross_matrix() - 2.0 * turned * chord.transpose()),
         }
     }
+}
+
+#[inline(always)]
+fn from_columns(column: impl Fn(usize) -> Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::from_columns(&[column(0), column(1), column(2)])
 }
 
 /// P = I − q qᵀ.

@@ -62,12 +62,13 @@ impl<R: Real> DragCoefficients<R> {
 }
 
 /// Drag force [N] on a node that moves with `velocity` [m/s] relative to the water, for the unit `tangent`.
-#[inline]
+#[inline(always)]
 pub fn drag(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
     -k.resistance(velocity, tangent, 1.0)
 }
 
 /// Slope −∂f/∂u of [`drag`] [N s/m]: symmetric, positive semi-definite.
+#[inline(always)]
 pub fn drag_slope(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<f64>) -> Matrix3<f64> {
     let along = velocity.dot(&tangent);
     let across = velocity - along * tangent;
@@ -75,7 +76,8 @@ pub fn drag_slope(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<
     let tt = tangent * tangent.transpose();
     let mut slope = 2.0 * k.tangent * along.abs() * tt;
     if speed > 0.0 {
-        slope += k.normal * (speed * (Matrix3::identity() - tt) + across * across.transpose() / speed);
+        slope +=
+            k.normal * speed * (Matrix3::identity() - tt) + (k.normal / speed) * across * across.transpose();
     }
     slope
 }

@@ -37,25 +37,17 @@ pub struct Stretched {
     pub chord: Vector3<f64>,
     /// l [m].
     pub length: f64,
+    /// Direction of the chord [-]; zero where both nodes coincide.
+    pub direction: Vector3<f64>,
     /// Spring of the segment.
     pub spring: Spring,
 }
 
 impl Stretched {
-    /// Direction of the chord [-]; zero where both nodes coincide.
-    #[inline(always)]
-    pub fn direction(&self) -> Vector3<f64> {
-        if self.length > 0.0 {
-            self.chord / self.length
-        } else {
-            self.chord
-        }
-    }
-
     /// Force of the spring [N].
     #[inline(always)]
     pub fn force(&self) -> Vector3<f64> {
-        self.spring.tension * self.direction()
+        self.spring.tension * self.direction
     }
 }
 
@@ -104,8 +96,8 @@ pub struct StretchStep {
     pub mean: Mean,
     /// q̄ [-].
     pub direction: Vector3<f64>,
-    /// l + l' [m].
-    length: f64,
+    /// 1/(l + l') [1/m]; 0 where the nodes coincide before and after the step.
+    per_length: f64,
 }
 
 impl StretchStep {
@@ -113,10 +105,11 @@ impl StretchStep {
     #[inline(always)]
     pub fn new([before, after]: [&Stretched; 2], mean: Mean) -> StretchStep {
         let (chords, length) = (before.chord + after.chord, before.length + after.length);
+        let per_length = if length > 0.0 { 1.0 / length } else { 0.0 };
         StretchStep {
             mean,
-            direction: if length > 0.0 { chords / length } else { chords },
-            length,
+            direction: per_length * chords,
+            per_length,
         }
     }
 
@@ -130,7 +123,7 @@ impl StretchStep {
     /// `across` [N] in place of the tension for its resistance to turning.
     #[inline(always)]
     pub fn stiffness(&self, unstretched: f64, after: Vector3<f64>, across: f64) -> Matrix3<f64> {
-        let turning = across / self.length;
+        let turning = across * self.per_length;
         let along = (self.mean.slope / unstretched - turning) * self.direction;
         Matrix3::from_diagonal_element(turning) + along * after.transpose()
     }
@@ -160,6 +153,7 @@ mod tests {
         Stretched {
             chord,
             length: chord.norm(),
+            direction: chord.try_normalize(0.0).unwrap_or_default(),
             spring: spring(chord.norm() / UNSTRETCHED - 1.0),
         }
     }
@@ -203,7 +197,7 @@ mod tests {
     fn its_stiffness_is_the_slope_of_its_force() {
         for [before, after] in chords() {
             let at = step(before, after);
-            let direction = stretched(after).direction();
+            let direction = stretched(after).direction;
             let stiffness = at.stiffness(UNSTRETCHED, direction, at.mean.tension);
             for axis in 0..3 {
                 let slope = along(axis, 1e-7, |by| step(before, after + by).force());

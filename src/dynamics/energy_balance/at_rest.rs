@@ -101,7 +101,7 @@ fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
         return friction_work(contact.bed, positions, [before, after]);
     }
     let push = |shape: &LineState, i: usize| {
-        let node = resting_node(line, shape, i, None, 1.0);
+        let node = resting_node(line, shape, i, None);
         node.map_or(Vector3::zeros(), |node| node.push().force)
     };
     let on_node = |i: usize| {
@@ -140,7 +140,7 @@ fn point_bed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) -> 
             spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
         }
         Some(bottom) => {
-            let point = resting_point(free, bottom, at, None, 1.0);
+            let point = resting_point(free, bottom, at, None);
             point.map_or(Vector3::zeros(), |point| point.push().force)
         }
     };

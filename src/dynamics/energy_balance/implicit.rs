@@ -297,7 +297,7 @@ impl Side<'_> {
         for i in 0..damped {
             let segment = stretched(line, shape, i);
             let damping = tension(line, shape, i, negative) - segment.spring.tension;
-            let force = damping * segment.direction();
+            let force = damping * segment.direction;
             let [low, high] = [i, i + 1].map(|node| self.passed.velocity_mean(index, node));
             flow.dissipation += force.dot(&(high - low));
             if i == 0 && a {
@@ -342,7 +342,7 @@ impl Side<'_> {
             flow.dissipation += damping[i] * velocity.dot(&mean);
         }
         let reach = self.passed.work.reach(index);
-        if let Some(node) = resting_node(line, shape, i, Some(reach), 1.0) {
+        if let Some(node) = resting_node(line, shape, i, Some(reach)) {
             let push = node.push();
             let force = push.force + (self.friction - 1.0) * push.friction;
             flow.dissipation -= force.dot(&mean);
@@ -422,7 +422,7 @@ impl Side<'_> {
         flow.dissipation -= drag.dot(&(mean - water));
         let reach = self.passed.work.point_reach(point);
         if let Some(bottom) = model.bottom.as_deref() {
-            let push = resting_point(free, bottom, state, Some(reach), 1.0);
+            let push = resting_point(free, bottom, state, Some(reach));
             let push = push.map(|point| point.push());
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
             flow.dissipation -= force.map_or(0.0, |force| force.dot(&mean));
