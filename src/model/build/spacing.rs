@@ -10,9 +10,9 @@ use crate::physics::catenary::{self, Bed, Catenary};
 use crate::scene::{self, PointKind, Scene, percent};
 
 /// Error of the curvature at a clamp times the square of the number of elements over √(EI/T) there [-], measured on `power_cable`.
-const CURVATURE_ERROR: f64 = 0.107;
-/// Elements over √(EI/T) at a clamp, least and most [-].
-const CLAMP_ELEMENTS: [f64; 2] = [1.0, 20.0];
+const CURVATURE_ERROR: f64 = 0.125;
+/// Elements over √(EI/T) at a clamp, least and most [-]; with fewer than two the error grows faster.
+const CLAMP_ELEMENTS: [f64; 2] = [2.0, 20.0];
 /// The same at the touchdown, where the moment rises without a step [-].
 const TOUCHDOWN_ELEMENTS: f64 = 2.0;
 /// Length that is finely meshed at a clamp and around the touchdown, over √(EI/T) [-].
