@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-9;
 pub struct Counters {
     /// Internal steps, of the network with the most.
     pub substeps: usize,
-    /// Force evaluations of the explicit leapfrog, closed-form catenaries of quasi-static networks that have them, linear solves of
+    /// Force evaluations of the explicit leapfrog, closed-form catenaries of quasi-static networks that have them, factorised systems of
     /// the other integrators, of all networks.
     pub solves: usize,
 }

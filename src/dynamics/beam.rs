@@ -34,9 +34,7 @@ use crate::physics::contact_step::{ContactStep, contact_step};
 use crate::physics::fading_damper::damper_reach;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::{PARTS, Part};
-use crate::physics::section::{
-    Mixture, Section, Sextuple, StepStrain, StrainGradient, corrected, join, split, strain,
-};
+use crate::physics::section::{Mixture, Section, Sextuple, StrainGradient, corrected, join, split, strain};
 use crate::physics::slender::Slender;
 
 pub use body::Body;
@@ -47,9 +45,9 @@ pub use measures::{BeamView, Momentum};
 const TOLERANCE: f64 = 1e-12;
 /// Change [-] below which a change that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-7;
-/// Greatest change after which the tangent is used again [-].
+/// Greatest change after which the next correction uses the same tangent [-].
 const REUSED_MAX: f64 = 0.05;
-/// Ratio of successive changes [-] above which the tangent is evaluated anew.
+/// Ratio of successive changes above which the tangent is evaluated again [-].
 const FALL: f64 = 0.05;
 /// Iterations of a step [-].
 const SOLVES_MAX: usize = 30;
@@ -146,7 +144,7 @@ impl BeamWork {
         }
     }
 
-    /// Moves `shape` by one step; returns linear solves and the energy that crossed the boundary of the beam.
+    /// Moves `shape` by one step; returns the tangents that were factorised and the energy that crossed the boundary of the beam.
     ///
     /// # Errors
     /// The iteration did not converge; the shape is unchanged.
@@ -452,13 +450,7 @@ impl BeamWork {
         let i = end * (case.beam.elements.len() - 1);
         let (element, rest) = (&case.beam.elements[i], &beam_state(shape).rest[i]);
         let after = strain(&self.now[i], &self.now[i + 1], element.length);
-        let step = StepStrain {
-            laws: [&element.law, &element.damping],
-            length: element.length,
-            strains: [&self.strain_before[i], &after],
-            rest,
-            mixture: mixture(case.length),
-        };
+        let step = element.over_step([&self.strain_before[i], &after], rest, mixture(case.length));
         let gradient = StrainGradient::new(&self.mean[i], &self.mean[i + 1], element.length);
         element.length * gradient.tr_mul(&step.stress())[end]
     }

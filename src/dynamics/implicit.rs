@@ -17,6 +17,8 @@
 //!   β = ¼ (1 − α_m + α_f)².
 //! * Bossak(α, γ): α_m = α ≤ 0, α_f = 0, β = ¼ (1 − α)²; second order for γ = ½ − α.
 //!
+//! The second correction of a step uses the tangent and the factors of the first one, if that is small. Most steps then evaluate one tangent.
+//!
 //! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The
 //! seabed's damper fades in over two static penetrations above and below the bed, or over the displacement of the
 //! node in a step if that is larger. A damper that switches on at touch would prevent the convergence of Newton's
@@ -44,7 +46,7 @@ pub const SPECTRAL_RADIUS: f64 = 0.2;
 pub const BOSSAK_ALPHA: f64 = -0.3;
 /// Last correction, over the shortest segment [-].
 const NEWTON_TOLERANCE: f64 = 1e-7;
-/// Greatest stretch and turn of a segment by a correction after which the tangent is used again [-]; the next correction is about the square of it.
+/// Greatest strain and rotation of a segment in a first correction after which the second one uses the same tangent [-]: it is about their square.
 const REUSED_MAX: f64 = 1e-4;
 /// Newton iterations of a step, of which one may use the tangent of the one before.
 const ITERATIONS_MAX: usize = 16;
@@ -433,8 +435,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
                 self.shift_accelerations(state, before);
                 return true;
             }
-            // The second correction of a smooth step is within the tolerance also by the tangent of the first; where it is not, none of the
-            // step is reused again.
+            // In a smooth step the second correction is small by any tangent; where it is not, the others of the step use exact ones.
             again = iteration == 0 && consistent && work.greatest_strain(self.network) <= REUSED_MAX;
         }
         false

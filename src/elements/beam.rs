@@ -16,7 +16,7 @@ use crate::math::pivoted_chain::PivotedChain;
 use crate::model::{BeamElement, FreePoint, Point};
 use crate::physics::seabed::{PARTS, Part};
 use crate::physics::section::{
-    GeometricStiffness, Mixture, Section, Sextuple, StepStrain, StrainGradient, join, split, strain,
+    GeometricStiffness, Mixture, Section, Sextuple, StrainGradient, join, split, strain,
 };
 
 /// Constraints and loads of an end of a beam.
@@ -285,13 +285,7 @@ pub(crate) fn add_elements(
         );
         let after = strain(now[0], now[1], element.length);
         let before = span.strain_before.map_or(after, |strains| strains[i]);
-        let step = StepStrain {
-            laws: [&element.law, &element.damping],
-            length: element.length,
-            strains: [&before, &after],
-            rest: &rest[i],
-            mixture,
-        };
+        let step = element.over_step([&before, &after], &rest[i], mixture);
         let (stress, gradient) = (
             step.stress(),
             StrainGradient::new(mean[0], mean[1], element.length),

@@ -77,7 +77,7 @@ pub struct Workspace {
 pub struct Counters {
     /// Time steps or load steps.
     pub steps: usize,
-    /// Linear solves; closed-form catenaries where a network is solved with those.
+    /// Linear systems that were factorised; closed-form catenaries where a network is solved with those.
     pub solves: usize,
     /// Steps that were halved.
     pub halvings: usize,
@@ -359,7 +359,7 @@ impl Workspace {
         }
     }
 
-    /// Solves J x = R for the present residual with the tangent of the last solution; false where ends are released, or a pivot cannot be taken.
+    /// Solves J x = R for the present residual with the tangent of the last solution; false where ends are released.
     pub(crate) fn solve_again(&mut self, model: &Model, network: &Network, number: usize) -> bool {
         self.systems[number].clear_right();
         for &index in &network.lines {
@@ -377,9 +377,7 @@ impl Workspace {
         for (slot, &index) in network.free_points.iter().enumerate() {
             self.systems[number].add_right(slot, self.points[index].residual);
         }
-        if !self.systems[number].solve_again(Pivots::Positive) {
-            return false;
-        }
+        self.systems[number].solve_again();
         self.take_solution(network, number);
         self.substitute(model, network);
         true

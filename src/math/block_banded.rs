@@ -458,6 +458,34 @@ mod tests {
     }
 
     #[test]
+    fn another_right_hand_side_is_solved_with_the_same_factors() {
+        fn check<const FAR: bool>(free: bool) {
+            for nodes in [2, 3, 4, 9] {
+                let system = System::<FAR>::random(nodes);
+                let other: Vec<_> = system.right.iter().rev().map(|b| 3.0 * b).collect();
+                let changed = System {
+                    right: other.clone(),
+                    ..System::<FAR>::random(nodes)
+                };
+                let mut chains = [Chain::new(nodes), Chain::new(nodes)];
+                system.eliminate(&mut chains[0], free, Pivots::Positive).unwrap();
+                let ends = changed.eliminate(&mut chains[1], free, Pivots::Positive).unwrap();
+                let [a, b] = chains[0].eliminate_right(&system.far, &other);
+                assert!(!free || a == ends.a, "{FAR}, {nodes} nodes");
+                assert_eq!(b, ends.b, "{FAR}, {nodes} nodes");
+                for chain in &mut chains {
+                    chain.substitute(ends.a, ends.b);
+                }
+                assert_eq!(chains[0].solution(), chains[1].solution());
+            }
+        }
+        for free in [false, true] {
+            check::<false>(free);
+            check::<true>(free);
+        }
+    }
+
+    #[test]
     fn a_pivot_that_is_not_positive_is_reported() {
         fn check<const FAR: bool>(free: bool) {
             let mut system = System::<FAR>::random(6);

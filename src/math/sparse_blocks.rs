@@ -104,6 +104,8 @@ pub struct PointSystem {
     /// Blocks below the diagonal, and those opposite above it.
     lower: Vec<Matrix3<f64>>,
     upper: Vec<Matrix3<f64>>,
+    /// Blocks on themselves as they are eliminated, factorised.
+    pivots: Vec<Lu3>,
     /// Axes whose unknown is zero, in the order of elimination.
     held: Vec<[bool; 3]>,
 }
@@ -119,6 +121,7 @@ impl PointSystem {
             right: vec![Vector3::zeros(); points],
             lower: blocks.clone(),
             upper: blocks,
+            pivots: vec![Lu3::default(); points],
             held: vec![[false; 3]; points],
         }
     }
@@ -157,27 +160,6 @@ impl PointSystem {
         self.right.fill(Vector3::zeros());
     }
 
-    /// Solves for another right-hand side, after [`PointSystem::solve`] of the same blocks; false if a pivot cannot be taken.
-    pub fn solve_again(&mut self, pivots: Pivots) -> bool {
-        for (right, held) in self.right.iter_mut().zip(&self.held) {
-            for axis in (0..3).filter(|&axis| held[axis]) {
-                right[axis] = 0.0;
-            }
-        }
-        for k in 0..self.diagonal.len() {
-            let Some(pivot) = Lu3::new(&self.diagonal[k], pivots) else {
-                return false;
-            };
-            let known = pivot.solve_dividing(self.right[k]);
-            self.right[k] = known;
-            for block in self.order.start[k]..self.order.start[k + 1] {
-                self.right[self.order.rows[block]] -= self.lower[block] * known;
-            }
-        }
-        self.substitute();
-        true
-    }
-
     /// Solves in place; false if a pivot cannot be taken.
     pub fn solve(&mut self, pivots: Pivots) -> bool {
         self.apply_holds();
@@ -187,8 +169,7 @@ impl PointSystem {
             let Some(pivot) = Lu3::new(&self.diagonal[k], pivots) else {
                 return false;
             };
-            let known = pivot.solve_dividing(self.right[k]);
-            self.right[k] = known;
+            self.pivots[k] = pivot;
             let column = order.start[k]..order.start[k + 1];
             for block in &mut self.upper[column.clone()] {
                 *block = pivot.solve3(block);
@@ -202,7 +183,6 @@ impl PointSystem {
             );
             for (i, &row) in rows.iter().enumerate() {
                 self.diagonal[row] -= lower[i] * upper[i];
-                self.right[row] -= lower[i] * known;
                 for (j, target) in (i + 1..rows.len()).zip(&mut targets) {
                     let target = target - column.end;
                     later_lower[target] -= lower[j] * upper[i];
@@ -210,12 +190,25 @@ impl PointSystem {
                 }
             }
         }
-        self.substitute();
+        self.solve_again();
         true
     }
 
-    fn substitute(&mut self) {
+    /// Solves for another right-hand side, after [`PointSystem::solve`] of the same blocks.
+    pub fn solve_again(&mut self) {
         let order = &self.order;
+        for (right, held) in self.right.iter_mut().zip(&self.held) {
+            for axis in (0..3).filter(|&axis| held[axis]) {
+                right[axis] = 0.0;
+            }
+        }
+        for k in 0..self.diagonal.len() {
+            let known = self.pivots[k].solve_dividing(self.right[k]);
+            self.right[k] = known;
+            for block in order.start[k]..order.start[k + 1] {
+                self.right[order.rows[block]] -= self.lower[block] * known;
+            }
+        }
         for k in (0..self.diagonal.len()).rev() {
             let mut x = self.right[k];
             for block in order.start[k]..order.start[k + 1] {
@@ -237,7 +230,6 @@ impl PointSystem {
             mask(&mut self.diagonal[k], own, own);
             for axis in (0..3).filter(|&axis| own[axis]) {
                 self.diagonal[k][(axis, axis)] = 1.0;
-                self.right[k][axis] = 0.0;
             }
         }
     }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::math::rotation::{frame_along, turned_to};
-use crate::physics::section::{self, Section, SectionLaw, Sextuple, StrainEnergy};
+use crate::physics::section::{self, Mixture, Section, SectionLaw, Sextuple, StepStrain, StrainEnergy};
 
 /// A line as a beam: two-node elements, one per segment, and lumped rotary inertia.
 #[derive(Debug, Clone)]
@@ -108,6 +108,23 @@ impl BeamElement {
     #[inline(always)]
     pub fn strain(&self, a: &Section, b: &Section, rest: &Sextuple) -> Sextuple {
         section::corrected(&section::strain(a, b, self.length), self.length) - rest
+    }
+
+    /// The element over a step between two plain strains, from the starred strains at rest.
+    #[inline(always)]
+    pub fn over_step<'a>(
+        &'a self,
+        strains: [&'a Sextuple; 2],
+        rest: &'a Sextuple,
+        mixture: Mixture,
+    ) -> StepStrain<'a> {
+        StepStrain {
+            laws: [&self.law, &self.damping],
+            length: self.length,
+            strains,
+            rest,
+            mixture,
+        }
     }
 
     /// Energy at a strain from rest.

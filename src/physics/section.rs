@@ -269,9 +269,9 @@ pub struct StrainGradient {
     turn: Matrix3<f64>,
 }
 
-/// Values for sections a and b. (`map` of an array moves its elements through memory.)
+/// Returns the values for sections a and b; `map` of an array would move these matrices through memory.
 #[inline(always)]
-pub(crate) fn both<T>(value: impl Fn(usize) -> T) -> [T; 2] {
+fn both<T>(value: impl Fn(usize) -> T) -> [T; 2] {
     [value(0), value(1)]
 }
 
@@ -291,7 +291,7 @@ impl StrainGradient {
         }
     }
 
-    /// Change of the strains by those of positions and spins of both sections.
+    /// Change of the strains due to changes of positions and spins of both sections.
     pub fn times(&self, [a, b]: [Sextuple; 2]) -> Sextuple {
         let [(shift_a, spin_a), (shift_b, spin_b)] = [split(&a), split(&b)];
         let stretch = self.along * (shift_b - shift_a) + self.swept[0] * spin_a + self.swept[1] * spin_b;
@@ -311,8 +311,8 @@ impl StrainGradient {
         })
     }
 
-    /// Change of [`StrainGradient::tr_mul`] with positions and spins of the sections at which the strains change by the gradient `now`, the
-    /// stress having the `slope`.
+    /// Change of [`StrainGradient::tr_mul`] with positions and spins of the sections at which the strains change by the gradient `now`, with the
+    /// `slope` of the stress.
     #[inline(always)]
     pub fn stiffness(&self, slope: &Blocks, now: &StrainGradient) -> Stiffness {
         let shift = both(|part| slope[part][0] * now.along);
@@ -367,7 +367,7 @@ fn turn_gradient(a: &Section, b: &Section) -> Matrix3<f64> {
 }
 
 /// Change of the forces and moments of both sections, [`StrainGradient::tr_mul`] at the mean sections times the length, with positions and spins
-/// of the sections after the step, where the stress stays, and the mean follows by a part of the change.
+/// of the sections after the step, at constant stress; the mean sections follow by a part of the change.
 pub struct GeometricStiffness {
     carried: [Matrix3<f64>; 2],
     turned: [Matrix3<f64>; 2],

@@ -8,10 +8,10 @@ use crate::elements::beam::{BeamEnd, end_hold};
 use crate::model::{Beam, Kinematics, Line, Model, State};
 use crate::physics::section::{Section, join};
 
-/// Linear solves, and the energy that crossed the boundary.
+/// Factorised tangents, and the energy that crossed the boundary.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Driven {
-    /// Linear solves.
+    /// Tangents that were factorised.
     pub solves: usize,
     /// External work and dissipation.
     pub flow: Flow,

@@ -7,7 +7,7 @@ use crate::dynamics::energy_balance::Energy;
 use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
 use crate::physics::morison::drag;
 use crate::physics::section::{
-    Mixture, Section, Sextuple, StepStrain, StrainEnergy, StrainGradient, join, split, strain,
+    Mixture, Section, Sextuple, StrainEnergy, StrainGradient, join, split, strain,
 };
 
 /// Momenta of a beam's mass.
@@ -105,14 +105,7 @@ impl<'a> BeamView<'a> {
             share: 1.0,
             rate: 0.0,
         };
-        let step = StepStrain {
-            laws: [&element.law, &element.damping],
-            length: element.length,
-            strains: [&now, &now],
-            rest: &state.rest[i],
-            mixture: still,
-        };
-        let elastic = step.stress();
+        let elastic = element.over_step([&now, &now], &state.rest[i], still).stress();
         if !damped {
             return elastic;
         }

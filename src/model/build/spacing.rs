@@ -9,9 +9,12 @@ use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Bed, Catenary};
 use crate::scene::{self, PointKind, Scene, percent};
 
-/// Error of the curvature at a clamp times the square of the number of elements over √(EI/T) there [-], measured on `power_cable`.
+/// Error of the curvature at a clamp times the square of the number n of elements over λ = √(EI/T) there [-].
+///
+/// With η = 1/n, a line that hangs off at an angle Θ from its clamp has segments at angles Θ + φ_i from it, φ_{i+1} = r φ_i with r + 1/r = 2 + η².
+/// The clamp's joint, twice as stiff as the others, gives M = (2EI/ηλ)(φ₁ + Θ) = (EI Θ/λ)(1 − η²/8 + …), whose limit is the beam's.
 const CURVATURE_ERROR: f64 = 0.125;
-/// Elements over √(EI/T) at a clamp, least and most [-]; with fewer than two the error grows faster.
+/// Elements over √(EI/T) at a clamp, least and most [-]: with fewer than two the error grows faster than that.
 const CLAMP_ELEMENTS: [f64; 2] = [2.0, 20.0];
 /// The same at the touchdown, where the moment rises without a step [-].
 const TOUCHDOWN_ELEMENTS: f64 = 2.0;
