@@ -22,6 +22,9 @@ const EXIT_CODES: &str =
 pub(crate) enum Command {
     /// Say in words what a scene models and what it does not; find every mistake
     Check {
+        /// Write the selected elements, integrator and step into the scene's file, so that later commands need no trials
+        #[arg(long)]
+        write: bool,
         #[command(flatten)]
         input: Input,
     },

@@ -11,10 +11,12 @@ use moorline_decks::load_with;
 
 use crate::arguments::Input;
 use crate::failure::Failure;
+use crate::hold::hold;
 use crate::terminal::{noted, print};
 
 /// Reads a scene, discretises it, and prints a description of its model, notes on it, and the variables of its FMU.
-pub(crate) fn check(input: &Input) -> Result<(), Failure> {
+/// Where `write` is set, also writes the discretisation into the scene's file.
+pub(crate) fn check(input: &Input, write: bool) -> Result<(), Failure> {
     let loaded = load_with(&input.scene, &input.host.supplement())?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let settled = discretisation::select(&loaded.scene);
@@ -64,7 +66,15 @@ pub(crate) fn check(input: &Input) -> Result<(), Failure> {
         text.push_str(&format!("{}\n", noted(&loaded.path, &note)));
     }
     print(&text)?;
-    failure.map_or(Ok(()), Err) // a scene without an equilibrium can be described, but not run
+    failure.map_or(Ok(()), Err)?; // a scene without an equilibrium can be described, but not run
+    if !write {
+        return Ok(());
+    }
+    let held = match settled {
+        Some(found) => Some(found.scene),
+        None => discretisation::by_rule(&loaded.scene),
+    };
+    print(&format!("\n{}\n", hold(&loaded, held.as_ref())?))
 }
 
 /// Integrator and step of every network, each in a sentence once.

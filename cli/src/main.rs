@@ -11,6 +11,7 @@ mod demo;
 mod failure;
 mod fmu;
 mod folder;
+mod hold;
 mod modes;
 mod run;
 mod statics;
@@ -28,7 +29,7 @@ fn main() -> ExitCode {
     let command = Arguments::parse().command;
     folder::end_on_interrupt();
     let result = match command {
-        Command::Check { input } => check::check(&input),
+        Command::Check { input, write } => check::check(&input, write),
         Command::Statics { input, json } => statics::statics(&input, json),
         Command::Modes {
             input,

@@ -26,6 +26,7 @@
 //! rest is within the tolerance of the closed-form catenary, where there is one to compare with.
 
 mod expense;
+mod kinds;
 mod rest;
 mod search;
 
@@ -35,6 +36,7 @@ use crate::model::mesh::line_elements;
 use crate::model::{Model, line_shares};
 use crate::scene::{Integrator, Line, Scene, percent};
 use crate::simulation::{self, Simulation};
+use kinds::Kinds;
 use search::Search;
 
 pub use expense::expense;
@@ -80,6 +82,20 @@ pub struct Rest {
     pub fewer: usize,
     /// Relative error of the tension at the driven end against the catenary, with those elements and with the selected ones [-].
     pub errors: [f64; 2],
+}
+
+impl Mesh {
+    /// Mesh that follows from the tolerance [-] alone.
+    fn by_rule(lines: Vec<usize>, tolerance: f64) -> Mesh {
+        Mesh {
+            lines,
+            trials: Vec::new(),
+            elements: line_elements(tolerance).round() as usize,
+            error: 0.0,
+            tried: true,
+            rest: None,
+        }
+    }
 }
 
 /// Result of the trials of a scene.
@@ -197,9 +213,19 @@ pub fn select(scene: &Scene) -> Option<Discretisation> {
         return None;
     }
     let networks = Networks::of(scene)?;
-    tried_in_motion(scene, &networks).or_else(|| {
+    match Kinds::of(scene, &networks) {
+        None => tried(scene, &networks),
+        Some(kinds) => {
+            let found = tried(&kinds.scene, &Networks::of(&kinds.scene)?)?;
+            Some(kinds.expanded(&found, scene, &networks))
+        }
+    }
+}
+
+fn tried(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
+    tried_in_motion(scene, networks).or_else(|| {
         let simulation = Simulation::new(scene).ok()?;
-        Some(tried_at_rest(scene, &networks, &simulation, Simulation::new)?.0)
+        Some(tried_at_rest(scene, networks, &simulation, Simulation::new)?.0)
     })
 }
 
@@ -263,14 +289,7 @@ fn tried_at_rest(
     if scene.solver.integrator == Integrator::QuasiStatic {
         return None;
     }
-    let mesh = |lines: &Vec<usize>| Mesh {
-        lines: lines.clone(),
-        trials: Vec::new(),
-        elements: line_elements(scene.solver.tolerance).round() as usize,
-        error: 0.0,
-        tried: true,
-        rest: None,
-    };
+    let mesh = |lines: &Vec<usize>| Mesh::by_rule(lines.clone(), scene.solver.tolerance);
     let mut meshes: Vec<Mesh> = networks.lines.iter().map(mesh).collect();
     let refined = rest::refine(scene, networks, &mut meshes, by_rule, |scene| start(scene).ok());
     meshes.iter().find_map(|mesh| mesh.rest)?;
@@ -293,16 +312,15 @@ pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
 /// Scene with its present mesh, regardless of later settings: as [`select`] finds it, or by rule. None where all
 /// elements are given.
 pub fn frozen(scene: &Scene) -> Option<Scene> {
-    if let Some(settled) = select(scene) {
-        return Some(settled.scene);
-    }
-    if !is_open(scene) {
-        return None;
-    }
-    let mut scene = scene.clone();
-    let elements = line_elements(scene.solver.tolerance);
-    scene.solver.elements = Some(elements.round() as usize);
-    Some(scene)
+    let selected = select(scene).map(|found| found.scene);
+    selected.or_else(|| by_rule(scene))
+}
+
+/// Scene with the mesh that follows from its tolerance alone. None where all elements are given.
+pub fn by_rule(scene: &Scene) -> Option<Scene> {
+    let mut held = is_open(scene).then(|| scene.clone())?;
+    held.solver.elements = Some(line_elements(scene.solver.tolerance).round() as usize);
+    Some(held)
 }
 
 /// Returns whether the number of elements of any line is left open.

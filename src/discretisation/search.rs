@@ -12,8 +12,10 @@ const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 32
 const AIM_UNTRIED: f64 = 0.7;
 /// Explicit steps of an element that all trials may take [-].
 const WORK_MAX: f64 = 1e8;
-/// Tolerance by which the steps of the ladder are chosen, over the scene's [-].
+/// Part of the tolerance for the error of the steps of the ladder [-].
 const FINER: f64 = 0.25;
+/// Elements of a line alone on which the step of the ladder is sought [-].
+const COARSE: usize = 7;
 /// Part of the cost below which another step is adopted [-].
 const WORTH: f64 = 0.8;
 /// Halvings of the longest axial-implicit step that are tried [-].
@@ -38,6 +40,8 @@ pub(super) struct Search<'a> {
     from: usize,
     /// Results of every network.
     ladders: Vec<Ladder>,
+    /// Axial-implicit step whose error is small [s]; none where steps follow from the scene's integrator.
+    step: Option<f64>,
     /// Explicit steps of an element so far [-].
     work: f64,
 }
@@ -169,6 +173,7 @@ impl<'a> Search<'a> {
             scene,
             ladders: networks.lines.iter().map(|lines| Ladder::new(lines)).collect(),
             networks,
+            step: None,
             work: 0.0,
         })
     }
@@ -183,9 +188,23 @@ impl<'a> Search<'a> {
         self.networks.with_elements(&self.scene, elements)
     }
 
-    /// The same with steps that add little to the error of the mesh.
+    /// The same with axial-implicit steps [s].
+    fn with_step(&self, elements: &[usize], step: f64) -> Scene {
+        let mut scene = self.with(elements);
+        scene.solver.integrator = Integrator::AxialImplicit;
+        scene.solver.time_step_max = step;
+        scene
+    }
+
+    /// The same with steps that add little to the error of the mesh, explicit ones where they cost less.
     fn rung(&self, elements: &[usize]) -> Scene {
         let mut scene = self.with(elements);
+        if let Some(step) = self.step {
+            let explicit = self.explicit_work(&scene);
+            if explicit.is_some_and(|explicit| explicit.of_axial_implicit(step) < explicit.work) {
+                return self.with_step(elements, step);
+            }
+        }
         scene.solver.tolerance *= FINER;
         scene
     }
@@ -193,12 +212,79 @@ impl<'a> Search<'a> {
     /// Mesh of every network; none where the trials give no result.
     pub(super) fn meshes(&mut self) -> Option<Vec<Mesh>> {
         let tolerance = self.scene.solver.tolerance;
+        self.step = self.coarse_step();
         self.climb(AIM * tolerance);
+        while let Some(step) = self.step
+            && !self.is_accurate(step)
+        {
+            self.step = Some(0.5 * step);
+            self.ladders = self
+                .networks
+                .lines
+                .iter()
+                .map(|lines| Ladder::new(lines))
+                .collect();
+            self.climb(AIM * tolerance);
+        }
         let between = self.between(AIM * tolerance);
         let ladders = self.ladders.iter().zip(between);
         ladders
             .map(|(ladder, between)| ladder.mesh(between, tolerance))
             .collect()
+    }
+
+    /// Longest axial-implicit step whose error on a coarse mesh is small [s]; none where explicit steps cost less.
+    fn coarse_step(&mut self) -> Option<f64> {
+        if self.scene.solver.integrator != Integrator::Auto {
+            return None;
+        }
+        let elements = vec![COARSE; self.ladders.len()];
+        let explicit = self.explicit_work(&self.with(&elements))?;
+        let mut step = self.longest_step();
+        let mut run = self.run(&self.with_step(&elements, step)).ok()??;
+        for _ in 0..HALVINGS {
+            let finer = self.run(&self.with_step(&elements, 0.5 * step)).ok()??;
+            let errors = self.ladders.iter().map(|ladder| {
+                let [run, finer] = [&run, &finer].map(|record| ladder.part(COARSE, record));
+                step_error(&run, &finer)
+            });
+            if errors.fold(0.0, f64::max) <= FINER * self.scene.solver.tolerance {
+                return Some(step);
+            }
+            if finer.work > explicit.work {
+                return None;
+            }
+            (step, run) = (0.5 * step, finer);
+        }
+        None
+    }
+
+    /// Returns whether the error of an axial-implicit step [s] is small on the meshes found, or else on the last ones assessed.
+    fn is_accurate(&mut self, step: f64) -> bool {
+        let assessed = |ladder: &Ladder| ladder.trials.last().map(|trial| trial.elements);
+        let elements = self
+            .ladders
+            .iter()
+            .map(|ladder| assessed(ladder).unwrap_or(LADDER[0]));
+        let elements: Vec<usize> = elements.collect();
+        let mut scene = self.rung(&elements);
+        if scene.solver.integrator != Integrator::AxialImplicit {
+            return true;
+        }
+        scene.solver.time_step_max = 0.5 * step;
+        let Ok(Some(record)) = self.run(&scene) else {
+            return true;
+        };
+        let most = FINER * self.scene.solver.tolerance;
+        self.ladders.iter().zip(elements).all(|(ladder, elements)| {
+            let same = ladder.runs.iter().find(|run| run.elements == elements);
+            same.is_none_or(|run| step_error(run, &ladder.part(elements, &record)) <= most)
+        })
+    }
+
+    /// Longest step of the trials [s].
+    fn longest_step(&self) -> f64 {
+        self.scene.solver.time_step_max.min(self.scene.output.interval)
     }
 
     /// Runs the scene with more and more elements in those networks that need them.
@@ -265,19 +351,14 @@ impl<'a> Search<'a> {
 
     /// The longest step of the axial-implicit leapfrog [s] that keeps the error, where that costs less than explicit steps.
     fn axial_implicit_step(&mut self, elements: &[usize]) -> Option<f64> {
-        let mut scene = self.with(elements);
-        let explicit = self.explicit_work(&scene)?;
-        let aim = AIM * scene.solver.tolerance;
-        let segments = explicit.segments as f64 * scene.output.duration;
-        scene.solver.integrator = Integrator::AxialImplicit;
-        scene.solver.time_step_max = scene.solver.time_step_max.min(scene.output.interval);
+        let explicit = self.explicit_work(&self.with(elements))?;
+        let aim = AIM * self.scene.solver.tolerance;
+        let mut step = self.longest_step();
         for _ in 0..=HALVINGS {
-            let step = scene.solver.time_step_max;
-            let least = AXIAL_IMPLICIT_COST * segments / step;
-            if least > WORTH * explicit.work {
+            if explicit.of_axial_implicit(step) > WORTH * explicit.work {
                 return None;
             }
-            let record = self.run(&scene).ok()??;
+            let record = self.run(&self.with_step(elements, step)).ok()??;
             let kept = self.ladders.iter().zip(elements).all(|(ladder, &elements)| {
                 let error = ladder.error(&ladder.part(elements, &record));
                 error.is_some_and(|error| error <= aim)
@@ -285,7 +366,7 @@ impl<'a> Search<'a> {
             if kept && record.work <= WORTH * explicit.work {
                 return Some(step);
             }
-            scene.solver.time_step_max = 0.5 * step;
+            step *= 0.5;
         }
         None
     }
@@ -301,10 +382,10 @@ impl<'a> Search<'a> {
         let limit = limits.fold(scene.solver.time_step_max, f64::min);
         let output = &scene.output;
         let steps = (output.interval / limit).ceil() * output.duration / output.interval;
-        let segments = model.lines.iter().map(|line| line.segment_count()).sum();
+        let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();
         Some(Explicit {
-            segments,
             work: steps * segments as f64,
+            element_time: segments as f64 * output.duration,
         })
     }
 
@@ -351,10 +432,17 @@ impl<'a> Search<'a> {
 
 /// Cost of explicit steps of a scene.
 struct Explicit {
-    /// Elements of all lines [-].
-    segments: usize,
     /// Explicit steps of an element [-].
     work: f64,
+    /// Elements of all lines, times the duration [s].
+    element_time: f64,
+}
+
+impl Explicit {
+    /// Cost of axial-implicit steps of a length [s], in explicit steps of an element [-].
+    fn of_axial_implicit(&self, step: f64) -> f64 {
+        AXIAL_IMPLICIT_COST * self.element_time / step
+    }
 }
 
 /// Speed and duration of a scene's motion.
@@ -407,6 +495,11 @@ pub(super) fn driven(model: &Model, line: usize) -> usize {
         )
     };
     usize::from(!moved(0) || moved(1))
+}
+
+/// Error of a run by its steps [-], by comparison with one with half of them: it falls with their square.
+fn step_error(run: &Run, halved: &Run) -> f64 {
+    4.0 / 3.0 * distance(run, halved)
 }
 
 /// Error of the coarsest of three runs whose elements grow by √2 [-].

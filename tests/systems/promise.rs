@@ -354,6 +354,51 @@ fn a_line_that_hardly_moves_takes_hardly_more_elements_than_one_that_does() {
     );
 }
 
+/// Copies of a scene's only line along the seabed, all moved alike, and one that is longer by a metre.
+fn field(name: &str, copies: usize) -> Scene {
+    let mut scene = moved(name, [1.0, 1.0]);
+    let (line, [from, to]) = (
+        scene.lines[0].clone(),
+        [0, 1].map(|end| scene.points[end].clone()),
+    );
+    let motion = scene.motion[&to.name].clone();
+    for copy in 1..=copies {
+        let along = [700.0 * copy as f64, -300.0 * copy as f64];
+        let named = |name: &str| format!("{name} {copy}");
+        for point in [&from, &to] {
+            let [x, y, z] = point.position;
+            let mut point = point.clone();
+            point.position = [x + along[0], y + along[1], z];
+            point.name = named(&point.name);
+            scene.points.push(point);
+        }
+        let mut line = line.clone();
+        line.name = named(&line.name);
+        (line.from, line.to) = (named(&line.from), named(&line.to));
+        line.sections[0].length += if copy == copies { 1.0 } else { 0.0 };
+        scene.lines.push(line);
+        scene.motion.insert(named(&to.name), motion.clone());
+    }
+    scene
+}
+
+#[test]
+fn of_lines_that_are_copies_one_is_tried() {
+    let alone = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();
+    let field = field("taut_polyester", 4);
+    let selected = discretisation::select(&field).unwrap();
+    assert_eq!(selected.meshes.len(), field.lines.len());
+    let [one, copy, .., longer] = &selected.meshes[..] else {
+        panic!("{:?}", selected.meshes);
+    };
+    assert_eq!(
+        (&one.trials, one.elements),
+        (&alone.meshes[0].trials, alone.meshes[0].elements)
+    );
+    assert_eq!((&copy.trials, copy.elements), (&one.trials, one.elements));
+    assert_ne!(longer.trials, one.trials);
+}
+
 #[test]
 fn the_trials_are_described_in_words() {
     let selected = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();

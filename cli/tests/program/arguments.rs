@@ -155,3 +155,31 @@ fn check_says_what_is_modelled_and_what_a_host_finds() {
     ];
     folder().shows("check scene.toml", &parts);
 }
+
+#[test]
+fn check_writes_the_discretisation_into_the_scene_and_a_run_is_the_same_without_trials() {
+    let folder = folder_of("hanging_riser");
+    let (given, before) = (folder.read("scene.toml"), folder.columns("run scene.toml -o out"));
+    folder.shows(
+        "check scene.toml --write",
+        &["written to scene.toml: solver.elements = "],
+    );
+    let held = folder.read("scene.toml");
+    let kept = |line: &&str| held.contains(*line);
+    assert!(
+        given.lines().all(|line| kept(&line)),
+        "comments and order stay: {held}"
+    );
+    assert_eq!(folder.columns("run scene.toml -o out"), before);
+    folder.shows(
+        "check scene.toml --write",
+        &["scene.toml is unchanged: the elements of all lines are given"],
+    );
+}
+
+#[test]
+fn check_writes_no_deck() {
+    let folder = folder_with(&[("lines.txt", VERSION_1)]);
+    folder.refused("check lines.txt --write", &["--write", "moorline convert"]);
+    assert_eq!(folder.read("lines.txt"), VERSION_1);
+}

@@ -1,0 +1,88 @@
+//! `moorline check --write`: the selected discretisation in the scene's own file, so that no later command searches for it.
+
+use std::io::Write;
+
+use moorline::output::write_file;
+use moorline::scene::{LoadedScene, Scene, TOML};
+use toml_edit::{Array, DocumentMut, Item, TableLike};
+
+use crate::failure::Failure;
+
+/// Keys of `[solver]` that a discretisation sets.
+const SOLVER: [&str; 3] = ["elements", "integrator", "time_step_max"];
+
+/// Writes the elements, integrator and step of a discretised scene, where there is one, into the file of the scene, and keeps the rest of the
+/// file as it is. Returns a sentence.
+pub(crate) fn hold(loaded: &LoadedScene, held: Option<&Scene>) -> Result<String, Failure> {
+    let path = loaded.path.display();
+    if loaded.format != TOML {
+        return Err(Failure::Argument(format!(
+            "--write: {path} is a {} file, which has no place for elements, integrator and step of moorline; `moorline convert` makes a scene \
+             of it",
+            loaded.format
+        )));
+    }
+    let Some(held) = held else {
+        return Ok(format!(
+            "{path} is unchanged: the elements of all lines are given"
+        ));
+    };
+    let edited = edited(&loaded.text, &loaded.scene, held);
+    let (text, keys) = edited.ok_or_else(|| {
+        Failure::Computation(format!(
+            "{path} is unchanged: its tables `solver` and `lines` cannot be edited"
+        ))
+    })?;
+    write_file(&loaded.path, |out: &mut dyn Write| out.write_all(text.as_bytes()))?;
+    Ok(format!("written to {path}: {}", keys.join(", ")))
+}
+
+/// Text of a scene with the discretisation of the scene `held` in place of that of the scene `given`, and the keys set; none where the
+/// text is no scene.
+fn edited(text: &str, given: &Scene, held: &Scene) -> Option<(String, Vec<String>)> {
+    let mut document: DocumentMut = text.parse().ok()?;
+    let [mut before, mut after] = [given, held].map(|scene| scene.to_toml().parse::<DocumentMut>().ok());
+    let (before, after) = (before.as_mut()?, after.as_mut()?);
+    let mut keys = Vec::new();
+    for key in SOLVER {
+        let [before, after] = [&*before, &*after].map(|scene| scene.get("solver")?.get(key));
+        if let Some(item) = changed(before, after) {
+            let solver = document.entry("solver").or_insert(toml_edit::table());
+            keys.push(put(solver.as_table_like_mut()?, "solver", key, item));
+        }
+    }
+    for i in 0..held.lines.len() {
+        let [before, after] =
+            [&mut *before, &mut *after].map(|scene| line(scene.get_mut("lines")?, i)?.get("elements"));
+        if let Some(item) = changed(before, after) {
+            let line = line(document.get_mut("lines")?, i)?;
+            keys.push(put(line, &format!("lines[{i}]"), "elements", item));
+        }
+    }
+    Some((document.to_string(), keys))
+}
+
+/// Value of a key after a change; none where it is the same as before or absent.
+fn changed<'d>(before: Option<&Item>, after: Option<&'d Item>) -> Option<&'d Item> {
+    let words = |item: &Item| item.to_string().trim().to_string();
+    after.filter(|item| before.map(words) != Some(words(item)))
+}
+
+/// Sets a key of the table `at`, and returns the assignment.
+fn put(table: &mut dyn TableLike, at: &str, key: &str, item: &Item) -> String {
+    let mut item = item.clone();
+    if let Some(value) = item.as_value_mut() {
+        value.decor_mut().clear();
+    }
+    let assignment = format!("{at}.{key} = {item}");
+    table.insert(key, item);
+    assignment
+}
+
+/// Table of line `i`, in an array of tables or of inline tables.
+fn line(lines: &mut Item, i: usize) -> Option<&mut dyn TableLike> {
+    match lines {
+        Item::ArrayOfTables(tables) => Some(tables.get_mut(i)?),
+        lines => Some(Array::get_mut(lines.as_array_mut()?, i)?.as_inline_table_mut()?),
+    }
+}

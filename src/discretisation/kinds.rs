@@ -1,0 +1,154 @@
+//! Networks of lines that are copies of one another: the same lines between points in the same places but for a displacement along the
+//! seabed, moved alike. The errors of their meshes are the same, over any time in waves, so that one network of each kind is tried.
+
+use std::collections::BTreeMap;
+
+use crate::scene::{Line, MotionPath, Point, Scene, Vessel};
+
+use super::{Discretisation, Mesh, Networks, elements_of};
+
+/// Distance that makes no difference between two networks [m].
+const SAME_PLACE: f64 = 1e-3;
+
+/// The networks of a scene by kind.
+pub(super) struct Kinds {
+    /// For every network, the first one of its kind.
+    first: Vec<usize>,
+    /// Scene with the first network of each kind, and nothing of the others.
+    pub(super) scene: Scene,
+    /// Lines of that scene in the whole one.
+    lines: Vec<usize>,
+}
+
+impl Kinds {
+    /// None where every network is of a kind of its own.
+    pub(super) fn of(scene: &Scene, networks: &Networks) -> Option<Kinds> {
+        let level = scene
+            .seabed
+            .as_ref()
+            .is_none_or(|bed| bed.slope.is_none() && bed.file.is_none() && bed.grid.is_none());
+        if !level || networks.lines.len() < 2 {
+            return None;
+        }
+        let alone = |lines: &Vec<usize>| Part::of(scene, lines).displaced();
+        let seen: Vec<Part> = networks.lines.iter().map(alone).collect();
+        let first = |network: &Part| seen.iter().position(|other| other == network);
+        let first: Vec<usize> = seen.iter().filter_map(first).collect();
+        let is_first = |&network: &usize| first[network] == network;
+        let kept = (0..first.len()).filter(is_first);
+        let mut lines: Vec<usize> = kept.flat_map(|network| networks.lines[network].clone()).collect();
+        lines.sort_unstable();
+        (lines.len() < scene.lines.len()).then(|| Kinds {
+            first,
+            scene: Part::of(scene, &lines).in_place_of_all(scene),
+            lines,
+        })
+    }
+
+    /// The result for the whole scene, of that for the scene with one network of each kind.
+    pub(super) fn expanded(
+        &self,
+        found: &Discretisation,
+        scene: &Scene,
+        networks: &Networks,
+    ) -> Discretisation {
+        let mesh = |network: usize| {
+            let tried = |mesh: &&Mesh| {
+                let mut lines = mesh.lines.iter().map(|&line| self.lines[line]);
+                lines.any(|line| networks.lines[self.first[network]].contains(&line))
+            };
+            let lines = networks.lines[network].clone();
+            match found.meshes.iter().find(tried) {
+                Some(mesh) => Mesh {
+                    lines,
+                    ..mesh.clone()
+                },
+                None => Mesh::by_rule(lines, scene.solver.tolerance),
+            }
+        };
+        let meshes: Vec<Mesh> = (0..networks.lines.len()).map(mesh).collect();
+        let mut whole = networks.with_elements(scene, &elements_of(&meshes));
+        whole.solver.integrator = found.scene.solver.integrator;
+        whole.solver.time_step_max = found.scene.solver.time_step_max;
+        Discretisation {
+            scene: whole,
+            meshes: networks.open(&meshes).cloned().collect(),
+            duration: found.duration,
+        }
+    }
+}
+
+/// Some of the lines of a scene, with their points and the vessels and motions of these.
+#[derive(PartialEq)]
+struct Part {
+    lines: Vec<Line>,
+    points: Vec<Point>,
+    vessels: Vec<Vessel>,
+    motion: BTreeMap<String, MotionPath>,
+}
+
+impl Part {
+    fn of(scene: &Scene, lines: &[usize]) -> Part {
+        let lines: Vec<Line> = lines.iter().map(|&line| scene.lines[line].clone()).collect();
+        let joined = |point: &&Point| lines.iter().any(|line| line.joins(&point.name));
+        let points: Vec<Point> = scene.points.iter().filter(joined).cloned().collect();
+        let carries = |vessel: &&Vessel| points.iter().any(|point| point.on.as_ref() == Some(&vessel.name));
+        let vessels: Vec<Vessel> = scene.vessels.iter().filter(carries).cloned().collect();
+        let names = points.iter().map(|point| &point.name);
+        let names = names.chain(vessels.iter().map(|vessel| &vessel.name));
+        let motion = names.filter_map(|name| Some((name.clone(), scene.motion.get(name)?.clone())));
+        Part {
+            motion: motion.collect(),
+            lines,
+            points,
+            vessels,
+        }
+    }
+
+    /// The scene with this part alone.
+    fn in_place_of_all(self, scene: &Scene) -> Scene {
+        let mut reduced = scene.clone();
+        reduced.lines = self.lines;
+        reduced.points = self.points;
+        reduced.vessels = self.vessels;
+        reduced.motion = self.motion;
+        reduced.output.channels.clear();
+        reduced
+    }
+
+    /// Gives lines, points and vessels numbers for names, and positions along the seabed from its first vessel or point, in steps of [`SAME_PLACE`].
+    fn displaced(mut self) -> Part {
+        let vessels = self.vessels.iter().map(|vessel| vessel.position);
+        let mut places = vessels.chain(self.points.iter().map(|point| point.position));
+        let origin = places.next().unwrap_or_default();
+        let about =
+            |[x, y, z]: [f64; 3]| [x - origin[0], y - origin[1], z].map(|part| (part / SAME_PLACE).round());
+        let mut numbers = BTreeMap::new();
+        for (i, vessel) in self.vessels.iter_mut().enumerate() {
+            vessel.position = about(vessel.position);
+            number(&mut numbers, &mut vessel.name, format!("vessel {i}"));
+        }
+        for (i, point) in self.points.iter_mut().enumerate() {
+            match &mut point.on {
+                Some(vessel) => *vessel = numbers[vessel].clone(),
+                None => point.position = about(point.position),
+            }
+            number(&mut numbers, &mut point.name, format!("point {i}"));
+        }
+        for (i, line) in self.lines.iter_mut().enumerate() {
+            line.name = format!("line {i}");
+            line.from = numbers[&line.from].clone();
+            line.to = numbers[&line.to].clone();
+        }
+        let motion = self.motion.into_iter();
+        self.motion = motion
+            .map(|(name, path)| (numbers[&name].clone(), path))
+            .collect();
+        self
+    }
+}
+
+/// Renames one of a part's points or vessels.
+fn number(numbers: &mut BTreeMap<String, String>, name: &mut String, number: String) {
+    numbers.insert(std::mem::replace(name, number.clone()), number);
+}
