@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from moorline.errors import Error
 from moorline.results import Mode, Statics, Table
 
-__all__: list[str]
+__all__ = ["Scene", "Simulation", "State", "__version__", "batch", "fmu", "main", "run"]
 __version__: str
 
 @final

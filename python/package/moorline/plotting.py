@@ -12,7 +12,7 @@ from moorline.results import Named, Shapes, Table
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
-    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]
 
 __all__ = ["animate", "plot", "plot3d"]
 
@@ -168,10 +168,17 @@ def _vessel(vessel: dict[str, Any], pose: list[float]) -> Frame:
     return Frame(vessel["name"], origin, about_z @ about_y @ about_x)
 
 
+def _arrow(picture: Picture) -> float:
+    """Length of a vessel's axes in the picture [m]."""
+    return 0.08 * float(np.ptp(np.concatenate([line.position for line in picture.lines]), axis=0).max())
+
+
 def _nodes(pictures: list[Picture]) -> Array:
+    """All places that are drawn [m]."""
     shapes = [line.position for picture in pictures for line in picture.lines]
     origins = [vessel.origin[None] for picture in pictures for vessel in picture.vessels]
-    return np.concatenate(shapes + origins)
+    tips = [vessel.origin + _arrow(picture) * vessel.axes.T for picture in pictures for vessel in picture.vessels]
+    return np.concatenate(shapes + origins + tips)
 
 
 def _limits(pictures: list[Picture]) -> Array:
@@ -202,27 +209,26 @@ def _column(picture: Picture, across: str | None) -> int:
 
 
 def _bed(scene: dict[str, Any], x: Array, y: Array) -> Array | None:
-    """Height of the seabed [m]; bilinear between soundings."""
+    """Height of the seabed [m]; for the picture linear between soundings."""
     bed = scene.get("seabed")
     if bed is None:
         return None
-    if "grid" in bed:
-        grid = {key: np.array(value) for key, value in bed["grid"].items()}
-        inside = [np.clip(of, axis[0], axis[-1]) for of, axis in ((x, grid["x"]), (y, grid["y"]))]
-        depth = grid["depth"].reshape(len(grid["y"]), len(grid["x"]))
-        i, j = (np.clip(np.searchsorted(axis, of) - 1, 0, max(len(axis) - 2, 0)) for of, axis in zip(inside, (grid["x"], grid["y"])))
-        u, v = (_part(axis, k, of) for axis, k, of in ((grid["x"], i, inside[0]), (grid["y"], j, inside[1])))
-        i1, j1 = np.minimum(i + 1, len(grid["x"]) - 1), np.minimum(j + 1, len(grid["y"]) - 1)
-        return -((1 - v) * ((1 - u) * depth[j, i] + u * depth[j, i1]) + v * ((1 - u) * depth[j1, i] + u * depth[j1, i1]))
-    slope = bed.get("slope", [0.0, 0.0])
-    return -bed["depth"] + slope[0] * x + slope[1] * y
+    if "grid" not in bed:
+        along_x, along_y = bed.get("slope", [0.0, 0.0])
+        return np.asarray(-bed["depth"] + along_x * x + along_y * y)
+    depth = np.array(bed["grid"]["depth"])
+    (i, next_i, u), (j, next_j, v) = _between(bed["grid"]["x"], x), _between(bed["grid"]["y"], y)
+    near = (1.0 - u) * depth[j, i] + u * depth[j, next_i]
+    far = (1.0 - u) * depth[next_j, i] + u * depth[next_j, next_i]
+    return np.asarray(-((1.0 - v) * near + v * far))
 
 
-def _part(axis: Array, k: Any, of: Array) -> Array:
-    """Place between two lines of a grid [-]."""
-    if len(axis) == 1:
-        return np.zeros_like(of)
-    return (of - axis[k]) / (axis[k + 1] - axis[k])
+def _between(lines: list[float], places: Array) -> tuple[Any, Any, Array]:
+    """Lines of a grid on both sides of places, and the part of the way between them [-]; the outer lines stand for what is beyond."""
+    last = len(lines) - 1
+    at = np.interp(places, lines, np.arange(last + 1.0))
+    below = np.minimum(at.astype(int), last)
+    return below, np.minimum(below + 1, last), at - below
 
 
 def _side(ax: Any, picture: Picture, column: int, norm: Any, limits: Array | None = None, bar: bool = True) -> None:
@@ -248,7 +254,7 @@ def _side(ax: Any, picture: Picture, column: int, norm: Any, limits: Array | Non
         ax.add_collection(LineCollection(list(pieces), array=means, cmap=COLOURS, norm=norm, linewidths=2.0))
         ends = points[[0, -1]]
         ax.plot(ends[:, 0], ends[:, 1], linestyle="", marker="o", markersize=4, color="0.2")
-    length = 0.08 * (right - left)
+    length = _arrow(picture)
     for vessel in picture.vessels:
         start = vessel.origin[[column, 2]]
         for name, axis in zip(AXES, vessel.axes.T):
@@ -257,22 +263,20 @@ def _side(ax: Any, picture: Picture, column: int, norm: Any, limits: Array | Non
                 ax.plot(*np.column_stack([start, tip]), color=AXES[name], linewidth=1.5)
         ax.annotate(vessel.name, start, xytext=(4, 6), textcoords="offset points", fontsize=9)
     ax.set(xlim=(left, right), ylim=(low, high), xlabel=f"{'xy'[column]} [m]", ylabel="z [m]", title=picture.caption)
-    ax.set_aspect("equal", adjustable="box" if (high - low) > 0.25 * (right - left) else "datalim")
-    if (high - low) <= 0.25 * (right - left):
-        ax.set_aspect("auto")
+    ax.set_aspect("equal" if high - low > 0.25 * (right - left) else "auto")  # shallow water would be a thin strip
     if bar:
         _bar(ax, norm)
 
 
 def _space(ax: Any, picture: Picture, norm: Any, limits: Array | None = None, bar: bool = True) -> None:
-    from mpl_toolkits.mplot3d.art3d import Line3DCollection
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
     limits = _limits([picture]) if limits is None else limits.copy()
     spans = np.ptp(limits, axis=0)
     for axis in (0, 1):  # a mooring in one plane has some breadth too
         widened = max(spans[axis], 0.4 * spans[:2].max())
         limits[:, axis] += np.array([-0.5, 0.5]) * (widened - spans[axis])
-    x, y = np.meshgrid(*(np.linspace(*limits[:, axis], 30) for axis in (0, 1)))
+    x, y = np.meshgrid(*(np.linspace(limits[0, axis], limits[1, axis], 30) for axis in (0, 1)))
     height = _bed(picture.scene, x, y)
     if height is not None:
         limits[0, 2] = min(limits[0, 2], height.min())
@@ -284,7 +288,7 @@ def _space(ax: Any, picture: Picture, norm: Any, limits: Array | None = None, ba
         means = 0.5e-3 * (line.tension[:-1] + line.tension[1:])
         ax.add_collection3d(Line3DCollection(list(pieces), array=means, cmap=COLOURS, norm=norm, linewidths=2.0))
         ax.scatter(*line.position[[0, -1]].T, color="0.2", s=10, depthshade=False)
-    length = 0.12 * np.ptp(limits, axis=0).max()
+    length = _arrow(picture)
     for vessel in picture.vessels:
         for name, axis in zip(AXES, vessel.axes.T):
             ax.plot(*np.column_stack([vessel.origin, vessel.origin + length * axis]), color=AXES[name], linewidth=1.8)
@@ -293,6 +297,7 @@ def _space(ax: Any, picture: Picture, norm: Any, limits: Array | None = None, ba
     aspect = np.ptp(limits, axis=0)
     aspect[2] = max(aspect[2], 0.3 * aspect.max())
     ax.set_box_aspect(aspect)
+    ax.view_init(elev=25.0, azim=-75.0)  # along none of the usual directions of lines
     if bar:
         _bar(ax, norm)
 
