@@ -4,9 +4,10 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
-use moorline::model::{Body, Model};
+use moorline::model::{Body, End, Model};
 use moorline::scene::LoadedScene;
 use moorline::simulation::{self, Simulation as Mooring};
+use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -190,14 +191,14 @@ impl Table {
 
     /// Sets an input; a velocity of `None` is derived.
     fn set(&self, given: &mut Given, variable: &Variable, value: Option<f64>) -> Result<(), Failure> {
-        let refuse = |problem: String| Err(Failure::Input(variable.name.clone(), problem));
-        if let Some(number) = value.filter(|number| !number.is_finite()) {
-            return refuse(format!("{number} is not a finite number"));
+        if let Some(value) = value {
+            check(variable, value)?;
         }
         match (&variable.binding, value) {
             (Binding::Velocity { body, axis }, _) => given.bodies[self.slot(*body)].1[*axis] = value,
             (_, None) => {
-                return refuse("None is no value: only velocities can be left to be derived".to_string());
+                let problem = "None is no value: only velocities can be left to be derived".to_string();
+                return Err(Failure::Input(variable.name.clone(), problem));
             }
             (Binding::Displacement { body, axis }, Some(value)) => {
                 given.bodies[self.slot(*body)].0[*axis] = value
@@ -244,10 +245,48 @@ impl Table {
             return Err(Failure::of_argument("inputs", problem));
         }
         for (&row, &value) in self.inputs.iter().zip(values) {
+            check(self.variable(row), value)?;
+        }
+        for (&row, &value) in self.inputs.iter().zip(values) {
             self.set(given, self.variable(row), Some(value))?;
         }
         Ok(())
     }
+}
+
+/// Refuses an input that is not finite.
+fn check(variable: &Variable, value: f64) -> Result<(), Failure> {
+    match value.is_finite() {
+        true => Ok(()),
+        false => Err(Failure::Input(
+            variable.name.clone(),
+            format!("{value} is not a finite number"),
+        )),
+    }
+}
+
+/// Copies the vectors of nodes into an array of rows, a new one where none is given.
+fn rows<'py>(
+    py: Python<'py>,
+    nodes: &[Vector3<f64>],
+    out: Option<Bound<'py, PyArray2<f64>>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let out = out.unwrap_or_else(|| PyArray2::zeros(py, [nodes.len(), 3], false));
+    let mut writable = out.try_readwrite()?;
+    let mut values = writable.as_array_mut();
+    if values.dim() != (nodes.len(), 3) {
+        let problem = format!(
+            "room for {:?} numbers, but there are {} nodes of 3",
+            values.dim(),
+            nodes.len()
+        );
+        return Err(Failure::of_argument("out", problem).into());
+    }
+    for (value, number) in values.iter_mut().zip(nodes.iter().flat_map(|node| node.iter())) {
+        *value = *number;
+    }
+    drop(writable);
+    Ok(out)
 }
 
 /// The mooring, which finds forces when they are read and so is for one thread at a time.
@@ -483,22 +522,43 @@ impl Simulation {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let mooring = self.mooring.read();
         let nodes = &mooring.state().lines[Self::line(&mooring, line)?].position;
-        let out = out.unwrap_or_else(|| PyArray2::zeros(py, [nodes.len(), 3], false));
-        let mut writable = out.try_readwrite()?;
-        let mut values = writable.as_array_mut();
-        if values.dim() != (nodes.len(), 3) {
-            let problem = format!(
-                "room for {:?} numbers, but there are {} nodes of 3",
-                values.dim(),
-                nodes.len()
-            );
-            return Err(Failure::of_argument("out", problem).into());
-        }
-        for (value, number) in values.iter_mut().zip(nodes.iter().flat_map(|node| node.iter())) {
-            *value = *number;
-        }
-        drop(writable);
-        Ok(out)
+        rows(py, nodes, out)
+    }
+
+    /// Velocities of the nodes of a line from end A to end B [m/s], a row a node; written into `out` where that is given.
+    #[pyo3(signature = (line, out=None))]
+    fn velocities<'py>(
+        &self,
+        py: Python<'py>,
+        line: &str,
+        out: Option<Bound<'py, PyArray2<f64>>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mooring = self.mooring.read();
+        let nodes = &mooring.state().lines[Self::line(&mooring, line)?].velocity;
+        rows(py, nodes, out)
+    }
+
+    /// Position, velocity and force of a point.
+    fn point<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let mooring = self.mooring.read();
+        let points = mooring.model().points.iter().map(|point| point.name.as_str());
+        let point = mooring.model().point_index(name);
+        let point = point.ok_or_else(|| parameters::unknown(name, "point", points))?;
+        let state = &mooring.state().points[point];
+        let vector = |vector: [f64; 3]| PyArray1::from_slice(py, &vector);
+        let (position, velocity) = (vector(state.position.into()), vector(state.velocity.into()));
+        let results = py.import("moorline.results")?;
+        results
+            .getattr("PointState")?
+            .call1((position, velocity, vector(mooring.end_force(point))))
+    }
+
+    /// Forces of a line on its supports at end A and end B [N], a row an end.
+    fn end_forces<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mooring = self.mooring.read();
+        let line = Self::line(&mooring, line)?;
+        let forces = [End::A, End::B].map(|end| mooring.line_end_force(line, end));
+        rows(py, &forces, None)
     }
 
     /// Effective tensions at the nodes of a line [N]; at the ends the size of the force.
@@ -507,6 +567,17 @@ impl Simulation {
         Ok(PyArray1::from_slice(
             py,
             mooring.tensions(Self::line(&mooring, line)?),
+        ))
+    }
+
+    /// Tensions of the segments beside the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn.
+    fn segment_tensions<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mooring = self.mooring.read();
+        let line = Self::line(&mooring, line)?;
+        let nodes = 0..mooring.state().lines[line].position.len();
+        Ok(PyArray1::from_iter(
+            py,
+            nodes.map(|node| mooring.segment_tension(line, node)),
         ))
     }
 

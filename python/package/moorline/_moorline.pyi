@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moorline.errors import Error
-from moorline.results import Mode, Statics, Table
+from moorline.results import Mode, PointState, Statics, Table
 
 __all__ = ["Scene", "Simulation", "State", "__version__", "batch", "fmu", "main", "run"]
 __version__: str
@@ -114,8 +114,16 @@ class Simulation:
         """All outputs in the order of `output_names`; written into `out` where that is given."""
     def positions(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Positions of the nodes of a line from end A to end B [m], a row a node; written into `out` where that is given."""
+    def velocities(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Velocities of the nodes of a line from end A to end B [m/s], a row a node; written into `out` where that is given."""
+    def point(self, name: str) -> PointState:
+        """Position, velocity and force of a point."""
+    def end_forces(self, line: str) -> NDArray[np.float64]:
+        """Forces of a line on its supports at end A and end B [N], a row an end."""
     def tensions(self, line: str) -> NDArray[np.float64]:
         """Effective tensions at the nodes of a line [N]; at the ends the size of the force."""
+    def segment_tensions(self, line: str) -> NDArray[np.float64]:
+        """Tensions of the segments beside the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn."""
     def save(self) -> State:
         """All that changes. A simulation that is restored to it continues to the same bits."""
     def restore(self, state: State) -> None:

@@ -119,6 +119,17 @@ class Point(NamedTuple):
     """Force of all lines on the point [N]."""
 
 
+class PointState(NamedTuple):
+    """A point of a simulation now."""
+
+    position: Array
+    """Position [m]."""
+    velocity: Array
+    """Velocity [m/s]."""
+    force: Array
+    """Force of all lines, and of the mass and volume of the point, on what carries it [N]."""
+
+
 class Hold(NamedTuple):
     """Force and stiffness of the mooring on a vessel."""
 
