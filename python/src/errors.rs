@@ -14,8 +14,8 @@ use pyo3::types::{PyDict, PyList};
 pub(crate) enum Failure {
     /// A scene file cannot be read or has mistakes.
     Load(LoadError),
-    /// A mistake in a scene that has no text: its key path and the problem.
-    Scene(SceneError),
+    /// Mistakes in a scene that has no text, at least one.
+    Scene(Vec<SceneError>),
     /// No static equilibrium.
     Statics(StaticsError),
     /// No natural modes.
@@ -35,7 +35,7 @@ pub(crate) enum Failure {
 impl Failure {
     /// A mistake at a key path of a scene that is no text.
     pub(crate) fn of_key(at: &str, problem: String) -> Failure {
-        Failure::Scene(SceneError::new(at, problem))
+        Failure::Scene(vec![SceneError::new(at, problem)])
     }
 
     /// A wrong argument.
@@ -47,7 +47,7 @@ impl Failure {
     pub(crate) fn of_scene(mistake: SceneError, loaded: &LoadedScene) -> Failure {
         let mistake = loaded.locate(mistake);
         match mistake.span {
-            None => Failure::Scene(mistake),
+            None => Failure::Scene(vec![mistake]),
             Some(_) => Failure::Load(LoadError::Scene {
                 path: loaded.path.clone(),
                 text: loaded.text.clone(),
@@ -77,7 +77,10 @@ impl Failure {
         match self {
             Failure::Load(error) if error.mistakes().len() > 1 => ("SceneError", error.list()),
             Failure::Load(error) => ("SceneError", error.to_string()),
-            Failure::Scene(mistake) => ("SceneError", mistake.to_string()),
+            Failure::Scene(mistakes) => {
+                let mistakes: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+                ("SceneError", mistakes.join("\n"))
+            }
             Failure::Statics(error) => ("StaticsError", error.to_string()),
             Failure::Modes(error) => ("StaticsError", error.to_string()),
             Failure::Step(error) => ("StepError", error.to_string()),
@@ -100,7 +103,7 @@ impl Failure {
                 facts.set_item("place", path)?;
                 facts.set_item("problem", problem)
             }
-            Failure::Scene(mistake) => tell_mistakes(std::slice::from_ref(mistake), None, facts),
+            Failure::Scene(mistakes) => tell_mistakes(mistakes, None, facts),
             Failure::Statics(error) => tell_statics(error, facts),
             Failure::Modes(error) => facts.set_item("problem", error.to_string()),
             Failure::Step(error) => tell_step(error, facts),

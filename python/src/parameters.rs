@@ -59,9 +59,10 @@ pub(crate) fn with_values(loaded: &LoadedScene, values: &[(String, f64)]) -> Res
 
 /// Refuses a scene that was changed into a wrong one.
 pub(crate) fn check(scene: Scene) -> Result<Scene, Failure> {
-    match scene.mistakes().into_iter().next() {
-        Some(mistake) => Err(Failure::Scene(mistake)),
-        None => Ok(scene),
+    let mistakes = scene.mistakes();
+    match mistakes.is_empty() {
+        true => Ok(scene),
+        false => Err(Failure::Scene(mistakes)),
     }
 }
 

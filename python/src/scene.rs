@@ -1,5 +1,6 @@
 //! Scenes: reading, changing, statics, modes, FMUs.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -7,7 +8,7 @@ use moorline::discretisation;
 use moorline::output::fmi::FmiVersion;
 use moorline::output::package::write_fmu;
 use moorline::output::{check_file, collect, modes};
-use moorline::scene::{Integrator, LoadedScene, Note, load_text};
+use moorline::scene::{Integrator, LoadError, LoadedScene, Note, load_text};
 use moorline::simulation::Simulation;
 use moorline_decks::{Supplement, load_with};
 use numpy::PyReadonlyArray1;
@@ -131,7 +132,7 @@ impl Scene {
         path: PathBuf,
         depth: Option<f64>,
         vessel: Option<String>,
-        positions: Option<std::collections::BTreeMap<String, [f64; 3]>>,
+        positions: Option<BTreeMap<String, [f64; 3]>>,
     ) -> PyResult<Scene> {
         let supplement = Supplement {
             depth,
@@ -207,7 +208,7 @@ impl Scene {
 
     /// Parameters and their values, by the names of the FMU.
     #[getter]
-    fn parameters(&self) -> PyResult<std::collections::BTreeMap<String, f64>> {
+    fn parameters(&self) -> PyResult<BTreeMap<String, f64>> {
         Ok(parameters::values(&self.loaded)?.into_iter().collect())
     }
 
@@ -297,10 +298,9 @@ impl Scene {
 /// Mistakes in a dict have a key path; lines of the text that was made of it mean nothing.
 fn without_lines(failure: Failure) -> Failure {
     match failure {
-        Failure::Load(moorline::scene::LoadError::Scene { mistakes, .. }) if !mistakes.is_empty() => {
-            let mut first = mistakes[0].clone();
-            first.span = None;
-            Failure::Scene(first)
+        Failure::Load(LoadError::Scene { mut mistakes, .. }) => {
+            mistakes.iter_mut().for_each(|mistake| mistake.span = None);
+            Failure::Scene(mistakes)
         }
         other => other,
     }

@@ -217,8 +217,11 @@ impl Table {
         }
         if let Ok(dict) = inputs.cast::<PyDict>() {
             for (name, value) in dict {
-                let variable = self.input(&name.extract::<String>()?)?;
-                self.set(given, variable, value.extract()?)?;
+                let name = name.to_string();
+                let number = value.extract::<Option<f64>>();
+                let number =
+                    number.map_err(|_| Failure::of_argument(&name, format!("{value} is no number")))?;
+                self.set(given, self.input(&name)?, number)?;
             }
             return Ok(());
         }
@@ -440,12 +443,12 @@ impl Simulation {
                 Failure::of_argument("h", format!("a step of {h} s is not finite and not negative")).into(),
             );
         }
-        if inputs.is_none() || inputs.is_exact_instance_of::<PyArray1<f64>>() {
-            self.table.set_all(&mut self.given, inputs)?;
-        } else {
+        if inputs.is_instance_of::<PyDict>() {
             let mut given = self.given.clone(); // a wrong name leaves all inputs as they were
             self.table.set_all(&mut given, inputs)?;
             self.given = given;
+        } else {
+            self.table.set_all(&mut self.given, inputs)?;
         }
         let Simulation { given, mooring, .. } = self;
         let mooring = mooring.change();

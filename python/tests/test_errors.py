@@ -40,6 +40,11 @@ def test_a_mistake_in_a_dict_has_its_key_path():
     with pytest.raises(moorline.SceneError, match="leave the key out") as caught:
         moorline.Scene.from_dict(scene)
     assert caught.value.place == "points[0].position[1]"
+    scene["points"][0]["position"] = [405.0, 0.0, -120.0]
+    scene["seabed"]["depth"], scene["line_types"]["chain"]["mass"] = -120.0, -126.0
+    with pytest.raises(moorline.SceneError) as caught:
+        moorline.Scene.from_dict(scene)
+    assert [place for place, *_ in caught.value.mistakes] == ["seabed.depth", "line_types.chain.mass"]
     for wrong in ({1: 2}, {"title": object()}, {"gravity": 2**70}):
         with pytest.raises(moorline.SceneError):
             moorline.Scene.from_dict(wrong)
@@ -84,10 +89,15 @@ def test_a_step_that_fails_has_time_place_and_advice_and_leaves_the_simulation(c
     ({"fairlead.x": math.nan}, "not a finite number"),
     ({"fairlead.x": None}, "only velocities"),
     ([1.0, 2.0], "3 inputs: fairlead.x"),
+    (np.array([1.0, 0.0, math.inf]), "not a finite number"),
+    ({"fairlead.x": 1.0, "fairlead.y": math.nan}, "not a finite number"),
     ("fairlead.x", "must be a dict"),
+    ({"fairlead.x": "far"}, "far is no number"),
+    ({1: 1.0}, "no such input"),
 ])
 def test_wrong_inputs_are_refused_by_name_and_change_nothing(chain, inputs, words):
     simulation = moorline.Simulation(chain)
+    simulation.advance({"fairlead.y": 0.1}, 0.05)
     state = simulation.save().to_bytes()
     with pytest.raises(moorline.InputError, match=words) as caught:
         simulation.advance(inputs, 0.05)

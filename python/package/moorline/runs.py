@@ -42,7 +42,7 @@ class Case(NamedTuple):
         return scene.with_motion(self.motion, duration=self.duration, interval=self.interval)
 
 
-def run(scene: Source, motion: Any = None, *, duration: float | None = None, interval: float | None = None,
+def run(scene: Source, motion: Any = None, duration: float | None = None, interval: float | None = None, *,
         columns: Sequence[str] | None = None, shapes: float | None = None, progress: Progress = False) -> Table:
     """Runs a scene in time and returns its columns: the rows of `moorline run`, to the last bit.
 
