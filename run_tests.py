@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""Runs all tests of moorline: those in Rust, those that drive its FMUs from Python, and the check of its C interface.
+"""Runs all tests of moorline: those in Rust, those of the Python package, those that drive its FMUs from Python, and the check of its C
+interface.
 
 Which tests run where:
 
     cargo test                                 the fast suite, at most two minutes of processor time after building: all tests of the
                                                packages but those marked slow, which it counts as ignored
     cargo test --features moorline/slow-tests  all of them: `cfg_attr(not(feature = "slow-tests"), ignore = "slow")` marks a slow test
-    run_tests.py                               all of them in the optimised build, fmu/conformance/run.sh and python_tests
+    run_tests.py                               all of them in the optimised build, fmu/conformance/run.sh, python_tests, and python/tests
+                                               on the wheel of python/build.py
     cargo test -- --ignored NAME               by hand only: tests that write tests/reference/*.csv anew, long surveys (ten thousand
                                                random scenes or lines, each with a shorter suite beside it) and those that show one scene
 
 Needs a Rust toolchain and Python 3.11 or newer. Builds what it tests; Python packages go into .venv, in the versions that
-python_tests/requirements.txt names. Arguments are passed on to pytest, such as -k or -x; the Rust tests run all the same.
+python_tests/requirements.txt and python/requirements.txt name. Arguments are passed on to pytest, such as -k or -x; the Rust tests run all
+the same.
 """
 
 import hashlib
@@ -20,18 +23,19 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 import time
 import venv
 
 ROOT = pathlib.Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
-REQUIREMENTS = ROOT / "python_tests" / "requirements.txt"
+REQUIREMENTS = [ROOT / "python_tests" / "requirements.txt", ROOT / "python" / "requirements.txt"]
 CONFORMANCE = ROOT / "fmu" / "conformance" / "run.sh"
 PYTHON_MIN = (3, 11)
 # Does not change the program: it is built with the feature so that the library is built once.
 SLOW_TESTS = "--features", "moorline/slow-tests,moorline-accuracy/slow-tests,moorline-fmu/slow-tests"
-# Needs libclang from .venv: has a script of its own.
-LEFT_OUT = "--exclude", "moorline-conformance"
+# The first needs libclang from .venv and has a script of its own; the second is a module of Python, tested as its wheel.
+LEFT_OUT = "--exclude", "moorline-conformance", "--exclude", "moorline-python"
 
 
 class Failure(Exception):
@@ -54,10 +58,11 @@ def must(*command, **environment):
 
 
 def python():
-    """The interpreter of .venv, with exactly the pinned packages; made anew when the list or Python has changed."""
+    """The interpreter of .venv, with exactly the pinned packages; made anew when a list or Python has changed."""
     scripts = VENV / ("Scripts" if os.name == "nt" else "bin")
     interpreter = scripts / ("python.exe" if os.name == "nt" else "python")
-    wanted = hashlib.sha256(REQUIREMENTS.read_bytes() + sys.version.encode()).hexdigest()
+    lists = b"".join(requirements.read_bytes() for requirements in REQUIREMENTS)
+    wanted = hashlib.sha256(lists + sys.version.encode()).hexdigest()
     stamp = VENV / "requirements.sha256"
     if not stamp.is_file() or stamp.read_text() != wanted:
         print(f"making {VENV}", flush=True)
@@ -66,7 +71,8 @@ def python():
         except subprocess.CalledProcessError:
             raise Failure("Python's venv and ensurepip are missing; on Debian: apt install python3-venv") from None
         quiet = ["--quiet", "--disable-pip-version-check"]
-        must(interpreter, "-m", "pip", "install", *quiet, "--no-deps", "--requirement", REQUIREMENTS)
+        required = [word for requirements in REQUIREMENTS for word in ("--requirement", requirements)]
+        must(interpreter, "-m", "pip", "install", *quiet, "--no-deps", *required)
         must(interpreter, "-m", "pip", "check", "--disable-pip-version-check")
         stamp.write_text(wanted)
     return interpreter
@@ -79,6 +85,18 @@ def release_folder():
     if done.returncode != 0:
         raise Failure("cargo metadata failed")
     return pathlib.Path(json.loads(done.stdout)["target_directory"]) / "release"
+
+
+def test_wheel(interpreter, arguments):
+    """Builds the wheel of the Python package, installs it into .venv and runs its tests; says whether they passed."""
+    with tempfile.TemporaryDirectory() as folder:
+        if not run(interpreter, ROOT / "python" / "build.py", "-o", folder):
+            return False
+        (wheel,) = pathlib.Path(folder).glob("*.whl")
+        quiet = ["--quiet", "--disable-pip-version-check"]
+        if not run(interpreter, "-m", "pip", "install", *quiet, "--no-deps", "--no-index", "--force-reinstall", wheel):
+            return False
+    return run(interpreter, "-m", "pytest", "python/tests", *arguments)
 
 
 def run_all(arguments):
@@ -96,6 +114,8 @@ def run_all(arguments):
             failed.append("fmu/conformance/run.sh")
     if not run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program)):
         failed.append("pytest")
+    if not test_wheel(interpreter, arguments):
+        failed.append("pytest of the Python package")
     return failed
 
 

@@ -28,7 +28,7 @@ const LAYERS: [&str; 11] = [
 
 /// Packages of the workspace, each with those it may use: the library uses none; the program and the code of an FMU
 /// are on top.
-const PACKAGES: [(&str, &[&str]); 7] = [
+const PACKAGES: [(&str, &[&str]); 8] = [
     (".", &[]),
     ("accuracy", &["moorline"]),
     (
@@ -45,6 +45,7 @@ const PACKAGES: [(&str, &[&str]); 7] = [
     ("fmu", &["moorline", "moorline-host"]),
     ("fmu/conformance", &["moorline-host"]),
     ("fmu/host", &["moorline"]),
+    ("python", &["moorline", "moorline-cli", "moorline-decks"]),
 ];
 
 /// A word, sign, literal or bracket, and its line.
@@ -396,7 +397,7 @@ fn only_the_fmu_is_unsafe() {
 
 #[test]
 fn only_the_command_line_prints() {
-    let libraries = ["src", "accuracy/src", "decks/src", "fmu/src"];
+    let libraries = ["src", "accuracy/src", "decks/src", "fmu/src", "python/src"];
     assert_kept("the library does not print", |source| {
         let printing = ["print", "println", "eprint", "eprintln", "dbg"];
         let calls = printing.iter().flat_map(|name| source.calls(name));

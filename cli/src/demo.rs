@@ -15,10 +15,11 @@ use moorline::scene::{Scene, load_text};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
+use crate::Library;
 use crate::failure::Failure;
 use crate::fmu::package;
 use crate::folder::Folder;
-use crate::run::{columns, input_of, recorded};
+use crate::recorder::{columns, input_of, recorded};
 use crate::summary::run_summary;
 use crate::terminal::{Progress, discretise, print, simulate};
 
@@ -26,12 +27,12 @@ use crate::terminal::{Progress, discretise, print, simulate};
 const SCENE: &str = include_str!("../../scenes/demo.toml");
 
 /// Packages the built-in scene, drives the FMU, shows and writes the results.
-pub(crate) fn demo(folder: &Path) -> Result<(), Failure> {
+pub(crate) fn demo(folder: &Path, library: Library<'_>) -> Result<(), Failure> {
     let mut loaded = load_text(Path::new("demo.toml"), SCENE.to_string())?;
     discretise(&mut loaded, discretisation::select);
     let _open = Folder::open(folder)?;
     let target = folder.join("demo.fmu");
-    package(&loaded, &target, FmiVersion::Two)?;
+    package(&loaded, &target, FmiVersion::Two, library)?;
     let reference = simulate(&loaded)?;
     let record = drive(&target, &loaded.scene, &reference, folder)?;
     write_report(&record, &loaded.scene, folder)?;

@@ -1,7 +1,6 @@
 //! Failures of commands: the message and the exit code.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
-use std::process::ExitCode;
 
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use moorline::dynamics::StepError;
@@ -76,10 +75,10 @@ impl Failure {
     }
 
     /// Reports the failure on standard error, and returns the exit code. A closed pipe is no failure of the reader.
-    pub(crate) fn tell(self) -> ExitCode {
+    pub(crate) fn tell(self) -> u8 {
         let (code, text) = match self {
             Failure::Print(error) if error.kind() == ErrorKind::BrokenPipe => {
-                return ExitCode::SUCCESS;
+                return 0;
             }
             Failure::Scene(error) => (INPUT, rendered(&error)),
             Failure::Argument(text) => (INPUT, format!("error: {text}\n")),
@@ -92,7 +91,7 @@ impl Failure {
         };
         // A message that cannot be written changes nothing.
         let _ = io::stderr().write_all(text.as_bytes());
-        ExitCode::from(code)
+        code
     }
 }
 

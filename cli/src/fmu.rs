@@ -5,17 +5,18 @@ use std::path::Path;
 use moorline::discretisation;
 use moorline::output::check_file;
 use moorline::output::fmi::FmiVersion;
-use moorline::output::package::{find_library, write_fmu};
+use moorline::output::package::write_fmu;
 use moorline::scene::LoadedScene;
 use moorline::simulation::Watch;
 
+use crate::Library;
 use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::folder::{Folder, check_apart};
 use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
-pub(crate) fn fmu(input: &Input, target: &Path, version: &str) -> Result<(), Failure> {
+pub(crate) fn fmu(input: &Input, target: &Path, version: &str, library: Library<'_>) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     check_file(target)?;
     check_apart(&input.scene, target)?;
@@ -28,13 +29,19 @@ pub(crate) fn fmu(input: &Input, target: &Path, version: &str) -> Result<(), Fai
         "3" => FmiVersion::Three,
         _ => FmiVersion::Two,
     };
-    package(&loaded, target, version)?;
+    package(&loaded, target, version, library)?;
     print(&format!("written to {}\n", target.display()))
 }
 
 /// Writes the FMU of a scene; its name appears when the file is whole.
-pub(crate) fn package(loaded: &LoadedScene, target: &Path, version: FmiVersion) -> Result<(), Failure> {
+pub(crate) fn package(
+    loaded: &LoadedScene,
+    target: &Path,
+    version: FmiVersion,
+    library: Library<'_>,
+) -> Result<(), Failure> {
+    let library = library.find();
     let written =
-        find_library().and_then(|library| write_fmu(&loaded.scene, &loaded.text, version, &library, target));
+        library.and_then(|library| write_fmu(&loaded.scene, &loaded.text, version, &library, target));
     written.map_err(|error| Failure::of_package(error, loaded))
 }

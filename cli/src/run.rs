@@ -4,20 +4,18 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use moorline::discretisation;
-use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
-use moorline::model::{Body, Model, Moving};
-use moorline::output::channels::Channels;
 use moorline::output::files::RunFiles;
-use moorline::output::record::{Column, ELEVATION, Form, Record};
+use moorline::output::record::Record;
 use moorline::output::state::{self, RunState};
 use moorline::output::times::Times;
 use moorline::output::{collect, write_report};
-use moorline::scene::{Drive, LoadedScene, MotionPath, Reconstruction, Scene, SceneError};
+use moorline::scene::{Drive, LoadedScene, MotionPath, Reconstruction, Scene};
 use moorline::simulation::{Simulation, Watch};
 
 use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::folder::{Folder, Listener};
+use crate::recorder::{Recorder, check_finite};
 use crate::summary::run_summary;
 use crate::terminal::{Progress, discretise, print, read_scene, remark, remark_all, simulate};
 
@@ -350,7 +348,7 @@ impl<'r> Run<'r> {
         let now = self.times.at(index);
         let row = self.recorder.row(simulation, now);
         if index > 0 {
-            check_finite(record.columns(), row)?;
+            check_finite(record.columns(), row).map_err(Failure::Computation)?;
         }
         let shape = |time| collect::frame(simulation, time);
         self.files.add(record, index, row, shape)?;
@@ -372,115 +370,6 @@ impl<'r> Run<'r> {
             course: self.record.course.clone(),
         };
         Ok(state.write(self.folder)?)
-    }
-}
-
-/// Refuses a row with a value that is not finite.
-fn check_finite(columns: &[Column], row: &[f64]) -> Result<(), Failure> {
-    let time = row[0];
-    let lost = columns.iter().zip(row).find(|(_, value)| !value.is_finite());
-    lost.map_or(Ok(()), |(column, value)| {
-        Err(Failure::Computation(format!(
-            "at t = {time} s, {}: {value} {} is no result; try a smaller solver.time_step_max, and look at the motion",
-            column.name, column.unit
-        )))
-    })
-}
-
-/// Columns of the results: time, variables of the interface, then channels.
-struct Recorder {
-    variables: Vec<Variable>,
-    channels: Channels,
-    row: Vec<f64>,
-}
-
-impl Recorder {
-    fn new(scene: &Scene, model: &Model) -> Result<Recorder, SceneError> {
-        let interface = Interface::new(scene, model, Layout::Scalars)?;
-        Ok(Recorder {
-            variables: recorded(&interface).cloned().collect(),
-            channels: Channels::new(scene, model)?,
-            row: Vec::new(),
-        })
-    }
-
-    /// Columns behind the time.
-    fn columns(&self, model: &Model) -> Vec<Column> {
-        let mut all = columns(&self.variables);
-        let elevation = "elevation of the surface at x = y = 0";
-        let waves = model.waves.as_ref();
-        all.extend(waves.map(|_| Column::new(ELEVATION, "m", elevation, Form::Real)));
-        all.extend(self.channels.columns());
-        all
-    }
-
-    /// The time [s] and the values then, each in its column's unit.
-    fn row(&mut self, simulation: &Simulation, time: f64) -> &[f64] {
-        let (row, model) = (&mut self.row, simulation.model());
-        row.clear();
-        row.push(time);
-        let moving = model.moving(time);
-        for variable in &self.variables {
-            row.push(match input_of(variable, model, &moving, time) {
-                Some(input) => input,
-                None => output_of(variable, simulation),
-            });
-        }
-        let waves = model.waves.as_ref();
-        row.extend(waves.map(|waves| waves.elevation(0.0, 0.0, time)));
-        row.extend(self.channels.values(simulation));
-        row
-    }
-}
-
-/// Inputs and outputs, without profiles: these have a file of their own.
-pub(crate) fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
-    interface.variables().iter().filter(|variable| {
-        matches!(variable.causality, Causality::Input | Causality::Output)
-            && !matches!(variable.binding, Binding::Profile { .. })
-    })
-}
-
-/// Columns of these variables.
-pub(crate) fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Column> {
-    let form = |variable: &Variable| match variable.kind {
-        Kind::Float64 => Form::Real,
-        Kind::Int32 | Kind::Boolean => Form::Whole,
-    };
-    let column = |variable: &Variable| {
-        Column::new(
-            &variable.name,
-            variable.unit.name,
-            variable.description.clone(),
-            form(variable),
-        )
-    };
-    variables.into_iter().map(column).collect()
-}
-
-/// An output now, in its unit.
-fn output_of(variable: &Variable, simulation: &Simulation) -> f64 {
-    let mut value = [f64::NAN];
-    // An output that cannot be computed is no number; the table marks it so.
-    let _ = Interface::read(variable, simulation, &mut value);
-    value[0]
-}
-
-/// An input by the scene's motion at `time` [s], where it has `moving` bodies, in its unit; `None` of an output.
-pub(crate) fn input_of(variable: &Variable, model: &Model, moving: &[Moving], time: f64) -> Option<f64> {
-    let of = |body: Body, part: fn(&Moving) -> [f64; 6], axis: usize| {
-        let found = moving.iter().find(|moving| moving.body == body);
-        Some(found.map_or(0.0, |moving| part(moving)[axis]))
-    };
-    match variable.binding {
-        Binding::Displacement { body, axis } => of(body, |moving| moving.pose, axis),
-        Binding::Velocity { body, axis } => of(body, |moving| moving.velocity, axis),
-        Binding::LengthChange { line } => {
-            let winch = model.lines[line].winch.as_ref();
-            let path = winch.and_then(|winch| winch.path.as_ref());
-            Some(path.map_or(0.0, |path| path.at(time)))
-        }
-        _ => None,
     }
 }
 

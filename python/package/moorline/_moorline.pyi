@@ -1,0 +1,148 @@
+"""The extension module: doors to the library, which computes."""
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, Self, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moorline.errors import Error
+from moorline.results import Mode, PointState, Statics, Table
+
+__all__ = ["Scene", "Simulation", "State", "__version__", "batch", "fmu", "main", "run"]
+__version__: str
+
+@final
+class Scene:
+    """A mooring as the user described it. A scene does not change: methods return other scenes."""
+
+    @staticmethod
+    def load(path: str | os.PathLike[str], *, depth: float | None = None, vessel: str | None = None,
+             positions: dict[str, tuple[float, float, float]] | None = None) -> Scene:
+        """Reads a scene, or a deck of MoorDyn or MAP++. For a deck: depth of the water [m]; name of the one vessel that its coupled points
+        ride on; reference positions of vessels by name [m]."""
+    @staticmethod
+    def from_toml(text: str, *, folder: str | os.PathLike[str] | None = None) -> Scene:
+        """Reads a scene from TOML. The files that it names stand relative to the folder."""
+    @staticmethod
+    def from_dict(scene: dict[str, Any], *, folder: str | os.PathLike[str] | None = None) -> Scene:
+        """Reads a scene from a dict with the keys of the scene format. Arrays and numbers of numpy are lists and numbers."""
+    def to_toml(self) -> str:
+        """The scene as TOML that needs no other file and is read back to the same numbers, bit for bit."""
+    def to_dict(self) -> dict[str, Any]:
+        """The scene as a dict, with the keys of `to_toml`."""
+    @property
+    def title(self) -> str:
+        """Title."""
+    @property
+    def lines(self) -> list[str]:
+        """Names of the lines."""
+    @property
+    def points(self) -> list[str]:
+        """Names of the points."""
+    @property
+    def vessels(self) -> list[str]:
+        """Names of the vessels."""
+    @property
+    def notes(self) -> list[str]:
+        """Remarks on a scene that can be used as it is."""
+    def in_words(self) -> str:
+        """What the scene models and what it does not, in sentences."""
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameters and their values, by the names of the FMU."""
+    def with_parameters(self, values: dict[str, float]) -> Scene:
+        """The scene with other values of some parameters, such as `chain.drag_normal`."""
+    def with_motion(self, motion: Any = None, *, duration: float | None = None, interval: float | None = None) -> Scene:
+        """The scene with the motion of columns, which lasts as long as they do; with another duration [s] or interval of rows [s]."""
+    def discretised(self) -> Scene:
+        """The scene with elements, integrator and step. Where they are left open, trials of about a second select them."""
+    def statics(self) -> Statics:
+        """Static equilibrium at rest, without waves."""
+    def modes(self, count: int = 10) -> list[Mode]:
+        """The lowest natural modes about the static equilibrium."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, tuple[str]]: ...
+
+@final
+class State:
+    """All that changes in a simulation."""
+
+    def to_bytes(self) -> bytes:
+        """The state as bytes, which this version of moorline reads."""
+    @staticmethod
+    def from_bytes(data: bytes) -> State:
+        """Reads the bytes of `to_bytes`."""
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
+
+@final
+class Simulation:
+    """A mooring that a host steps in time.
+
+    It starts in static equilibrium at the inputs of the start. Inputs are those at the present time; the path of a fairlead is continued
+    smoothly from them over the next step.
+    """
+
+    def __new__(cls, scene: Scene, *, inputs: dict[str, float | None] | Sequence[float] | NDArray[np.float64] | None = None,
+                start_time: float = 0.0, velocities: bool = False) -> Self:
+        """Solves the static equilibrium. With `velocities`, arrays of inputs hold velocities too; otherwise these are derived."""
+    @property
+    def scene(self) -> Scene:
+        """The scene, with its discretisation."""
+    @property
+    def time(self) -> float:
+        """Time [s]."""
+    @property
+    def input_names(self) -> list[str]:
+        """Names of the inputs in the order of an array."""
+    @property
+    def output_names(self) -> list[str]:
+        """Names of the outputs in the order of an array."""
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every input, output and parameter."""
+    @property
+    def warning(self) -> str | None:
+        """Warning on inputs whose extrapolation costs more than the tolerance."""
+    def advance(self, inputs: dict[str, float | None] | Sequence[float] | NDArray[np.float64] | None, h: float) -> None:
+        """Sets inputs, by names or as an array in the order of `input_names`, and steps from the present time to `h` [s] later. An input that
+        is not named keeps its value; a velocity of None is derived from the displacements."""
+    def __getitem__(self, name: str, /) -> Any:
+        """An input, output or parameter by name."""
+    def outputs(self, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """All outputs in the order of `output_names`; written into `out` where that is given."""
+    def positions(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Positions of the nodes of a line from end A to end B [m], a row a node; written into `out` where that is given."""
+    def velocities(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Velocities of the nodes of a line from end A to end B [m/s], a row a node; written into `out` where that is given."""
+    def point(self, name: str) -> PointState:
+        """Position, velocity and force of a point."""
+    def end_forces(self, line: str) -> NDArray[np.float64]:
+        """Forces of a line on its supports at end A and end B [N], a row an end."""
+    def tensions(self, line: str) -> NDArray[np.float64]:
+        """Effective tensions at the nodes of a line [N]; at the ends the size of the force."""
+    def segment_tensions(self, line: str) -> NDArray[np.float64]:
+        """Tensions of the segments beside the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn."""
+    def save(self) -> State:
+        """All that changes. A simulation that is restored to it continues to the same bits."""
+    def restore(self, state: State) -> None:
+        """Goes back to a saved state, of this or another simulation of the same scene."""
+    def copy(self) -> Simulation:
+        """A second simulation in the same state."""
+    def __copy__(self) -> Simulation: ...
+    def __deepcopy__(self, _memo: Any) -> Simulation: ...
+
+def fmu(scene: Scene, path: str | os.PathLike[str], fmi: int = 2) -> None:
+    """Packages a scene as an FMU of FMI 2.0 or 3.0."""
+
+def run(scene: Scene, *, columns: Sequence[str] | None = None, shapes: float | None = None,
+        progress: Callable[[int, int], object] | None = None) -> Table:
+    """Runs a scene with its motion: see `moorline.run`."""
+
+def batch(scenes: Sequence[Scene], *, columns: Sequence[str] | None = None, shapes: float | None = None, threads: int | None = None,
+          progress: Callable[[int, int], object] | None = None) -> list[Table | Error]:
+    """Runs scenes on several threads: see `moorline.batch`."""
+
+def main(arguments: Sequence[str | os.PathLike[str]]) -> int:
+    """Runs the program `moorline` with its arguments, of which the first is its name, and returns the exit code."""

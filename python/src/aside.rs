@@ -1,0 +1,93 @@
+//! Work on another thread, while the thread of Python reports progress and listens for Ctrl-C.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+/// Time between two looks for a signal.
+const LISTEN_EVERY: Duration = Duration::from_millis(50);
+
+/// What the two threads share.
+#[derive(Debug, Default)]
+pub(crate) struct Control {
+    stops: AtomicBool,
+    done: AtomicUsize,
+    total: AtomicUsize,
+}
+
+impl Control {
+    /// Returns true once the work is to end, its result being of no use.
+    pub(crate) fn stops(&self) -> bool {
+        self.stops.load(Ordering::Relaxed)
+    }
+
+    /// Adds steps that are to be made.
+    pub(crate) fn expect(&self, steps: usize) {
+        self.total.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    /// One more step is made.
+    pub(crate) fn step(&self) {
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Steps made, and those known to be made in all [-].
+    fn steps(&self) -> (usize, usize) {
+        (
+            self.done.load(Ordering::Relaxed),
+            self.total.load(Ordering::Relaxed),
+        )
+    }
+}
+
+/// Does `work` on another thread, without the lock of the interpreter, and returns its result. `progress` is called with the numbers of steps
+/// made and to be made.
+///
+/// # Errors
+/// An exception of a signal, such as `KeyboardInterrupt`, or of `progress`. The work then ends at its next look at the [`Control`], and is not
+/// waited for.
+pub(crate) fn aside<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Control) -> T + Send + 'static,
+) -> PyResult<T> {
+    let control = Arc::new(Control::default());
+    let (sender, receiver) = channel();
+    let worker = thread::Builder::new().name("moorline".to_string()).spawn({
+        let control = control.clone();
+        // the receiver is gone where the work was given up
+        move || drop(sender.send(work(&control)))
+    })?;
+    let mut receiver = receiver;
+    loop {
+        let (got, back) = py.detach(move || (receiver.recv_timeout(LISTEN_EVERY), receiver));
+        receiver = back;
+        let listened = py.check_signals().and_then(|()| match progress {
+            Some(progress) => progress.call1(control.steps()).map(drop),
+            None => Ok(()),
+        });
+        if let Err(exception) = listened {
+            control.stops.store(true, Ordering::Relaxed);
+            return Err(exception);
+        }
+        match got {
+            Ok(result) => return Ok(result),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                let reason = worker.join().err().map(|panic| {
+                    let text = panic.downcast_ref::<String>().cloned();
+                    text.or_else(|| panic.downcast_ref::<&str>().map(ToString::to_string))
+                });
+                let reason = reason.flatten().unwrap_or_default();
+                return Err(PyRuntimeError::new_err(format!(
+                    "an error in moorline itself: {reason}"
+                )));
+            }
+        }
+    }
+}

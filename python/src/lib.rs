@@ -1,0 +1,62 @@
+//! The extension module `moorline._moorline`: doors from Python to the library. Nothing is computed here.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`scene`] | scenes and decks, statics, modes, FMUs |
+//! | [`simulation`] | a simulation that Python steps, and its saved state |
+//! | [`runs`] | runs of a scene's own motion, one or many |
+//! | [`motion`], [`parameters`] | columns of a motion, values of parameters |
+//! | [`aside`] | work on another thread while this one listens for Ctrl-C |
+//! | [`convert`] | values of Python from and to those of TOML and JSON |
+//! | [`errors`] | errors as exceptions |
+//!
+//! The classes and functions that users import are described in `package/moorline/_moorline.pyi`.
+#![forbid(unsafe_code)]
+
+mod aside;
+mod convert;
+mod errors;
+mod motion;
+mod parameters;
+mod runs;
+mod scene;
+mod simulation;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use moorline::output::fmi::library_name;
+use moorline_cli::Library;
+use pyo3::prelude::*;
+
+/// Place of the FMU library: in the folder of the package.
+fn fmu_library(py: Python<'_>) -> PyResult<PathBuf> {
+    let package: PathBuf = py.import("moorline")?.getattr("__file__")?.extract()?;
+    let name = format!("{}{}", std::env::consts::DLL_PREFIX, library_name("moorline_fmu"));
+    Ok(package.with_file_name(name))
+}
+
+/// Runs the program `moorline` with its arguments, of which the first is its name, and returns the exit code.
+#[pyfunction]
+fn main(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
+    let library = fmu_library(py)?;
+    Ok(py.detach(|| moorline_cli::main(arguments, Library::At(&library))))
+}
+
+/// The extension module.
+#[pymodule]
+mod _moorline {
+    #[pymodule_export]
+    use super::main;
+    #[pymodule_export]
+    use super::runs::{batch, run};
+    #[pymodule_export]
+    use super::scene::{Scene, fmu};
+    #[pymodule_export]
+    use super::simulation::{Simulation, State};
+
+    /// Version of the package.
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "a name of Python")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,335 @@
+//! Scenes: reading, changing, statics, modes, FMUs.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use moorline::discretisation;
+use moorline::output::fmi::FmiVersion;
+use moorline::output::package::write_fmu;
+use moorline::output::{check_file, collect, modes};
+use moorline::scene::{Integrator, LoadError, LoadedScene, Note, load_text};
+use moorline::simulation::Simulation;
+use moorline_decks::{Supplement, load_with};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::aside::aside;
+use crate::convert;
+use crate::errors::Failure;
+use crate::{fmu_library, motion, parameters};
+
+/// Name of a text in messages.
+const TEXT: &str = "<text>";
+
+/// A mooring as the user described it. A scene does not change: methods return other scenes.
+#[pyclass(frozen, module = "moorline")]
+#[derive(Clone, Debug)]
+pub(crate) struct Scene {
+    pub(crate) loaded: Arc<LoadedScene>,
+    /// The same with its discretisation, once it has been selected.
+    discretised: Arc<OnceLock<Arc<LoadedScene>>>,
+}
+
+impl From<LoadedScene> for Scene {
+    fn from(loaded: LoadedScene) -> Scene {
+        Scene {
+            loaded: Arc::new(loaded),
+            discretised: Arc::default(),
+        }
+    }
+}
+
+impl Scene {
+    /// Reads a text whose files stand relative to a folder.
+    fn of_text(text: String, folder: Option<PathBuf>) -> Result<Scene, Failure> {
+        let path = folder.unwrap_or_default().join(TEXT);
+        Ok(load_text(&path, text)?.into())
+    }
+
+    /// A scene that has its discretisation.
+    pub(crate) fn of_discretised(loaded: Arc<LoadedScene>) -> Scene {
+        Scene {
+            loaded: loaded.clone(),
+            discretised: Arc::new(OnceLock::from(loaded)),
+        }
+    }
+
+    /// The same description with other content, which is no longer that of the text.
+    fn with(&self, scene: moorline::scene::Scene) -> Scene {
+        let changed = LoadedScene {
+            scene,
+            ..(*self.loaded).clone()
+        };
+        changed.into()
+    }
+
+    /// The scene with elements, integrator and step, selected on first use.
+    pub(crate) fn discretise(&self) -> Arc<LoadedScene> {
+        let select = || match discretisation::select(&self.loaded.scene) {
+            None => self.loaded.clone(),
+            Some(found) => {
+                let notes = found.shortfalls().into_iter();
+                let notes = notes.map(|text| self.loaded.locate_note(Note::new("solver.tolerance", text)));
+                Arc::new(LoadedScene {
+                    notes: self.loaded.notes.iter().cloned().chain(notes).collect(),
+                    scene: found.scene,
+                    ..(*self.loaded).clone()
+                })
+            }
+        };
+        self.discretised.get_or_init(select).clone()
+    }
+
+    /// The scene at rest: an equilibrium is that of the sea without waves.
+    fn at_rest(&self, elements: bool) -> Result<(LoadedScene, Simulation), Failure> {
+        let mut loaded = (*self.loaded).clone();
+        let scene = &mut loaded.scene;
+        if let Some(water) = &mut scene.water {
+            water.waves = None;
+        }
+        if elements && scene.solver.integrator == Integrator::QuasiStatic {
+            scene.solver.integrator = Integrator::Leapfrog;
+        }
+        let found = discretisation::at_rest(&loaded.scene);
+        let (found, simulation) = found.map_err(|error| Failure::of_simulation(error, &loaded))?;
+        if let Some(found) = found {
+            loaded.scene = found.scene;
+        }
+        Ok((loaded, simulation))
+    }
+}
+
+/// Calls a function of `moorline.results` with JSON.
+fn result<'py>(py: Python<'py>, function: &str, value: &serde_json::Value) -> PyResult<Bound<'py, PyAny>> {
+    let module = py.import("moorline.results")?;
+    module.getattr(function)?.call1((convert::json(py, value)?,))
+}
+
+/// Columns of a DataFrame or a dict of arrays, by `moorline.motion`.
+fn columns(motion: &Bound<'_, PyAny>) -> PyResult<Vec<(String, Vec<f64>)>> {
+    let columns = motion
+        .py()
+        .import("moorline.motion")?
+        .getattr("columns")?
+        .call1((motion,))?;
+    let columns = columns.cast_into::<PyDict>()?;
+    let columns = columns.iter().map(|(name, values)| {
+        let values: PyReadonlyArray1<'_, f64> = values.extract()?;
+        Ok((name.extract()?, values.as_slice()?.to_vec()))
+    });
+    columns.collect()
+}
+
+#[pymethods]
+impl Scene {
+    /// Reads a scene, or a deck of MoorDyn or MAP++. For a deck: depth of the water [m]; name of the one vessel that its coupled
+    /// points ride on; reference positions of vessels by name [m].
+    #[staticmethod]
+    #[pyo3(signature = (path, *, depth=None, vessel=None, positions=None))]
+    fn load(
+        path: PathBuf,
+        depth: Option<f64>,
+        vessel: Option<String>,
+        positions: Option<BTreeMap<String, [f64; 3]>>,
+    ) -> PyResult<Scene> {
+        let supplement = Supplement {
+            depth,
+            vessel,
+            positions: positions.unwrap_or_default(),
+        };
+        Ok(load_with(&path, &supplement).map_err(Failure::Load)?.into())
+    }
+
+    /// Reads a scene from TOML. The files that it names stand relative to the folder.
+    #[staticmethod]
+    #[pyo3(signature = (text, *, folder=None))]
+    fn from_toml(text: String, folder: Option<PathBuf>) -> PyResult<Scene> {
+        Ok(Scene::of_text(text, folder)?)
+    }
+
+    /// Reads a scene from a dict with the keys of the scene format. Arrays and numbers of numpy are lists and numbers.
+    #[staticmethod]
+    #[pyo3(signature = (scene, *, folder=None))]
+    fn from_dict(scene: &Bound<'_, PyDict>, folder: Option<PathBuf>) -> PyResult<Scene> {
+        let table = convert::table(scene, "")?;
+        let text = toml::to_string(&table).map_err(|error| Failure::of_key("", error.to_string()))?;
+        Ok(Scene::of_text(text, folder).map_err(without_lines)?)
+    }
+
+    /// The scene as TOML that needs no other file and is read back to the same numbers, bit for bit.
+    fn to_toml(&self) -> String {
+        self.loaded.scene.to_toml()
+    }
+
+    /// The scene as a dict, with the keys of `to_toml`.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("tomllib")?.getattr("loads")?.call1((self.to_toml(),))
+    }
+
+    /// Title.
+    #[getter]
+    fn title(&self) -> &str {
+        &self.loaded.scene.title
+    }
+
+    /// Names of the lines.
+    #[getter]
+    fn lines(&self) -> Vec<&str> {
+        let lines = self.loaded.scene.lines.iter();
+        lines.map(|line| line.name.as_str()).collect()
+    }
+
+    /// Names of the points.
+    #[getter]
+    fn points(&self) -> Vec<&str> {
+        let points = self.loaded.scene.points.iter();
+        points.map(|point| point.name.as_str()).collect()
+    }
+
+    /// Names of the vessels.
+    #[getter]
+    fn vessels(&self) -> Vec<&str> {
+        let vessels = self.loaded.scene.vessels.iter();
+        vessels.map(|vessel| vessel.name.as_str()).collect()
+    }
+
+    /// Remarks on a scene that can be used as it is.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.loaded.notes.iter().map(ToString::to_string).collect()
+    }
+
+    /// What the scene models and what it does not, in sentences.
+    fn in_words(&self) -> String {
+        self.loaded.scene.in_words()
+    }
+
+    /// Parameters and their values, by the names of the FMU.
+    #[getter]
+    fn parameters(&self) -> PyResult<BTreeMap<String, f64>> {
+        Ok(parameters::values(&self.loaded)?.into_iter().collect())
+    }
+
+    /// The scene with other values of some parameters, such as `chain.drag_normal`.
+    fn with_parameters(&self, values: &Bound<'_, PyDict>) -> PyResult<Scene> {
+        let values = values
+            .iter()
+            .map(|(name, value)| Ok((name.extract()?, value.extract()?)));
+        let values: Vec<(String, f64)> = values.collect::<PyResult<_>>()?;
+        Ok(self.with(parameters::with_values(&self.loaded, &values)?))
+    }
+
+    /// The scene with the motion of columns, which lasts as long as they do; with another duration [s] or interval of rows [s].
+    #[pyo3(signature = (motion=None, *, duration=None, interval=None))]
+    fn with_motion(
+        &self,
+        motion: Option<&Bound<'_, PyAny>>,
+        duration: Option<f64>,
+        interval: Option<f64>,
+    ) -> PyResult<Scene> {
+        let mut scene = self.loaded.scene.clone();
+        scene.output.interval = interval.unwrap_or(scene.output.interval);
+        let scene = match motion {
+            Some(motion) => motion::with_columns(scene, &columns(motion)?, duration)?,
+            None => {
+                scene.output.duration = duration.unwrap_or(scene.output.duration);
+                parameters::check(scene)?
+            }
+        };
+        Ok(self.with(scene))
+    }
+
+    /// The scene with elements, integrator and step. Where they are left open, trials of about a second select them.
+    fn discretised(&self, py: Python<'_>) -> PyResult<Scene> {
+        let scene = self.clone();
+        let loaded = aside(py, None, move |_| scene.discretise())?;
+        Ok(Scene::of_discretised(loaded))
+    }
+
+    /// Static equilibrium at rest, without waves.
+    fn statics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let scene = self.clone();
+        let solved = aside(py, None, move |_| {
+            let (loaded, simulation) = scene.at_rest(false)?;
+            let statics = collect::statics(&loaded.scene, &simulation);
+            Ok::<_, Failure>(serde_json::to_value(statics).expect("statics are numbers and names"))
+        });
+        result(py, "statics", &solved??)
+    }
+
+    /// The lowest natural modes about the static equilibrium.
+    #[pyo3(signature = (count=10))]
+    fn modes<'py>(&self, py: Python<'py>, count: usize) -> PyResult<Bound<'py, PyAny>> {
+        let scene = self.clone();
+        let solved = aside(py, None, move |_| {
+            let (loaded, simulation) = scene.at_rest(true)?;
+            let found = modes::natural_modes(&loaded.scene.title, &simulation, count);
+            let found = found.map_err(Failure::Modes)?;
+            Ok::<_, Failure>(serde_json::to_value(found).expect("modes are numbers and names"))
+        });
+        result(py, "modes", &solved??)
+    }
+
+    fn __eq__(&self, other: &Scene) -> bool {
+        self.loaded.scene == other.loaded.scene
+    }
+
+    fn __repr__(&self) -> String {
+        let count = |number: usize, one: &str| match number {
+            1 => format!("1 {one}"),
+            _ => format!("{number} {one}s"),
+        };
+        let scene = &self.loaded.scene;
+        let lines = count(scene.lines.len(), "line");
+        let points = count(scene.points.len(), "point");
+        let vessels = count(scene.vessels.len(), "vessel");
+        format!("<moorline.Scene {:?}: {lines}, {points}, {vessels}>", scene.title)
+    }
+
+    /// For pickle: the scene as TOML that needs no other file.
+    fn __reduce__(slf: &Bound<'_, Scene>) -> PyResult<(Py<PyAny>, (String,))> {
+        let read = slf.get_type().getattr("from_toml")?;
+        Ok((read.unbind(), (slf.get().to_toml(),)))
+    }
+}
+
+/// Mistakes in a dict have a key path; lines of the text that was made of it mean nothing.
+fn without_lines(failure: Failure) -> Failure {
+    match failure {
+        Failure::Load(LoadError::Scene { mut mistakes, .. }) => {
+            mistakes.iter_mut().for_each(|mistake| mistake.span = None);
+            Failure::Scene(mistakes)
+        }
+        other => other,
+    }
+}
+
+/// Packages a scene as an FMU of FMI 2.0 or 3.0.
+#[pyfunction]
+#[pyo3(signature = (scene, path, fmi=2))]
+pub(crate) fn fmu(py: Python<'_>, scene: &Scene, path: PathBuf, fmi: u8) -> PyResult<()> {
+    let version = match fmi {
+        2 => FmiVersion::Two,
+        3 => FmiVersion::Three,
+        other => {
+            let problem = format!("{other} is no version of FMI that moorline has: 2 or 3");
+            return Err(Failure::of_argument("fmi", problem).into());
+        }
+    };
+    let library = fmu_library(py)?;
+    let scene = scene.clone();
+    let packed = aside(py, None, move |_| package(&scene, &path, version, &library));
+    Ok(packed??)
+}
+
+fn package(scene: &Scene, target: &Path, version: FmiVersion, library: &Path) -> Result<(), Failure> {
+    let name = target.display().to_string();
+    check_file(target).map_err(|error| Failure::Output(name.clone(), error.to_string()))?;
+    let loaded = scene.discretise();
+    // A scene without an equilibrium would make an FMU that no host can start.
+    Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?;
+    let written = write_fmu(&loaded.scene, &loaded.text, version, library, target);
+    written.map_err(|error| Failure::of_package(error, &loaded, name))
+}

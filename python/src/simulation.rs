@@ -1,0 +1,634 @@
+//! A simulation that Python steps, and its saved state.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
+use moorline::model::{Body, End, Model};
+use moorline::scene::LoadedScene;
+use moorline::simulation::{self, Simulation as Mooring};
+use nalgebra::Vector3;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::aside::aside;
+use crate::errors::Failure;
+use crate::parameters;
+use crate::scene::Scene;
+
+/// Inputs of a host as last given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Given {
+    /// Displacement and velocity of every point and then every vessel [m, rad, m/s, rad/s]; velocities that are not given are derived.
+    bodies: Vec<([f64; 6], [Option<f64>; 6])>,
+    /// Release command of each line.
+    releases: Vec<bool>,
+    /// Length changes of the winches, by line [m].
+    length_changes: Vec<f64>,
+}
+
+impl Given {
+    fn new(model: &Model) -> Given {
+        Given {
+            bodies: vec![([0.0; 6], [None; 6]); model.bodies().count()],
+            releases: vec![false; model.lines.len()],
+            length_changes: vec![0.0; model.lines.len()],
+        }
+    }
+
+    fn hand_over(&self, mooring: &mut Mooring) {
+        for (index, (pose, velocity)) in self.bodies.iter().enumerate() {
+            let body = mooring.model().body(index);
+            mooring.set_body(body, *pose, *velocity);
+        }
+        for (line, &release) in self.releases.iter().enumerate() {
+            mooring.set_release(line, release);
+        }
+        for (line, &change) in self.length_changes.iter().enumerate() {
+            mooring.set_length_change(line, change);
+        }
+    }
+}
+
+/// Time [s] and inputs at which the statics were solved: choices that are made there, such as step limits, are not part of a snapshot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Start {
+    time: f64,
+    given: Given,
+}
+
+/// Static equilibrium at a start, always from the same first guess.
+fn begin(loaded: &LoadedScene, start: &Start) -> Result<Mooring, Failure> {
+    let fail = |error: simulation::Error| Failure::of_simulation(error, loaded);
+    let mut mooring = Mooring::new(&loaded.scene).map_err(fail)?;
+    start.given.hand_over(&mut mooring);
+    mooring.restart(start.time).map_err(fail)?;
+    Ok(mooring)
+}
+
+const MARK: &[u8] = concat!("moorline python 1 ", env!("CARGO_PKG_VERSION"), "\n").as_bytes();
+/// Bytes of a check sum.
+const SUM: usize = 32;
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Saved {
+    /// SHA-256 of the scene.
+    scene: [u8; SUM],
+    start: Start,
+    given: Given,
+    snapshot: simulation::Snapshot,
+}
+
+/// All that changes in a simulation.
+#[pyclass(frozen, module = "moorline")]
+#[derive(Debug, Clone)]
+pub(crate) struct State(Arc<Saved>);
+
+#[pymethods]
+impl State {
+    /// The state as bytes, which this version of moorline reads.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        let body = postcard::to_stdvec(&*self.0).expect("every state can be written");
+        PyBytes::new(py, &[MARK, Sha256::digest(&body).as_slice(), &body].concat())
+    }
+
+    /// Reads the bytes of `to_bytes`.
+    #[staticmethod]
+    fn from_bytes(data: &[u8]) -> PyResult<State> {
+        let refuse = |problem: &str| Failure::of_argument("data", problem);
+        let rest = data.strip_prefix(MARK);
+        let rest = rest.ok_or_else(|| refuse("no state that this version of moorline has saved"))?;
+        let damaged = || refuse("the saved state is cut short or changed");
+        let (sum, body) = rest.split_at_checked(SUM).ok_or_else(damaged)?;
+        if sum != Sha256::digest(body).as_slice() {
+            return Err(damaged().into());
+        }
+        let saved = postcard::from_bytes(body).map_err(|_| damaged())?;
+        Ok(State(Arc::new(saved)))
+    }
+
+    /// For pickle.
+    fn __reduce__<'py>(slf: &Bound<'py, State>) -> PyResult<(Py<PyAny>, (Bound<'py, PyBytes>,))> {
+        let read = slf.get_type().getattr("from_bytes")?;
+        Ok((read.unbind(), (slf.get().to_bytes(slf.py()),)))
+    }
+}
+
+/// What does not change in a simulation.
+#[derive(Debug)]
+struct Table {
+    loaded: Arc<LoadedScene>,
+    interface: Interface,
+    rows: HashMap<String, usize>,
+    /// Rows of the inputs in the order of an array.
+    inputs: Vec<usize>,
+    /// Rows of the outputs in the order of an array.
+    outputs: Vec<usize>,
+    /// SHA-256 of the scene.
+    sum: [u8; SUM],
+}
+
+impl Table {
+    fn new(loaded: Arc<LoadedScene>, model: &Model, velocities: bool) -> Result<Table, Failure> {
+        let interface = Interface::new(&loaded.scene, model, Layout::Scalars);
+        let interface = interface.map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
+        let rows = |wanted: &dyn Fn(&Variable) -> bool| {
+            let rows = interface.variables().iter().enumerate();
+            rows.filter(|(_, variable)| wanted(variable))
+                .map(|(row, _)| row)
+                .collect::<Vec<_>>()
+        };
+        let is_input = |variable: &Variable| {
+            let is_velocity = matches!(variable.binding, Binding::Velocity { .. });
+            variable.causality == Causality::Input && (velocities || !is_velocity)
+        };
+        let names = interface.variables().iter().enumerate();
+        Ok(Table {
+            sum: Sha256::digest(loaded.scene.to_toml()).into(),
+            rows: names
+                .map(|(row, variable)| (variable.name.clone(), row))
+                .collect(),
+            inputs: rows(&is_input),
+            outputs: rows(&|variable| variable.causality == Causality::Output),
+            interface,
+            loaded,
+        })
+    }
+
+    fn variable(&self, row: usize) -> &Variable {
+        &self.interface.variables()[row]
+    }
+
+    fn names(&self, rows: &[usize]) -> Vec<&str> {
+        rows.iter().map(|&row| self.variable(row).name.as_str()).collect()
+    }
+
+    /// The input of a name.
+    fn input(&self, name: &str) -> Result<&Variable, Failure> {
+        let variable = self.rows.get(name).map(|&row| self.variable(row));
+        let is_input = |variable: &&Variable| variable.causality == Causality::Input;
+        variable.filter(is_input).ok_or_else(|| match variable {
+            Some(_) => Failure::of_argument(
+                name,
+                "no input: outputs follow from a step, and parameters belong to the scene",
+            ),
+            None => {
+                let inputs = self.interface.variables().iter().filter(is_input);
+                parameters::unknown(name, "input", inputs.map(|variable| variable.name.as_str()))
+            }
+        })
+    }
+
+    fn slot(&self, body: Body) -> usize {
+        match body {
+            Body::Point(point) => point,
+            Body::Vessel(vessel) => self.loaded.scene.points.len() + vessel,
+        }
+    }
+
+    /// Sets an input; a velocity of `None` is derived.
+    fn set(&self, given: &mut Given, variable: &Variable, value: Option<f64>) -> Result<(), Failure> {
+        if let Some(value) = value {
+            check(variable, value)?;
+        }
+        match (&variable.binding, value) {
+            (Binding::Velocity { body, axis }, _) => given.bodies[self.slot(*body)].1[*axis] = value,
+            (_, None) => {
+                let problem = "None is no value: only velocities can be left to be derived".to_string();
+                return Err(Failure::Input(variable.name.clone(), problem));
+            }
+            (Binding::Displacement { body, axis }, Some(value)) => {
+                given.bodies[self.slot(*body)].0[*axis] = value
+            }
+            (Binding::Release { line }, Some(value)) => given.releases[*line] = value != 0.0,
+            (Binding::LengthChange { line }, Some(value)) => given.length_changes[*line] = value,
+            _ => unreachable!("inputs have no other binding"),
+        }
+        Ok(())
+    }
+
+    /// Sets the inputs of Python: nothing, an array in the order of the inputs, or a dict.
+    fn set_all(&self, given: &mut Given, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
+        if inputs.is_none() {
+            return Ok(());
+        }
+        if let Ok(dict) = inputs.cast::<PyDict>() {
+            for (name, value) in dict {
+                let name = name.to_string();
+                let number = value.extract::<Option<f64>>();
+                let number =
+                    number.map_err(|_| Failure::of_argument(&name, format!("{value} is no number")))?;
+                self.set(given, self.input(&name)?, number)?;
+            }
+            return Ok(());
+        }
+        if let Ok(array) = inputs.extract::<PyReadonlyArray1<'_, f64>>() {
+            if let Ok(values) = array.as_slice() {
+                return Ok(self.set_array(given, values)?);
+            }
+            return Ok(self.set_array(given, &array.as_array().to_vec())?);
+        }
+        let wanted = "must be a dict by names, or numbers in the order of `input_names`";
+        let values = inputs.extract::<Vec<f64>>();
+        let values = values.map_err(|_| Failure::of_argument("inputs", wanted))?;
+        Ok(self.set_array(given, &values)?)
+    }
+
+    fn set_array(&self, given: &mut Given, values: &[f64]) -> Result<(), Failure> {
+        if values.len() != self.inputs.len() {
+            let problem = format!(
+                "{} numbers, but the simulation has {} inputs: {}",
+                values.len(),
+                self.inputs.len(),
+                self.names(&self.inputs).join(", ")
+            );
+            return Err(Failure::of_argument("inputs", problem));
+        }
+        for (&row, &value) in self.inputs.iter().zip(values) {
+            check(self.variable(row), value)?;
+        }
+        for (&row, &value) in self.inputs.iter().zip(values) {
+            self.set(given, self.variable(row), Some(value))?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses an input that is not finite.
+fn check(variable: &Variable, value: f64) -> Result<(), Failure> {
+    match value.is_finite() {
+        true => Ok(()),
+        false => Err(Failure::Input(
+            variable.name.clone(),
+            format!("{value} is not a finite number"),
+        )),
+    }
+}
+
+/// Copies the vectors of nodes into an array of rows, a new one where none is given.
+fn rows<'py>(
+    py: Python<'py>,
+    nodes: &[Vector3<f64>],
+    out: Option<Bound<'py, PyArray2<f64>>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let out = out.unwrap_or_else(|| PyArray2::zeros(py, [nodes.len(), 3], false));
+    let mut writable = out.try_readwrite()?;
+    let mut values = writable.as_array_mut();
+    if values.dim() != (nodes.len(), 3) {
+        let problem = format!(
+            "room for {:?} numbers, but there are {} nodes of 3",
+            values.dim(),
+            nodes.len()
+        );
+        return Err(Failure::of_argument("out", problem).into());
+    }
+    for (value, number) in values.iter_mut().zip(nodes.iter().flat_map(|node| node.iter())) {
+        *value = *number;
+    }
+    drop(writable);
+    Ok(out)
+}
+
+/// The mooring, which finds forces when they are read and so is for one thread at a time.
+#[derive(Debug)]
+struct Held(Mutex<Mooring>);
+
+impl Held {
+    fn new(mooring: Mooring) -> Held {
+        Held(Mutex::new(mooring))
+    }
+
+    fn read(&self) -> MutexGuard<'_, Mooring> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn change(&mut self) -> &mut Mooring {
+        self.0.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Clone for Held {
+    fn clone(&self) -> Held {
+        Held::new(self.read().clone())
+    }
+}
+
+/// A mooring that a host steps in time.
+///
+/// It starts in static equilibrium at the inputs of the start. Inputs are those at the present time; the path of a fairlead is
+/// continued smoothly from them over the next step.
+#[pyclass(module = "moorline")]
+#[derive(Debug, Clone)]
+pub(crate) struct Simulation {
+    table: Arc<Table>,
+    start: Arc<Start>,
+    given: Given,
+    mooring: Held,
+}
+
+impl Simulation {
+    /// Value of a scalar output now.
+    fn output(&self, mooring: &Mooring, row: usize) -> Result<f64, Failure> {
+        let variable = self.table.variable(row);
+        let mut value = [f64::NAN];
+        let read = Interface::read(variable, mooring, &mut value);
+        read.map_err(|problem| Failure::Input(variable.name.clone(), problem))?;
+        if value[0].is_finite() {
+            return Ok(value[0]);
+        }
+        let (name, time) = (&variable.name, mooring.time());
+        let problem = format!(
+            "{name}: {} at t = {time} s is no result; look at the inputs and the start time, or try a smaller solver.time_step_max",
+            value[0]
+        );
+        Err(Failure::Result(name.clone(), problem))
+    }
+
+    fn line(mooring: &Mooring, name: &str) -> Result<usize, Failure> {
+        let model = mooring.model();
+        let lines = model.lines.iter().map(|line| line.name.as_str());
+        model
+            .line_index(name)
+            .ok_or_else(|| parameters::unknown(name, "line", lines))
+    }
+}
+
+#[pymethods]
+impl Simulation {
+    /// Solves the static equilibrium. With `velocities`, arrays of inputs hold velocities too; otherwise these are derived.
+    #[new]
+    #[pyo3(signature = (scene, *, inputs=None, start_time=0.0, velocities=false))]
+    fn new(
+        py: Python<'_>,
+        scene: &Scene,
+        inputs: Option<&Bound<'_, PyAny>>,
+        start_time: f64,
+        velocities: bool,
+    ) -> PyResult<Simulation> {
+        if !start_time.is_finite() {
+            let problem = format!("{start_time} s is not a finite number");
+            return Err(Failure::of_argument("start_time", problem).into());
+        }
+        let scene = scene.clone();
+        let made = aside(py, None, move |_| {
+            let loaded = scene.discretise();
+            let model = Model::new(&loaded.scene).map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
+            Ok::<_, Failure>((Given::new(&model), Table::new(loaded, &model, velocities)?))
+        });
+        let (mut given, table) = made??;
+        if let Some(inputs) = inputs {
+            table.set_all(&mut given, inputs)?;
+        }
+        let start = Arc::new(Start {
+            time: start_time,
+            given: given.clone(),
+        });
+        let (loaded, begun) = (table.loaded.clone(), start.clone());
+        let mooring = aside(py, None, move |_| begin(&loaded, &begun))??;
+        Ok(Simulation {
+            table: Arc::new(table),
+            start,
+            given,
+            mooring: Held::new(mooring),
+        })
+    }
+
+    /// The scene, with its discretisation.
+    #[getter]
+    fn scene(&self) -> Scene {
+        Scene::of_discretised(self.table.loaded.clone())
+    }
+
+    /// Time [s].
+    #[getter]
+    fn time(&self) -> f64 {
+        self.mooring.read().time()
+    }
+
+    /// Names of the inputs in the order of an array.
+    #[getter]
+    fn input_names(&self) -> Vec<&str> {
+        self.table.names(&self.table.inputs)
+    }
+
+    /// Names of the outputs in the order of an array.
+    #[getter]
+    fn output_names(&self) -> Vec<&str> {
+        self.table.names(&self.table.outputs)
+    }
+
+    /// Unit of every input, output and parameter.
+    #[getter]
+    fn units(&self) -> HashMap<&str, &str> {
+        let variables = self.table.interface.variables().iter();
+        variables
+            .map(|variable| (variable.name.as_str(), variable.unit.name))
+            .collect()
+    }
+
+    /// Warning on inputs whose extrapolation costs more than the tolerance.
+    #[getter]
+    fn warning(&self) -> Option<String> {
+        self.mooring.read().input_warning()
+    }
+
+    /// Sets inputs, by names or as an array in the order of `input_names`, and steps from the present time to `h` [s] later. An input
+    /// that is not named keeps its value; a velocity of None is derived from the displacements.
+    fn advance(&mut self, py: Python<'_>, inputs: &Bound<'_, PyAny>, h: f64) -> PyResult<()> {
+        if !(h.is_finite() && h >= 0.0) {
+            return Err(
+                Failure::of_argument("h", format!("a step of {h} s is not finite and not negative")).into(),
+            );
+        }
+        if inputs.is_instance_of::<PyDict>() {
+            let mut given = self.given.clone(); // a wrong name leaves all inputs as they were
+            self.table.set_all(&mut given, inputs)?;
+            self.given = given;
+        } else {
+            self.table.set_all(&mut self.given, inputs)?;
+        }
+        let Simulation { given, mooring, .. } = self;
+        let mooring = mooring.change();
+        let advanced = py.detach(|| {
+            given.hand_over(mooring);
+            mooring.advance(h)
+        });
+        Ok(advanced.map_err(Failure::Step)?)
+    }
+
+    /// An input, output or parameter by name.
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let Some(&row) = self.table.rows.get(name) else {
+            let names = self.table.interface.variables().iter();
+            return Err(
+                parameters::unknown(name, "variable", names.map(|variable| variable.name.as_str())).into(),
+            );
+        };
+        let variable = self.table.variable(row);
+        let value = match &variable.binding {
+            Binding::Displacement { body, axis } => self.given.bodies[self.table.slot(*body)].0[*axis],
+            Binding::Velocity { body, axis } => {
+                return Ok(self.given.bodies[self.table.slot(*body)].1[*axis].into_pyobject(py)?);
+            }
+            Binding::Release { line } => f64::from(u8::from(self.given.releases[*line])),
+            Binding::LengthChange { line } => self.given.length_changes[*line],
+            Binding::Parameter(parameter) => {
+                let value = parameter.value(&self.table.loaded.scene);
+                value.expect("the table has only parameters of the scene")
+            }
+            _ => self.output(&self.mooring.read(), row)?,
+        };
+        Ok(match variable.kind {
+            Kind::Float64 => value.into_pyobject(py)?.into_any(),
+            Kind::Int32 => (value as i64).into_pyobject(py)?.into_any(),
+            Kind::Boolean => (value != 0.0).into_pyobject(py)?.to_owned().into_any(),
+        })
+    }
+
+    /// All outputs in the order of `output_names`; written into `out` where that is given.
+    #[pyo3(signature = (out=None))]
+    fn outputs<'py>(
+        &self,
+        py: Python<'py>,
+        out: Option<Bound<'py, PyArray1<f64>>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let rows = &self.table.outputs;
+        let out = out.unwrap_or_else(|| PyArray1::zeros(py, rows.len(), false));
+        let mut writable = out.try_readwrite()?;
+        let mut values = writable.as_array_mut();
+        if values.len() != rows.len() {
+            let problem = format!(
+                "room for {} numbers, but there are {} outputs",
+                values.len(),
+                rows.len()
+            );
+            return Err(Failure::of_argument("out", problem).into());
+        }
+        let mooring = self.mooring.read();
+        for (value, &row) in values.iter_mut().zip(rows) {
+            *value = self.output(&mooring, row)?;
+        }
+        drop(writable);
+        Ok(out)
+    }
+
+    /// Positions of the nodes of a line from end A to end B [m], a row a node; written into `out` where that is given.
+    #[pyo3(signature = (line, out=None))]
+    fn positions<'py>(
+        &self,
+        py: Python<'py>,
+        line: &str,
+        out: Option<Bound<'py, PyArray2<f64>>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mooring = self.mooring.read();
+        let nodes = &mooring.state().lines[Self::line(&mooring, line)?].position;
+        rows(py, nodes, out)
+    }
+
+    /// Velocities of the nodes of a line from end A to end B [m/s], a row a node; written into `out` where that is given.
+    #[pyo3(signature = (line, out=None))]
+    fn velocities<'py>(
+        &self,
+        py: Python<'py>,
+        line: &str,
+        out: Option<Bound<'py, PyArray2<f64>>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mooring = self.mooring.read();
+        let nodes = &mooring.state().lines[Self::line(&mooring, line)?].velocity;
+        rows(py, nodes, out)
+    }
+
+    /// Position, velocity and force of a point.
+    fn point<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let mooring = self.mooring.read();
+        let points = mooring.model().points.iter().map(|point| point.name.as_str());
+        let point = mooring.model().point_index(name);
+        let point = point.ok_or_else(|| parameters::unknown(name, "point", points))?;
+        let state = &mooring.state().points[point];
+        let vector = |vector: [f64; 3]| PyArray1::from_slice(py, &vector);
+        let (position, velocity) = (vector(state.position.into()), vector(state.velocity.into()));
+        let results = py.import("moorline.results")?;
+        results
+            .getattr("PointState")?
+            .call1((position, velocity, vector(mooring.end_force(point))))
+    }
+
+    /// Forces of a line on its supports at end A and end B [N], a row an end.
+    fn end_forces<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mooring = self.mooring.read();
+        let line = Self::line(&mooring, line)?;
+        let forces = [End::A, End::B].map(|end| mooring.line_end_force(line, end));
+        rows(py, &forces, None)
+    }
+
+    /// Effective tensions at the nodes of a line [N]; at the ends the size of the force.
+    fn tensions<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mooring = self.mooring.read();
+        Ok(PyArray1::from_slice(
+            py,
+            mooring.tensions(Self::line(&mooring, line)?),
+        ))
+    }
+
+    /// Tensions of the segments beside the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn.
+    fn segment_tensions<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mooring = self.mooring.read();
+        let line = Self::line(&mooring, line)?;
+        let nodes = 0..mooring.state().lines[line].position.len();
+        Ok(PyArray1::from_iter(
+            py,
+            nodes.map(|node| mooring.segment_tension(line, node)),
+        ))
+    }
+
+    /// All that changes. A simulation that is restored to it continues to the same bits.
+    fn save(&self) -> State {
+        State(Arc::new(Saved {
+            scene: self.table.sum,
+            start: (*self.start).clone(),
+            given: self.given.clone(),
+            snapshot: self.mooring.read().snapshot().clone(),
+        }))
+    }
+
+    /// Goes back to a saved state, of this or another simulation of the same scene.
+    fn restore(&mut self, py: Python<'_>, state: &State) -> PyResult<()> {
+        let saved = state.0.clone();
+        if saved.scene != self.table.sum {
+            let problem = "it was saved by a simulation of another scene, or of other parameters";
+            return Err(Failure::of_argument("state", problem).into());
+        }
+        if *self.start != saved.start {
+            let (loaded, start) = (self.table.loaded.clone(), saved.start.clone());
+            self.mooring = Held::new(aside(py, None, move |_| begin(&loaded, &start))??);
+            self.start = Arc::new(saved.start.clone());
+        }
+        self.mooring.change().restore(saved.snapshot.clone());
+        self.given.clone_from(&saved.given);
+        Ok(())
+    }
+
+    /// A second simulation in the same state.
+    fn copy(&self) -> Simulation {
+        self.clone()
+    }
+
+    fn __copy__(&self) -> Simulation {
+        self.clone()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Simulation {
+        self.clone()
+    }
+
+    fn __repr__(&self) -> String {
+        let title = &self.table.loaded.scene.title;
+        format!(
+            "<moorline.Simulation {title:?} at t = {} s>",
+            self.mooring.read().time()
+        )
+    }
+}

@@ -1,0 +1,119 @@
+"""A simulation that Python steps: inputs, outputs, saved states."""
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import moorline
+
+
+def steps(simulation, count, start=0):
+    """Steps on a motion and returns all outputs of every step."""
+    rows = []
+    for k in range(start, start + count):
+        t = 0.05 * k
+        simulation.advance({"fairlead.x": 2.0 * math.sin(0.5 * t), "fairlead.z": math.sin(0.7 * t)}, 0.05)
+        rows.append(simulation.outputs())
+    return np.array(rows)
+
+
+def test_inputs_by_name_and_as_an_array_give_the_same_bits(chain):
+    named, listed = moorline.Simulation(chain), moorline.Simulation(chain)
+    assert listed.input_names == ["fairlead.x", "fairlead.y", "fairlead.z"]
+    values = np.zeros(3)
+    for k in range(50):
+        t = 0.05 * k
+        values[:] = 2.0 * math.sin(0.5 * t), 0.0, math.sin(0.7 * t)
+        listed.advance(values, 0.05)
+        named.advance({"fairlead.x": values[0], "fairlead.z": values[2]}, 0.05)
+    assert np.array_equal(named.outputs(), listed.outputs())
+    assert named.time == listed.time == pytest.approx(2.5)
+
+
+def test_outputs_by_name_are_those_of_the_array(chain):
+    simulation = moorline.Simulation(chain)
+    simulation.advance({"fairlead.x": 0.1}, 0.05)
+    values = simulation.outputs()
+    assert [simulation[name] for name in simulation.output_names] == values.tolist()
+    assert simulation["fairlead.x"] == 0.1 and simulation["chain.drag_normal"] == 1.3
+    assert isinstance(simulation["solver.substeps"], int)
+    assert simulation.units["line1.tension_b"] == "N" and simulation.units["fairlead.x"] == "m"
+
+
+def test_outputs_and_positions_are_written_into_arrays_of_the_caller(chain):
+    simulation = moorline.Simulation(chain)
+    outputs, nodes = np.empty(len(simulation.output_names)), np.empty((21, 3))
+    assert simulation.outputs(outputs) is outputs and simulation.positions("line1", nodes) is nodes
+    assert np.array_equal(nodes, simulation.positions("line1"))
+    assert np.allclose(nodes[[0, -1]], [[405.0, 0.0, -120.0], [5.0, 0.0, -10.0]])
+    assert len(simulation.tensions("line1")) == 21
+    assert simulation.tensions("line1")[-1] == simulation["line1.tension_b"]
+
+
+def test_an_input_that_is_not_named_keeps_its_value_and_a_velocity_can_be_given_and_taken_back(chain):
+    simulation = moorline.Simulation(chain, velocities=True)
+    assert simulation.input_names[3:] == ["fairlead.vx", "fairlead.vy", "fairlead.vz"]
+    assert simulation["fairlead.vx"] is None
+    simulation.advance({"fairlead.x": 0.01, "fairlead.vx": 0.2}, 0.05)
+    simulation.advance(None, 0.05)
+    assert (simulation["fairlead.x"], simulation["fairlead.vx"]) == (0.01, 0.2)
+    simulation.advance({"fairlead.vx": None}, 0.05)
+    assert simulation["fairlead.vx"] is None
+
+
+def test_a_simulation_starts_in_equilibrium_at_its_inputs(chain):
+    here, there = moorline.Simulation(chain), moorline.Simulation(chain, inputs={"fairlead.x": -5.0}, start_time=3.0)
+    assert there["line1.tension_b"] > 1.02 * here["line1.tension_b"] and there.time == 3.0
+    assert here["line1.tension_b"] == pytest.approx(chain.statics().lines[0].end_b.tension, rel=1e-12)
+
+
+def test_a_restored_simulation_replays_to_the_last_bit(chain):
+    simulation = moorline.Simulation(chain)
+    steps(simulation, 40)
+    state = simulation.save()
+    first = steps(simulation, 40, 40)
+    simulation.restore(state)
+    assert np.array_equal(steps(simulation, 40, 40), first)
+    for bytes_of in (state.to_bytes(), pickle.loads(pickle.dumps(state)).to_bytes()):
+        other = moorline.Simulation(chain)
+        other.restore(moorline.State.from_bytes(bytes_of))
+        assert np.array_equal(steps(other, 40, 40), first)
+
+
+def test_a_state_is_restored_in_a_simulation_that_started_elsewhere(chain):
+    simulation = moorline.Simulation(chain, inputs={"fairlead.x": 1.0}, start_time=2.0)
+    steps(simulation, 10)
+    state = simulation.save()
+    first = steps(simulation, 10, 10)
+    other = moorline.Simulation(chain)
+    other.restore(state)
+    assert other["fairlead.x"] == pytest.approx(2.0 * math.sin(0.225))
+    assert np.array_equal(steps(other, 10, 10), first)
+
+
+def test_a_copy_continues_to_the_same_bits(chain):
+    simulation = moorline.Simulation(chain)
+    steps(simulation, 20)
+    others = [simulation.copy(), copy.copy(simulation), copy.deepcopy(simulation)]
+    first = steps(simulation, 20, 20)
+    assert all(np.array_equal(steps(other, 20, 20), first) for other in others)
+
+
+def test_damaged_and_foreign_states_are_refused(chain, semi):
+    data = moorline.Simulation(chain).save().to_bytes()
+    for wrong in (b"", data[:-1], data[:60] + bytes([data[60] ^ 1]) + data[61:], b"x" + data):
+        with pytest.raises(moorline.InputError):
+            moorline.State.from_bytes(wrong)
+    other = moorline.Simulation(semi)
+    with pytest.raises(moorline.InputError, match="another scene"):
+        other.restore(moorline.State.from_bytes(data))
+
+
+def test_a_vessel_is_moved_by_pose(semi):
+    simulation = moorline.Simulation(semi)
+    assert simulation.input_names == [f"platform.{axis}" for axis in ("x", "y", "z", "roll", "pitch", "yaw")]
+    simulation.advance({"platform.pitch": 0.01}, 0.05)
+    assert abs(simulation["platform.my"]) > 0.0
