@@ -28,7 +28,7 @@ const LAYERS: [&str; 11] = [
 
 /// Packages of the workspace, each with those it may use: the library uses none; the program and the code of an FMU
 /// are on top.
-const PACKAGES: [(&str, &[&str]); 7] = [
+const PACKAGES: [(&str, &[&str]); 8] = [
     (".", &[]),
     ("accuracy", &["moorline"]),
     (
@@ -38,6 +38,7 @@ const PACKAGES: [(&str, &[&str]); 7] = [
             "moorline-accuracy",
             "moorline-decks",
             "moorline-host",
+            "moorline-sweep",
             "moorline-fmu",
         ],
     ),
@@ -45,6 +46,7 @@ const PACKAGES: [(&str, &[&str]); 7] = [
     ("fmu", &["moorline", "moorline-host"]),
     ("fmu/conformance", &["moorline-host"]),
     ("fmu/host", &["moorline"]),
+    ("sweep", &["moorline", "moorline-decks"]),
 ];
 
 /// A word, sign, literal or bracket, and its line.
@@ -368,7 +370,7 @@ fn says_a_unit(doc: &str) -> bool {
 
 #[test]
 fn every_public_number_says_its_unit() {
-    let layers = ["src/physics", "src/model", "src/scene", "decks/src"];
+    let layers = ["src/physics", "src/model", "src/scene", "decks/src", "sweep/src"];
     assert_kept(
         "the docs of a public f64 name its unit, as in [m] or [-]",
         |source| {
@@ -396,7 +398,7 @@ fn only_the_fmu_is_unsafe() {
 
 #[test]
 fn only_the_command_line_prints() {
-    let libraries = ["src", "accuracy/src", "decks/src", "fmu/src"];
+    let libraries = ["src", "accuracy/src", "decks/src", "fmu/src", "sweep/src"];
     assert_kept("the library does not print", |source| {
         let printing = ["print", "println", "eprint", "eprintln", "dbg"];
         let calls = printing.iter().flat_map(|name| source.calls(name));
