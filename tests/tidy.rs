@@ -28,7 +28,7 @@ const LAYERS: [&str; 11] = [
 
 /// Packages of the workspace, each with those it may use: the library uses none; the program and the code of an FMU
 /// are on top.
-const PACKAGES: [(&str, &[&str]); 8] = [
+const PACKAGES: [(&str, &[&str]); 9] = [
     (".", &[]),
     ("accuracy", &["moorline"]),
     (
@@ -38,6 +38,7 @@ const PACKAGES: [(&str, &[&str]); 8] = [
             "moorline-accuracy",
             "moorline-decks",
             "moorline-host",
+            "moorline-sweep",
             "moorline-fmu",
         ],
     ),
@@ -46,6 +47,7 @@ const PACKAGES: [(&str, &[&str]); 8] = [
     ("fmu/conformance", &["moorline-host"]),
     ("fmu/host", &["moorline"]),
     ("python", &["moorline", "moorline-cli", "moorline-decks"]),
+    ("sweep", &["moorline", "moorline-decks"]),
 ];
 
 /// A word, sign, literal or bracket, and its line.
@@ -369,7 +371,7 @@ fn says_a_unit(doc: &str) -> bool {
 
 #[test]
 fn every_public_number_says_its_unit() {
-    let layers = ["src/physics", "src/model", "src/scene", "decks/src"];
+    let layers = ["src/physics", "src/model", "src/scene", "decks/src", "sweep/src"];
     assert_kept(
         "the docs of a public f64 name its unit, as in [m] or [-]",
         |source| {
@@ -397,7 +399,14 @@ fn only_the_fmu_is_unsafe() {
 
 #[test]
 fn only_the_command_line_prints() {
-    let libraries = ["src", "accuracy/src", "decks/src", "fmu/src", "python/src"];
+    let libraries = [
+        "src",
+        "accuracy/src",
+        "decks/src",
+        "fmu/src",
+        "python/src",
+        "sweep/src",
+    ];
     assert_kept("the library does not print", |source| {
         let printing = ["print", "println", "eprint", "eprintln", "dbg"];
         let calls = printing.iter().flat_map(|name| source.calls(name));

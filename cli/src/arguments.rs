@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use moorline::scene::{Drive, RegularMotion, name_problem};
 use moorline_decks::Supplement;
 
@@ -78,6 +78,25 @@ pub(crate) enum Command {
         #[command(flatten)]
         input: Input,
     },
+    /// Run a scene case by case, with other values of its keys, on all cores
+    ///
+    /// CASES is CSV (a row a case) or TOML (lists multiply); its columns are keys of the scene by path, such as water.waves.peak_period,
+    /// lines.line1.length or seed, and motion files. Called again with the same input, an interrupted or killed sweep goes on where it was.
+    Sweep {
+        #[command(flatten)]
+        base: Input,
+        /// File of the cases
+        cases: PathBuf,
+        /// Folder for the table and the journal; made where it is missing
+        #[arg(short, long, value_name = "DIR")]
+        output: PathBuf,
+        /// Count results from T [s]; from the end of the ramps of motions and waves where absent
+        #[arg(long, value_name = "T", value_parser = time)]
+        from: Option<f64>,
+        /// Keep all results in time of every case too
+        #[arg(long)]
+        series: bool,
+    },
     /// Write a MoorDyn or MAP++ file as a scene with comments
     Convert {
         /// MoorDyn or MAP++ file
@@ -121,6 +140,31 @@ pub(crate) enum Command {
         #[arg(short, long, value_name = "DIR", default_value = "moorline-demo")]
         output: PathBuf,
     },
+    /// Print the completions of a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page, or write the pages of all commands
+    Man {
+        /// Folder for the pages; made where it is missing
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+}
+
+/// A shell that completes the program's arguments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Shell {
+    /// Bash.
+    Bash,
+    /// Z shell.
+    Zsh,
+    /// Fish.
+    Fish,
+    /// PowerShell.
+    #[value(name = "powershell")]
+    PowerShell,
 }
 
 /// Input file, with the data that a deck leaves to its host.
@@ -191,6 +235,15 @@ fn positive_number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
         Ok(_) => Err("must be positive and finite".to_string()),
+        Err(_) => Err("is not a number".to_string()),
+    }
+}
+
+/// Reads a finite time that is not negative.
+fn time(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        Ok(_) => Err("must be finite and not negative".to_string()),
         Err(_) => Err("is not a number".to_string()),
     }
 }

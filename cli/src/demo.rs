@@ -19,9 +19,9 @@ use crate::Library;
 use crate::failure::Failure;
 use crate::fmu::package;
 use crate::folder::Folder;
-use crate::recorder::{columns, input_of, recorded};
 use crate::summary::run_summary;
 use crate::terminal::{Progress, discretise, print, simulate};
+use moorline::output::recorder::{columns, input_of, recorded};
 
 /// The built-in scene.
 const SCENE: &str = include_str!("../../scenes/demo.toml");

@@ -12,11 +12,12 @@ mod failure;
 mod fmu;
 mod folder;
 mod hold;
+mod manual;
 mod modes;
-pub mod recorder;
 mod run;
 mod statics;
 mod summary;
+mod sweep;
 mod terminal;
 
 use std::ffi::OsString;
@@ -99,6 +100,15 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
             let course = run::Course { pace, resume, until };
             run::run(&input, &moved.into(), &output, &course)
         }
+        Command::Sweep {
+            base,
+            cases,
+            output,
+            from,
+            series,
+        } => sweep::sweep(&base, &cases, &output, &sweep::Choice { from, series }),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Man { output } => manual::man(output.as_deref()),
         Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.supplement()),
         Command::Fmu { input, output, fmi } => fmu::fmu(&input, &output, &fmi, library),
         Command::Accuracy {

@@ -15,9 +15,9 @@ use moorline::simulation::{Simulation, Watch};
 use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::folder::{Folder, Listener};
-use crate::recorder::{Recorder, check_finite};
 use crate::summary::run_summary;
 use crate::terminal::{Progress, discretise, print, read_scene, remark, remark_all, simulate};
+use moorline::output::recorder::{Recorder, check_finite};
 
 /// Time between saved states of a run.
 const SAVED_EVERY: Duration = Duration::from_secs(60);

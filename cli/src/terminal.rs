@@ -86,7 +86,7 @@ pub(crate) fn bar(steps: usize) -> ProgressBar {
 }
 
 /// Time between lines on the progress of a run that no terminal shows.
-const LINES_EVERY: Duration = Duration::from_secs(60);
+pub(crate) const LINES_EVERY: Duration = Duration::from_secs(60);
 
 /// Progress of a run on standard error: a bar on a terminal, a line a minute elsewhere, both with the time that remains.
 #[derive(Debug)]
@@ -163,17 +163,21 @@ impl Lines {
         self.last = now;
         let [before, done] = self.done;
         let share = (self.steps - done) as f64 / (done - before) as f64;
-        let left = (now - self.start).mul_f64(share).as_secs();
-        let left = match left {
-            0..120 => format!("{left} s"),
-            120..7200 => format!("{} min", (left + 30) / 60),
-            _ => format!("{:.1} h", left as f64 / 3600.0),
-        };
+        let left = rounded((now - self.start).mul_f64(share));
         let percent = 100 * done / self.steps;
         Some(format!(
             "t = {time} s of {} s, {percent} %, {left} left",
             self.end
         ))
+    }
+}
+
+/// A time that remains, in words.
+pub(crate) fn rounded(left: Duration) -> String {
+    match left.as_secs() {
+        left @ 0..120 => format!("{left} s"),
+        left @ 120..7200 => format!("{} min", (left + 30) / 60),
+        left => format!("{:.1} h", left as f64 / 3600.0),
     }
 }
 

@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use moorline::output::collect;
 use moorline::output::record::{Column, Form, Frame};
+use moorline::output::recorder::{Recorder, check_finite};
 use moorline::output::times::Times;
 use moorline::scene::{LoadedScene, Note, Threads};
 use moorline::simulation::{Simulation, Watch};
-use moorline_cli::recorder::{Recorder, check_finite};
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

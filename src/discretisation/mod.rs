@@ -309,6 +309,29 @@ pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
     }
 }
 
+/// Scene with a discretisation that is as fine as each of those found for its lines in other motions and seas: of every network the greatest
+/// number of elements; integrator and shortest step where all agree on the integrator, else those of the scene. None where nothing was found.
+pub fn finest(scene: &Scene, found: &[Discretisation]) -> Option<Scene> {
+    let networks = Networks::of(scene)?;
+    let open: Vec<usize> = (0..networks.lines.len()).filter(|&i| networks.open[i]).collect();
+    let fits = |other: &&Discretisation| other.meshes.len() == open.len();
+    let found: Vec<&Discretisation> = found.iter().filter(fits).collect();
+    let first = &found.first()?.scene.solver;
+    let mut elements = vec![1; networks.lines.len()];
+    for (place, &network) in open.iter().enumerate() {
+        let of_network = found.iter().map(|other| other.meshes[place].elements);
+        elements[network] = of_network.max().unwrap_or(1);
+    }
+    let mut finest = networks.with_elements(scene, &elements);
+    let solvers = || found.iter().map(|other| &other.scene.solver);
+    if solvers().all(|solver| solver.integrator == first.integrator) {
+        finest.solver.integrator = first.integrator;
+        let steps = solvers().map(|solver| solver.time_step_max);
+        finest.solver.time_step_max = steps.fold(f64::INFINITY, f64::min);
+    }
+    Some(finest)
+}
+
 /// Scene with its present mesh, regardless of later settings: as [`select`] finds it, or by rule. None where all
 /// elements are given.
 pub fn frozen(scene: &Scene) -> Option<Scene> {

@@ -16,7 +16,7 @@ use crate::simulation::Snapshot;
 /// Name of the file in the folder of the run.
 pub const FILE: &str = "run.state";
 
-const MARK: &str = concat!("moorline run 1 ", env!("CARGO_PKG_VERSION"), "\n");
+const MARK: &str = concat!("moorline run 2 ", env!("CARGO_PKG_VERSION"), "\n");
 /// Bytes of the check sum.
 const SUM: usize = 32;
 

@@ -100,7 +100,8 @@ fn is_finite([x, y]: &[f64; 2]) -> bool {
     x.is_finite() && y.is_finite()
 }
 
-/// Smallest, mean and greatest value of a history, in its unit. The mean is over time, by the trapezoidal rule.
+/// Smallest, mean and greatest value of a history and its standard deviation, in its unit. Mean and deviation are over time, by the
+/// trapezoidal rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Smallest value, in the history's unit.
@@ -109,6 +110,8 @@ pub struct Range {
     pub mean: f64,
     /// Greatest value, in the history's unit.
     pub max: f64,
+    /// Standard deviation over time, in the history's unit.
+    pub deviation: f64,
 }
 
 /// Sums from which a [`Range`] follows.
@@ -116,7 +119,10 @@ pub struct Range {
 pub struct RangeSum {
     start: f64,
     last: [f64; 2],
-    area: f64,
+    /// First value, which the integrals are relative to, so that little is cancelled.
+    origin: f64,
+    /// Integral over time of the value, and of its square.
+    areas: [f64; 2],
     least: f64,
     greatest: f64,
 }
@@ -127,7 +133,8 @@ impl RangeSum {
         RangeSum {
             start: time,
             last: [time, value],
-            area: 0.0,
+            origin: value,
+            areas: [0.0; 2],
             least: f64::INFINITY.min(value),
             greatest: f64::NEG_INFINITY.max(value),
         }
@@ -135,7 +142,10 @@ impl RangeSum {
 
     /// Adds a pair of time [s] and value.
     pub fn add(&mut self, [time, value]: [f64; 2]) {
-        self.area += 0.5 * (self.last[1] + value) * (time - self.last[0]);
+        let [before, now] = [self.last[1] - self.origin, value - self.origin];
+        let half = 0.5 * (time - self.last[0]);
+        self.areas[0] += half * (before + now);
+        self.areas[1] += half * (before * before + now * now);
         self.last = [time, value];
         self.least = self.least.min(value);
         self.greatest = self.greatest.max(value);
@@ -144,14 +154,15 @@ impl RangeSum {
     /// The range of all pairs. That of one pair is its value.
     pub fn range(&self) -> Range {
         let span = self.last[0] - self.start;
+        let [mean, square] = match span {
+            0.0 => [0.0; 2],
+            _ => self.areas.map(|area| area / span),
+        };
         Range {
             min: self.least,
-            mean: if span == 0.0 {
-                self.last[1]
-            } else {
-                self.area / span
-            },
+            mean: self.origin + mean,
             max: self.greatest,
+            deviation: (square - mean * mean).max(0.0).sqrt(),
         }
     }
 }
@@ -202,6 +213,20 @@ mod tests {
 
     #[test]
     fn a_single_row_is_its_own_mean() {
-        assert_eq!(range(&[[3.0, 5.0]]).mean, 5.0);
+        let range = range(&[[3.0, 5.0]]);
+        assert_eq!((range.mean, range.deviation), (5.0, 0.0));
+    }
+
+    #[test]
+    fn the_deviation_of_a_sine_is_its_amplitude_over_the_root_of_two_on_any_mean() {
+        for mean in [0.0, 1e6] {
+            let pairs: Vec<[f64; 2]> = (0..=1000)
+                .map(|i| 0.01 * f64::from(i))
+                .map(|t| [t, mean + 3.0 * (std::f64::consts::TAU * t).sin()])
+                .collect();
+            let range = range(&pairs);
+            assert!((range.deviation - 3.0 / 2.0_f64.sqrt()).abs() < 1e-6, "{range:?}");
+            assert!((range.mean - mean).abs() < 1e-6, "{range:?}");
+        }
     }
 }

@@ -33,11 +33,7 @@ fn closeness(name: &str, candidate: &str) -> f64 {
 }
 
 /// ", did you mean `x`?" or nothing, then the known names in brackets.
-pub(super) fn suggestion<'a>(
-    name: &str,
-    what: &str,
-    known: impl IntoIterator<Item = &'a str> + Clone,
-) -> String {
+pub fn suggestion<'a>(name: &str, what: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
     let meant = nearest(name, known.clone())
         .map(|name| format!(", did you mean `{name}`?"))
         .unwrap_or_default();

@@ -80,6 +80,25 @@ pub(super) fn factor(text: &str, quantity: Quantity) -> Result<f64, String> {
     })
 }
 
+/// Returns the factor [-] that converts numbers in a unit of a heading to the unit of a key, such as 1000 from `kN` to `N`. Of units that no
+/// header of a table has, such as `kg/m`, the unit of the key alone is accepted.
+///
+/// # Errors
+/// The units that would be right.
+pub fn factor_to(si: &str, text: &str) -> Result<f64, String> {
+    let quantity = HEADER_UNITS
+        .iter()
+        .find(|(_, names, factor)| *factor == 1.0 && names[0] == si);
+    match quantity {
+        Some((quantity, ..)) => factor(text, *quantity),
+        None if bare(text) == si => Ok(1.0),
+        None => Err(format!(
+            "unknown unit {}: {si} would be right",
+            super::rows::shown(bare(text))
+        )),
+    }
+}
+
 /// Returns whether two units are different ones of the same quantity, as far as their first factors tell, such as `(kN-s)` and `N s`.
 pub fn differ(one: &str, other: &str) -> bool {
     let [one, other] = [one, other].map(|text| {
@@ -107,6 +126,19 @@ pub(super) fn bare(text: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_unit_of_a_heading_is_converted_to_that_of_a_key() {
+        assert_eq!(factor_to("N", "kN"), Ok(1e3));
+        assert_eq!(factor_to("s", "[min]"), Ok(60.0));
+        assert_eq!(factor_to("kg/m", "kg/m"), Ok(1.0));
+        assert!(
+            factor_to("kg/m", "g/m")
+                .unwrap_err()
+                .ends_with("kg/m would be right")
+        );
+        assert!(factor_to("m", "s").unwrap_err().contains("one of m, mm"));
+    }
 
     #[test]
     fn units_of_headers_are_read_in_brackets_and_without_and_others_are_refused() {

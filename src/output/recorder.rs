@@ -1,11 +1,11 @@
 //! Rows of the results of a run: inputs by the scene's motion, outputs, elevation of the waves, channels.
 
-use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
-use moorline::model::{Body, Model, Moving};
-use moorline::output::channels::Channels;
-use moorline::output::record::{Column, ELEVATION, Form};
-use moorline::scene::{Scene, SceneError};
-use moorline::simulation::Simulation;
+use super::channels::Channels;
+use super::record::{Column, ELEVATION, Form};
+use crate::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
+use crate::model::{Body, Model, Moving};
+use crate::scene::{Scene, SceneError};
+use crate::simulation::Simulation;
 
 /// Refuses a row with a value that is not finite.
 ///
@@ -74,7 +74,7 @@ impl Recorder {
 }
 
 /// Inputs and outputs, without profiles: these have a file of their own.
-pub(crate) fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
+pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
     interface.variables().iter().filter(|variable| {
         matches!(variable.causality, Causality::Input | Causality::Output)
             && !matches!(variable.binding, Binding::Profile { .. })
@@ -82,7 +82,7 @@ pub(crate) fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable>
 }
 
 /// Columns of these variables.
-pub(crate) fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Column> {
+pub fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Column> {
     let form = |variable: &Variable| match variable.kind {
         Kind::Float64 => Form::Real,
         Kind::Int32 | Kind::Boolean => Form::Whole,
@@ -107,7 +107,7 @@ fn output_of(variable: &Variable, simulation: &Simulation) -> f64 {
 }
 
 /// An input by the scene's motion at `time` [s], where it has `moving` bodies, in its unit; `None` of an output.
-pub(crate) fn input_of(variable: &Variable, model: &Model, moving: &[Moving], time: f64) -> Option<f64> {
+pub fn input_of(variable: &Variable, model: &Model, moving: &[Moving], time: f64) -> Option<f64> {
     let of = |body: Body, part: fn(&Moving) -> [f64; 6], axis: usize| {
         let found = moving.iter().find(|moving| moving.body == body);
         Some(found.map_or(0.0, |moving| part(moving)[axis]))

@@ -1,0 +1,427 @@
+//! Base and CASES -> cases, all of them checked as scenes before any runs.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use moorline::scene::units::factor_to;
+use moorline::scene::{Drive, LoadError, LoadedScene, Note, Scene, SceneError, TOML, folder_of, load_text};
+use moorline_decks::{Supplement, load_with};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+use toml::Value;
+
+use crate::key::Place;
+use crate::kind::{Kind, Severity, ramp, severity, system};
+use crate::sheet::{Column, Draft, Sheet, mistake};
+
+/// Most mistakes of CASES that are reported [-].
+const MISTAKES_MAX: usize = 20;
+/// Column of a motion file that moves what its columns name, as `run --motion` does.
+const MOTION: &str = "motion";
+
+/// Scene or deck whose keys the cases set.
+#[derive(Debug)]
+pub struct Base {
+    loaded: LoadedScene,
+    document: Value,
+}
+
+impl Base {
+    /// Reads and checks a scene or a deck.
+    ///
+    /// # Errors
+    /// The reason why it cannot be read, or all mistakes in it.
+    pub fn load(path: &Path, supplement: &Supplement) -> Result<Base, LoadError> {
+        let loaded = load_with(path, supplement)?;
+        let text = match loaded.format {
+            TOML => loaded.text.clone(),
+            _ => loaded.scene.to_toml(),
+        };
+        let document = text.parse().map(Value::Table);
+        let document = document.expect("the reader of scenes has read the same text");
+        Ok(Base { loaded, document })
+    }
+
+    /// Remarks on the base as it is.
+    pub fn notes(&self) -> &[Note] {
+        &self.loaded.notes
+    }
+}
+
+/// Input of one simulation.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Input {
+    /// The base, in whose folder its files stand.
+    pub base: Arc<PathBuf>,
+    /// The scene as TOML.
+    pub document: String,
+    /// Motion file in place of the scene's motion.
+    pub motion: Option<PathBuf>,
+}
+
+impl Input {
+    /// Reads the scene.
+    pub(crate) fn load(&self) -> Result<LoadedScene, LoadError> {
+        let mut loaded = load_text(&self.base, self.document.clone())?;
+        if let Some(file) = &self.motion {
+            let drive = Drive {
+                file: Some(file.clone()),
+                ..Drive::default()
+            };
+            let driven = loaded.scene.drive(&drive);
+            driven.map_err(|problem| LoadError::Scene {
+                path: loaded.path.clone(),
+                text: String::new(),
+                mistakes: vec![SceneError::new(MOTION, problem)],
+            })?;
+        }
+        Ok(loaded)
+    }
+}
+
+/// A case of a sweep.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Number, from 1 in the order of CASES.
+    pub number: usize,
+    /// Keys as CASES has them, each with its unit and its value; `None` where the case leaves that of the base.
+    pub values: Vec<(Arc<Key>, Option<Value>)>,
+    /// Line of CASES [-], from 1.
+    pub line: usize,
+    /// Time from which results count [s]: the end of the ramps.
+    pub from: f64,
+    /// Remarks on the scene that do not hold for the base.
+    pub notes: Vec<Note>,
+    pub(crate) input: Input,
+    pub(crate) kind: Arc<Kind>,
+}
+
+/// A key that cases set.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Key {
+    /// Path as written.
+    pub path: String,
+    /// Unit of the values that cases hold, where the key has one.
+    pub unit: Option<String>,
+}
+
+impl Case {
+    /// Scene of the case, with its discretisation.
+    ///
+    /// # Errors
+    /// A file of the scene that can no longer be read.
+    pub fn scene(&self) -> Result<Scene, LoadError> {
+        let mut scene = self.input.load()?.scene;
+        self.kind.discretise(&mut scene);
+        Ok(scene)
+    }
+
+    /// Files that the scene names.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let mut names = Vec::new();
+        let document = self.input.document.parse().map(Value::Table);
+        file_names(&document.expect("a document that was written"), &mut names);
+        let folder = folder_of(&self.input.base);
+        let named = names.iter().map(|name| folder.join(name));
+        named.chain(self.input.motion.clone()).collect()
+    }
+}
+
+/// Texts under the key `file`.
+fn file_names(value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table {
+                match value.as_str().filter(|_| key == "file") {
+                    Some(name) => found.push(name.to_string()),
+                    None => file_names(value, found),
+                }
+            }
+        }
+        Value::Array(list) => list.iter().for_each(|value| file_names(value, found)),
+        _ => {}
+    }
+}
+
+/// Column of CASES and its place in the scene.
+struct Target {
+    key: Arc<Key>,
+    /// None of the column `motion`.
+    place: Option<Place>,
+    /// Factor to SI units, where the heading gives a unit [-].
+    factor: Option<f64>,
+}
+
+/// Reads the cases of a file and checks each of them as a scene. `from` is the time from which results count [s], in place of the end of the
+/// ramps.
+///
+/// # Errors
+/// All mistakes in the file, with their places: keys that lead nowhere, units, values that the scene refuses, files that are missing.
+pub fn cases(base: &Base, path: &Path, from: Option<f64>) -> Result<Vec<Case>, LoadError> {
+    let sheet = Sheet::read(path)?;
+    let builder = Builder::new(base, &sheet, from)?;
+    let checked: Vec<Result<Checked, Vec<SceneError>>> = (0..sheet.cases.len())
+        .into_par_iter()
+        .map(|index| builder.check(index))
+        .collect();
+    let mut mistakes = Vec::new();
+    let mut good = Vec::new();
+    for case in checked {
+        match case {
+            Ok(case) => good.push(case),
+            Err(found) => mistakes.extend(found),
+        }
+    }
+    if !mistakes.is_empty() {
+        return Err(refused(&sheet, mistakes));
+    }
+    Ok(with_kinds(good))
+}
+
+/// The mistakes in the order of the text, each once.
+fn refused(sheet: &Sheet, mut mistakes: Vec<SceneError>) -> LoadError {
+    mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
+    mistakes.dedup();
+    mistakes.truncate(MISTAKES_MAX);
+    LoadError::Scene {
+        path: sheet.path.clone(),
+        text: sheet.text.clone(),
+        mistakes,
+    }
+}
+
+/// A case whose scene can be used.
+struct Checked {
+    case: Case,
+    /// Fingerprint of the kind of system.
+    system: [u8; 32],
+    severity: Severity,
+}
+
+/// Gives cases of one kind of system the same discretisation.
+fn with_kinds(checked: Vec<Checked>) -> Vec<Case> {
+    let mut members: BTreeMap<[u8; 32], Vec<usize>> = BTreeMap::new();
+    for (index, case) in checked.iter().enumerate() {
+        members.entry(case.system).or_default().push(index);
+    }
+    let mut kinds = vec![None; checked.len()];
+    for indices in members.values() {
+        let candidates: Vec<(Severity, &Input)> = indices
+            .iter()
+            .map(|&index| (checked[index].severity, &checked[index].case.input))
+            .collect();
+        let kind = Arc::new(Kind::of(&candidates));
+        indices
+            .iter()
+            .for_each(|&index| kinds[index] = Some(kind.clone()));
+    }
+    let cases = checked.into_iter().zip(kinds);
+    cases
+        .map(|(checked, kind)| Case {
+            kind: kind.expect("every case belongs to a kind"),
+            ..checked.case
+        })
+        .collect()
+}
+
+/// Maker of cases from the rows of CASES.
+struct Builder<'b> {
+    base: &'b Base,
+    sheet: &'b Sheet,
+    targets: Vec<Target>,
+    from: Option<f64>,
+    base_path: Arc<PathBuf>,
+    open: Arc<Kind>,
+}
+
+impl<'b> Builder<'b> {
+    fn new(base: &'b Base, sheet: &'b Sheet, from: Option<f64>) -> Result<Builder<'b>, LoadError> {
+        let (mut targets, mut mistakes) = (Vec::new(), Vec::new());
+        for column in &sheet.columns {
+            match target(base, column) {
+                Ok(target) => targets.push(target),
+                Err(mistake) => mistakes.push(mistake),
+            }
+        }
+        if !mistakes.is_empty() {
+            return Err(refused(sheet, mistakes));
+        }
+        Ok(Builder {
+            base,
+            sheet,
+            targets,
+            from,
+            base_path: Arc::new(base.loaded.path.clone()),
+            open: Arc::new(Kind::default()),
+        })
+    }
+
+    /// The case of a row, read as a scene.
+    fn check(&self, index: usize) -> Result<Checked, Vec<SceneError>> {
+        let draft = &self.sheet.cases[index];
+        let mut values: Vec<(Arc<Key>, Option<Value>)> = self
+            .targets
+            .iter()
+            .map(|target| (target.key.clone(), None))
+            .collect();
+        let mut document = self.base.document.clone();
+        let mut motion = None;
+        let mut mistakes = Vec::new();
+        for entry in &draft.entries {
+            let target = &self.targets[entry.column];
+            let in_si = match in_si(target, &entry.value, &entry.span) {
+                Ok(value) => value,
+                Err(mistake) => {
+                    mistakes.push(mistake);
+                    continue;
+                }
+            };
+            values[entry.column].1 = Some(entry.value.clone());
+            match (&target.place, in_si) {
+                (None, value) => motion = value.as_str().map(|file| self.beside(file)),
+                (Some(place), Value::String(file)) if place.is_file() => {
+                    let file = self.beside(&file).display().to_string();
+                    place.set(&mut document, Value::String(file));
+                }
+                (Some(place), value) => place.set(&mut document, value),
+            }
+        }
+        if !mistakes.is_empty() {
+            return Err(mistakes);
+        }
+        let input = Input {
+            base: self.base_path.clone(),
+            document: toml::to_string(&document).expect("a document that was read can be written"),
+            motion,
+        };
+        let loaded = input.load().map_err(|error| self.located(draft, error))?;
+        let from = self.start(draft, &loaded.scene)?;
+        let mut notes = loaded.notes;
+        notes.retain(|note| {
+            !self
+                .base
+                .loaded
+                .notes
+                .iter()
+                .any(|known| (&known.at, &known.text) == (&note.at, &note.text))
+        });
+        let before = &self.sheet.text[..draft.span.start];
+        Ok(Checked {
+            system: Sha256::digest(system(&loaded.scene)).into(),
+            severity: severity(&loaded.scene),
+            case: Case {
+                number: index + 1,
+                values,
+                line: before.matches('\n').count() + 1,
+                from,
+                notes,
+                input,
+                kind: self.open.clone(),
+            },
+        })
+    }
+
+    /// A file that CASES names, which stands relative to it.
+    fn beside(&self, file: &str) -> PathBuf {
+        let path = folder_of(&self.sheet.path).join(file);
+        std::path::absolute(&path).unwrap_or(path)
+    }
+
+    /// Time from which results count [s].
+    fn start(&self, draft: &Draft, scene: &Scene) -> Result<f64, Vec<SceneError>> {
+        let from = self.from.unwrap_or_else(|| ramp(scene));
+        let duration = scene.output.duration;
+        if from < duration {
+            return Ok(from);
+        }
+        let what = match self.from {
+            Some(_) => "results count",
+            None => "the ramps end, from where results count,",
+        };
+        let problem = format!(
+            "{what} from t = {from} s, but the run ends at {duration} s: a longer output.duration would be right"
+        );
+        Err(vec![mistake("", problem, &draft.span)])
+    }
+
+    /// Mistakes in the scene of a case at the cells that they follow from.
+    fn located(&self, draft: &Draft, error: LoadError) -> Vec<SceneError> {
+        let LoadError::Scene { mistakes, .. } = error else {
+            return vec![mistake("", error.to_string(), &draft.span)];
+        };
+        let place = |found: SceneError| {
+            let entries = draft.entries.iter().rev();
+            let set = |entry: &&crate::sheet::Entry| match &self.targets[entry.column].place {
+                Some(place) => is_within(&found.at, &place.path()),
+                None => found.at.starts_with(MOTION),
+            };
+            let above = |entry: &&crate::sheet::Entry| match &self.targets[entry.column].place {
+                Some(place) => is_within(&place.path(), &found.at),
+                None => false,
+            };
+            let entry = entries.clone().find(set).or_else(|| entries.clone().find(above));
+            match entry {
+                Some(entry) => mistake(
+                    &self.targets[entry.column].key.path,
+                    found.problem.clone(),
+                    &entry.span,
+                ),
+                None => mistake(
+                    &found.at,
+                    format!("{}, in the scene of this case", found.problem),
+                    &draft.span,
+                ),
+            }
+        };
+        mistakes.into_iter().map(place).collect()
+    }
+}
+
+/// Returns whether a key path is another one or leads on from it.
+fn is_within(path: &str, holder: &str) -> bool {
+    let rest = path.strip_prefix(holder);
+    rest.is_some_and(|rest| holder.is_empty() || rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// The place of a column in the scene.
+fn target(base: &Base, column: &Column) -> Result<Target, SceneError> {
+    let refuse = |problem: String| mistake(&column.path, problem, &column.span);
+    let place = match column.path.as_str() {
+        MOTION => None,
+        path => Some(Place::find(&base.document, path).map_err(refuse)?),
+    };
+    let si = place.as_ref().and_then(|place| place.unit);
+    let factor = match (&column.unit, si) {
+        (None, _) => None,
+        (Some(unit), Some(si)) => Some(factor_to(si, unit).map_err(refuse)?),
+        (Some(unit), None) => return Err(refuse(format!("the key has no unit: leave out [{unit}]"))),
+    };
+    let unit = column.unit.clone().or(si.map(str::to_string));
+    Ok(Target {
+        key: Arc::new(Key {
+            path: column.path.clone(),
+            unit,
+        }),
+        place,
+        factor,
+    })
+}
+
+/// A value in SI units.
+fn in_si(target: &Target, value: &Value, span: &Range<usize>) -> Result<Value, SceneError> {
+    let refuse = |problem: &str| Err(mistake(&target.key.path, problem, span));
+    if target.place.is_none() && !value.is_str() {
+        return refuse(
+            "expected the name of a motion file; single motions have paths such as motion.NAME.x[0][0]",
+        );
+    }
+    match (target.factor, value) {
+        (None, value) => Ok(value.clone()),
+        (Some(1.0), value @ Value::Integer(_)) => Ok(value.clone()),
+        (Some(factor), Value::Integer(number)) => Ok(Value::Float(*number as f64 * factor)),
+        (Some(factor), Value::Float(number)) => Ok(Value::Float(number * factor)),
+        (Some(_), _) => refuse("expected a number, since the heading gives a unit"),
+    }
+}

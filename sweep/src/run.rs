@@ -1,0 +1,202 @@
+//! One case from its input to its row.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use moorline::output::OutputError;
+use moorline::output::record::Column;
+use moorline::output::recorder::{Recorder, check_finite};
+use moorline::output::table::WholeTable;
+use moorline::output::times::Times;
+use moorline::output::trace::RangeSum;
+use moorline::scene::{Format, Scene};
+use moorline::simulation::{Simulation, Watch};
+
+use crate::case::Case;
+use crate::kind::on_one_thread;
+use crate::row::{Quantity, Results, Row};
+
+/// Folder of the series of all cases, within that of the sweep.
+pub const SERIES: &str = "series";
+
+/// A case that was run.
+#[derive(Debug)]
+pub(crate) struct Done {
+    pub row: Row,
+    /// Time in steps of the simulation.
+    pub stepping: Duration,
+}
+
+/// End of a case without results.
+enum Ended {
+    /// It was stopped.
+    Stopped,
+    /// It failed, for this reason.
+    Failed(String),
+    /// Its series could not be written.
+    Unwritten(OutputError),
+}
+
+impl From<OutputError> for Ended {
+    fn from(error: OutputError) -> Self {
+        Ended::Unwritten(error)
+    }
+}
+
+fn failed(error: impl ToString) -> Ended {
+    Ended::Failed(error.to_string())
+}
+
+/// Runs a case. A case that fails is a row with the reason. The row depends on nothing but the case, to the last bit.
+pub fn run_case(case: &Case) -> Row {
+    let done = run(case, None, &|| false).ok().flatten();
+    done.expect("a case that nothing stops ends, and it writes nothing")
+        .row
+}
+
+/// Runs a case, with all results in time in a folder where one is given; `None` where `stops` becomes true.
+///
+/// # Errors
+/// The series cannot be written.
+pub(crate) fn run(
+    case: &Case,
+    series: Option<&Path>,
+    stops: &dyn Fn() -> bool,
+) -> Result<Option<Done>, OutputError> {
+    let mut notes = Vec::new();
+    let mut stepping = Duration::ZERO;
+    let mut work = || -> Result<Results, Ended> {
+        let scene = on_one_thread(case.scene().map_err(failed)?);
+        let mut run = Run::start(case, &scene, series)?;
+        let done = run.finish(stops);
+        (notes, stepping) = (std::mem::take(&mut run.notes), run.stepping);
+        done?;
+        run.results()
+    };
+    // a mistake of ours in one case must not end the others
+    let results = catch_unwind(AssertUnwindSafe(&mut work));
+    let results = match results.unwrap_or_else(|panic| Err(Ended::Failed(bug(panic.as_ref())))) {
+        Ok(results) => Ok(results),
+        Err(Ended::Failed(reason)) => Err(reason),
+        Err(Ended::Stopped) => return Ok(None),
+        Err(Ended::Unwritten(error)) => return Err(error),
+    };
+    let row = Row::of(case, results, notes);
+    Ok(Some(Done { row, stepping }))
+}
+
+fn bug(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let text = text.or(panic.downcast_ref::<&str>().copied());
+    format!(
+        "a mistake in moorline, please report it: {}",
+        text.unwrap_or("without a message")
+    )
+}
+
+/// A case between two rows of its results.
+struct Run {
+    from: f64,
+    times: Times,
+    simulation: Simulation,
+    recorder: Recorder,
+    columns: Vec<Column>,
+    sums: Vec<RangeSum>,
+    table: Option<WholeTable>,
+    watch: Watch,
+    notes: Vec<String>,
+    stepping: Duration,
+}
+
+impl Run {
+    fn start(case: &Case, scene: &Scene, series: Option<&Path>) -> Result<Run, Ended> {
+        let mut simulation = Simulation::new(scene).map_err(failed)?;
+        simulation.follow_scene().map_err(failed)?;
+        let recorder = Recorder::new(scene, simulation.model()).map_err(failed)?;
+        let mut columns = vec![Column::time()];
+        columns.extend(recorder.columns(simulation.model()));
+        let table = series.map(|folder| {
+            let format = scene.output.format.unwrap_or(Format::Parquet);
+            let ending = if format == Format::Csv { "csv" } else { "parquet" };
+            let path = folder.join(format!("case-{:06}.{ending}", case.number));
+            WholeTable::create(&path, format, &columns, scene.output.digits)
+        });
+        let mut run = Run {
+            from: case.from,
+            times: Times::new(scene.output.duration, scene.output.interval),
+            watch: Watch::new(scene, &simulation),
+            simulation,
+            recorder,
+            columns,
+            sums: Vec::new(),
+            table: table.transpose()?,
+            notes: Vec::new(),
+            stepping: Duration::ZERO,
+        };
+        run.row(0)?;
+        Ok(run)
+    }
+
+    /// Steps to the end.
+    fn finish(&mut self, stops: &dyn Fn() -> bool) -> Result<(), Ended> {
+        for index in 1..=self.times.count {
+            if stops() {
+                return Err(Ended::Stopped);
+            }
+            let before = Instant::now();
+            let stepped = self.simulation.advance(self.times.step(index - 1));
+            self.stepping += before.elapsed();
+            stepped.map_err(failed)?;
+            self.row(index)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the values of the present state to the statistics and the series.
+    fn row(&mut self, index: usize) -> Result<(), Ended> {
+        let time = self.times.at(index);
+        let notes = self.watch.look(&self.simulation);
+        self.notes.extend(notes.iter().map(ToString::to_string));
+        let counts = time >= self.from * (1.0 - 1e-12);
+        if !counts && self.table.is_none() {
+            return Ok(());
+        }
+        let row = self.recorder.row(&self.simulation, time);
+        if index > 0 {
+            check_finite(&self.columns, row).map_err(failed)?;
+        }
+        if let Some(table) = &mut self.table {
+            table.row(row)?;
+        }
+        let values = &row[1..];
+        if counts && self.sums.is_empty() {
+            self.sums = values.iter().map(|value| RangeSum::new([time, *value])).collect();
+        } else if counts {
+            let sums = self.sums.iter_mut().zip(values);
+            sums.for_each(|(sum, value)| sum.add([time, *value]));
+        }
+        Ok(())
+    }
+
+    /// The statistics; the series gets its name.
+    fn results(mut self) -> Result<Results, Ended> {
+        if let Some(table) = self.table.take() {
+            table.finish()?;
+        }
+        let quantities = self.columns[1..].iter().map(|column| Quantity {
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+        });
+        let figures = self.sums.iter().map(|sum| {
+            let range = sum.range();
+            [range.mean, range.deviation, range.min, range.max]
+        });
+        Ok(Results {
+            quantities: Arc::new(quantities.collect()),
+            figures: figures.collect(),
+        })
+    }
+}

@@ -1,0 +1,208 @@
+//! All cases of a sweep, on all cores, into a folder.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use moorline::output::{OutputError, make_folder};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+
+use crate::SweepError;
+use crate::case::Case;
+use crate::journal::{Identity, Journal};
+use crate::row::{Row, table};
+use crate::run::{SERIES, run};
+
+/// Time between tables of the cases that have ended.
+const TABLE_EVERY: Duration = Duration::from_secs(60);
+
+/// Sweep into a folder, with the rows of earlier calls.
+#[derive(Debug)]
+pub struct Sweep<'c> {
+    cases: &'c [Case],
+    folder: PathBuf,
+    series: Option<PathBuf>,
+    journal: Journal,
+    rows: Vec<Row>,
+}
+
+/// State of a sweep, for its progress.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Cases that have ended [-].
+    pub done: usize,
+    /// Those of them that failed [-].
+    pub failed: usize,
+    /// Time in steps of simulations, of the cases of this call.
+    pub stepping: Duration,
+}
+
+impl<'c> Sweep<'c> {
+    /// Opens the folder, which is made where it is missing, and reads the rows of the cases that have ended there. With `series` all results in
+    /// time of every case are kept too.
+    ///
+    /// # Errors
+    /// The folder belongs to another sweep, is in use, or cannot be written into.
+    pub fn open(cases: &'c [Case], folder: &Path, series: bool) -> Result<Sweep<'c>, SweepError> {
+        make_folder(folder)?;
+        let (journal, rows) = Journal::open(folder, &identity(cases, series)?, cases)?;
+        let series = series.then(|| folder.join(SERIES));
+        series.as_deref().map_or(Ok(()), make_folder)?;
+        Ok(Sweep {
+            cases,
+            folder: folder.to_path_buf(),
+            series,
+            journal,
+            rows,
+        })
+    }
+
+    /// Rows of the cases that have ended, in the order of their ends.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Runs the cases that are left, until `stops` is true, and writes the table. `ended` is called at the end of each case. Returns the
+    /// final state; the sweep is complete if all cases are done.
+    ///
+    /// # Errors
+    /// A file that the operating system refuses.
+    pub fn run(
+        &mut self,
+        stops: &(dyn Fn() -> bool + Sync),
+        ended: &(dyn Fn(&Row, Progress) + Sync),
+    ) -> Result<Progress, SweepError> {
+        let done: BTreeSet<usize> = self.rows.iter().map(|row| row.case).collect();
+        let left = self.cases.iter().filter(|case| !done.contains(&case.number));
+        let left: Vec<&Case> = left.collect();
+        let series = self.series.clone();
+        let is_broken = AtomicBool::new(false);
+        let ends = || stops() || is_broken.load(Ordering::Relaxed);
+        let state = Mutex::new(State::new(self));
+        // one by one from a queue: a core that is free takes the next case
+        left.into_iter().par_bridge().for_each(|case| {
+            let outcome = match ends() {
+                true => Ok(None),
+                false => run(case, series.as_deref(), &ends),
+            };
+            let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
+            let added = outcome.map_err(SweepError::from).and_then(|done| match done {
+                Some(done) => state.add(done.row, done.stepping, ended),
+                None => Ok(()),
+            });
+            if let Err(error) = added {
+                is_broken.store(true, Ordering::Relaxed);
+                state.error.get_or_insert(error);
+            }
+        });
+        let state = state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let progress = state.progress;
+        if let Some(error) = state.error {
+            return Err(error);
+        }
+        self.write_table()?;
+        Ok(progress)
+    }
+
+    fn write_table(&self) -> Result<(), SweepError> {
+        Ok(table(&self.rows).write(&self.folder)?)
+    }
+}
+
+/// State of a sweep that is running.
+struct State<'s, 'c> {
+    sweep: &'s mut Sweep<'c>,
+    progress: Progress,
+    written: Instant,
+    error: Option<SweepError>,
+}
+
+impl<'s, 'c> State<'s, 'c> {
+    fn new(sweep: &'s mut Sweep<'c>) -> Self {
+        let failed = sweep.rows.iter().filter(|row| row.results.is_err()).count();
+        State {
+            progress: Progress {
+                done: sweep.rows.len(),
+                failed,
+                stepping: Duration::ZERO,
+            },
+            sweep,
+            written: Instant::now(),
+            error: None,
+        }
+    }
+
+    /// Keeps the row of a case that has ended.
+    fn add(
+        &mut self,
+        mut row: Row,
+        stepping: Duration,
+        ended: &(dyn Fn(&Row, Progress) + Sync),
+    ) -> Result<(), SweepError> {
+        self.sweep.journal.add(&mut row)?;
+        self.progress.done += 1;
+        self.progress.failed += usize::from(row.results.is_err());
+        self.progress.stepping += stepping;
+        ended(&row, self.progress);
+        self.sweep.rows.push(row);
+        if self.written.elapsed() >= TABLE_EVERY {
+            self.sweep.write_table()?;
+            self.written = Instant::now();
+        }
+        Ok(())
+    }
+}
+
+/// Fingerprint of a sweep.
+fn identity(cases: &[Case], series: bool) -> Result<Identity, OutputError> {
+    let (mut scenes, mut options) = (Sha256::new(), Sha256::new());
+    let mut files: BTreeSet<PathBuf> = BTreeSet::new();
+    options.update([u8::from(series)]);
+    for case in cases {
+        let motion = case.input.motion.as_ref().map(|file| file.display().to_string());
+        for text in [&case.input.document, &motion.unwrap_or_default()] {
+            scenes.update((text.len() as u64).to_le_bytes());
+            scenes.update(text);
+        }
+        options.update(case.from.to_le_bytes());
+        files.extend(case.files());
+    }
+    Ok(Identity {
+        cases: cases.len(),
+        scenes: scenes.finalize().into(),
+        files: content(&files)?,
+        options: options.finalize().into(),
+    })
+}
+
+/// Fingerprint of the content of files.
+fn content(files: &BTreeSet<PathBuf>) -> Result<[u8; 32], OutputError> {
+    let mut sum = Sha256::new();
+    for path in files {
+        let bytes = fs::read(path).map_err(|source| OutputError::File {
+            path: path.clone(),
+            source,
+        })?;
+        sum.update((bytes.len() as u64).to_le_bytes());
+        sum.update(bytes);
+    }
+    Ok(sum.finalize().into())
+}
+
+/// Remarks on the discretisation of the cases, each once with the number of a case.
+pub fn shortfalls(cases: &[Case], ended: &[Row]) -> Vec<(usize, String)> {
+    let mut known = BTreeSet::new();
+    let mut notes = Vec::new();
+    for row in ended {
+        for note in cases[row.case - 1].kind.notes() {
+            if known.insert(note) {
+                notes.push((row.case, note.clone()));
+            }
+        }
+    }
+    notes
+}
