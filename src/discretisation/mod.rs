@@ -30,6 +30,7 @@
 //! rest is within the tolerance of the closed-form catenary, where there is one to compare with.
 
 mod expense;
+mod history;
 mod kinds;
 mod rest;
 mod search;

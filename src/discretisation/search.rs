@@ -1,5 +1,6 @@
 //! The meshes, integrator and step of a scene, by trial runs.
 
+use super::history::History;
 use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial};
 use crate::dynamics::AXIAL_IMPLICIT_COST;
 use crate::model::{Model, Role};
@@ -26,8 +27,6 @@ const PERIODS: f64 = 20.0;
 const DURATION: f64 = 200.0;
 /// Samples in a period of the fastest sine, at least [-].
 const SAMPLES: f64 = 25.0;
-/// Standard deviation of a tension that its errors are relative to at least, over its mean [-].
-const STILL: f64 = 0.01;
 /// Elements below those of the rung that are worth a trial, over them [-].
 const FEWER: f64 = 0.93;
 
@@ -60,14 +59,14 @@ struct Ladder {
 #[derive(Debug, Clone)]
 struct Run {
     elements: usize,
-    /// Tension at the driven end of every line after the start [N].
-    tension: Vec<Vec<f64>>,
+    /// History of every line after the start.
+    histories: Vec<History>,
 }
 
 /// Result of one run for all lines.
 struct Record {
-    /// Tension at the driven end of every line after the start [N].
-    tension: Vec<Vec<f64>>,
+    /// History of every line after the start.
+    histories: Vec<History>,
     /// Cost in explicit steps of an element [-].
     work: f64,
 }
@@ -87,7 +86,7 @@ impl Ladder {
         let lines = self.lines.iter();
         Run {
             elements,
-            tension: lines.map(|&line| record.tension[line].clone()).collect(),
+            histories: lines.map(|&line| record.histories[line].clone()).collect(),
         }
     }
 
@@ -403,9 +402,10 @@ impl<'a> Search<'a> {
         }
         let model = simulation.model();
         let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();
-        let ends: Vec<usize> = (0..model.lines.len()).map(|line| driven(model, line)).collect();
         let mut record = Record {
-            tension: vec![Vec::new(); ends.len()],
+            histories: (0..model.lines.len())
+                .map(|line| History::of(scene, model, line))
+                .collect(),
             work: 0.0,
         };
         let output = &scene.output;
@@ -418,12 +418,8 @@ impl<'a> Search<'a> {
             if sample < self.from {
                 continue;
             }
-            for (line, &end) in ends.iter().enumerate() {
-                record.tension[line].push(match end {
-                    0 => simulation.tension_a(line),
-                    _ => simulation.tension_b(line),
-                });
-            }
+            let histories = record.histories.iter_mut().enumerate();
+            histories.for_each(|(line, history)| history.add(&simulation, line));
         }
         self.work += record.work;
         Ok(Some(record))
@@ -512,21 +508,13 @@ fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
     (smooth * whole).max(distance(middle, fine))
 }
 
-/// RMS of the difference of two runs over the standard deviation of the tension in the second, or over a hundredth of
-/// its mean if that is more [-], of the line where it is greatest: lines that hardly move need no relative accuracy
-/// of their small variation.
+/// RMS of the difference of two runs over the deviation of the second, or the least that counts if that is more [-], of the line where it is
+/// greatest: lines that hardly move need no relative accuracy of their small variation.
 fn distance(run: &Run, reference: &Run) -> f64 {
-    let lines = run.tension.iter().zip(&reference.tension);
-    let of_line = |(own, right): (&Vec<f64>, &Vec<f64>)| {
-        let mean = right.iter().sum::<f64>() / right.len() as f64;
-        let scale = rms(right.iter().map(|value| value - mean)).max(STILL * mean.abs());
-        let wrong = rms(own.iter().zip(right).map(|(a, b)| a - b));
-        if scale == 0.0 { 0.0 } else { wrong / scale }
+    let lines = run.histories.iter().zip(&reference.histories);
+    let of_line = |(own, right): (&History, &History)| match right.deviation() {
+        0.0 => 0.0,
+        scale => own.difference(right) / scale,
     };
     lines.map(of_line).fold(0.0, f64::max)
-}
-
-fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
-    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
 }

@@ -128,6 +128,7 @@ impl Scene {
             line_type.is_some_and(LineType::bends)
         };
         let (rests, meshed) = (self.is_quasi_static(), !self.lines.iter().any(Line::is_open));
+        let still = self.motion.is_empty() && self.points.iter().all(|point| point.motion.is_none());
         let chosen = solver.integrator != Integrator::Auto || self.sections().all(bends);
         rules! { notes, "solver";
             "" if alone && solver.input_reconstruction != Reconstruction::Smooth =>
@@ -142,6 +143,8 @@ impl Scene {
                 "all lines or their sections have `elements`, and here `elements` changes nothing";
             "" if meshed && chosen && solver.tolerance != usual.tolerance =>
                 "elements and integrator are given, so that `tolerance` changes nothing";
+            "" if (meshed || solver.elements.is_some() || still) && solver.tolerance_of != usual.tolerance_of =>
+                "no trials with the motion of the scene select elements: `tolerance_of` changes nothing";
         }
     }
 }

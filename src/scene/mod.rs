@@ -97,7 +97,9 @@ pub use places::Places;
 pub use point::{Axis, Point, PointForce, PointKind, PointMoment, Vessel};
 pub use read::{LoadedScene, TOML, folder_of, is_toml, load, load_text, part, read_text};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
-pub use settings::{Bossak, Format, Frames, Integrator, Output, Reconstruction, Solver, Threads};
+pub use settings::{
+    Bossak, Format, Frames, Integrator, Output, Reconstruction, Solver, Threads, ToleranceOf,
+};
 use table::{not_negative, table};
 pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};

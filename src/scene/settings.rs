@@ -14,6 +14,8 @@ table! {
         /// Target error of fairlead tension [-].
         pub tolerance: f64 = 0.02 => within(1e-12, 0.5).described("target error of fairlead tension; sets integrator and steps where the \
             scene leaves them open; elements stay those of the packaged scene"),
+        /// Quantity whose RMS error over its standard deviation the trials of meshes and steps hold to the tolerance.
+        pub tolerance_of: ToleranceOf = ToleranceOf::Tension,
         /// Elements of a line alone [-], where lines and sections leave their number open; chosen from the tolerance where absent.
         pub elements: Option<usize> => within(1.0, ELEMENTS_MAX).elsewhere(&["segments"]),
         /// Time integrator; `dynamics` is another name of the key.
@@ -32,6 +34,26 @@ table! {
             points: 0 smooth, 1 constant velocity with a jump, 2 cubics through inputs that hold for the end of the step"),
         /// Number of threads that share the lines [-], 1 to 256, or `"auto"`. Results do not depend on it.
         pub threads: Threads = Threads::Auto,
+    }
+}
+
+choice! {
+    /// Quantity that a tolerance refers to.
+    pub enum ToleranceOf {
+        /// Tension at the driven end of every line.
+        Tension = "tension",
+        /// Positions of the points at a quarter, a half and three quarters of every line's length.
+        Position = "position",
+    }
+}
+
+impl ToleranceOf {
+    /// Name of the quantity in a sentence.
+    pub(super) fn in_words(self) -> &'static str {
+        match self {
+            ToleranceOf::Tension => "fairlead tension",
+            ToleranceOf::Position => "positions along lines",
+        }
     }
 }
 

@@ -72,7 +72,11 @@ impl Scene {
         let tensions = output.channels.iter().any(|name| Channel::is_tension(name));
         let always = [
             self.integrator_in_words(),
-            format!("target error of fairlead tension {}", percent(solver.tolerance)),
+            format!(
+                "target error of {} {}",
+                solver.tolerance_of.in_words(),
+                percent(solver.tolerance)
+            ),
             compression.to_string(),
             format!("`run` covers {duration} and writes every {interval}{nodes}{tables}"),
         ];
