@@ -408,7 +408,7 @@ REFUSED = {
                      "SetLineConstantEA", "IsLinePressBend", "SetLinePressBend", "SetLinePressInt"], _LINES),
     **dict.fromkeys(["GetSeafloor", "GetDepthAt", "GetAverageDepth", "GetMinDepth"], "the seabed is that of the scene"),
     **dict.fromkeys(["GetBodyType", "GetPointType"], "types are words in moorline: see the scene's points and vessels"),
-    **dict.fromkeys(["GetBodyState", "GetBodyPos", "GetBodyAngle", "GetBodyVel", "GetBodyAngVel"], "bodies move as the host says"),
-    "BreakLine": "a line that may be released says so in the scene, and `release` is then an input of Simulation",
+    **dict.fromkeys(["GetBodyState", "GetBodyPos", "GetBodyAngle", "GetBodyVel", "GetBodyAngVel"], "the motion of a body is the input of the host"),
+    "BreakLine": "`release` in the scene declares a line that may be released, and is then an input of Simulation",
 }
 globals().update({name: _refusal(name) for name in REFUSED})
