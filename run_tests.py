@@ -88,7 +88,7 @@ def release_folder():
 
 
 def test_wheel(interpreter, arguments):
-    """Builds the wheel of the Python package, installs it into .venv and runs its tests; says whether they passed."""
+    """Builds the wheel of the Python package, installs it into .venv and runs its tests; returns whether they passed."""
     with tempfile.TemporaryDirectory() as folder:
         if not run(interpreter, ROOT / "python" / "build.py", "-o", folder):
             return False

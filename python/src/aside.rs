@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 /// Time between two looks for a signal.
 const LISTEN_EVERY: Duration = Duration::from_millis(50);
 
-/// What the two threads share.
+/// State shared by the two threads.
 #[derive(Debug, Default)]
 pub(crate) struct Control {
     stops: AtomicBool,

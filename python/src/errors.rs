@@ -73,7 +73,7 @@ impl Failure {
     }
 
     /// Class and message of the exception.
-    fn told(&self) -> (&'static str, String) {
+    fn class_and_message(&self) -> (&'static str, String) {
         match self {
             Failure::Load(error) if error.mistakes().len() > 1 => ("SceneError", error.list()),
             Failure::Load(error) => ("SceneError", error.to_string()),
@@ -92,10 +92,10 @@ impl Failure {
     }
 
     /// Sets the attributes of the exception.
-    fn tell(&self, facts: &Bound<'_, PyDict>) -> PyResult<()> {
+    fn set_facts(&self, facts: &Bound<'_, PyDict>) -> PyResult<()> {
         match self {
             Failure::Load(LoadError::Scene { text, mistakes, .. }) => {
-                tell_mistakes(mistakes, Some(text), facts)
+                set_mistakes(mistakes, Some(text), facts)
             }
             Failure::Load(
                 LoadError::Unreadable { path, problem } | LoadError::NotText { path, problem, .. },
@@ -103,10 +103,10 @@ impl Failure {
                 facts.set_item("place", path)?;
                 facts.set_item("problem", problem)
             }
-            Failure::Scene(mistakes) => tell_mistakes(mistakes, None, facts),
-            Failure::Statics(error) => tell_statics(error, facts),
+            Failure::Scene(mistakes) => set_mistakes(mistakes, None, facts),
+            Failure::Statics(error) => set_statics(error, facts),
             Failure::Modes(error) => facts.set_item("problem", error.to_string()),
-            Failure::Step(error) => tell_step(error, facts),
+            Failure::Step(error) => set_step(error, facts),
             Failure::Result(name, problem)
             | Failure::Input(name, problem)
             | Failure::Output(name, problem) => {
@@ -119,10 +119,10 @@ impl Failure {
 
     /// The exception, to be raised or returned.
     pub(crate) fn raised(&self, py: Python<'_>) -> PyErr {
-        let (class, message) = self.told();
+        let (class, message) = self.class_and_message();
         let make = || {
             let facts = PyDict::new(py);
-            self.tell(&facts)?;
+            self.set_facts(&facts)?;
             let class = py.import("moorline.errors")?.getattr(class)?;
             class.call((message,), Some(&facts))
         };
@@ -149,7 +149,7 @@ impl From<StepError> for Failure {
 }
 
 /// Place, problem, line and column of the first mistake, and a list of those of all.
-fn tell_mistakes(mistakes: &[SceneError], text: Option<&str>, facts: &Bound<'_, PyDict>) -> PyResult<()> {
+fn set_mistakes(mistakes: &[SceneError], text: Option<&str>, facts: &Bound<'_, PyDict>) -> PyResult<()> {
     let list = PyList::empty(facts.py());
     for mistake in mistakes {
         let place = text.filter(|_| mistake.span.is_some());
@@ -171,7 +171,7 @@ fn split_advice(message: &str) -> (&str, Option<&str>) {
     }
 }
 
-fn tell_statics(error: &StaticsError, facts: &Bound<'_, PyDict>) -> PyResult<()> {
+fn set_statics(error: &StaticsError, facts: &Bound<'_, PyDict>) -> PyResult<()> {
     let message = error.to_string();
     let (problem, advice) = split_advice(&message);
     let at_node = |line: &str, node: usize| format!("line \"{line}\", node {node}");
@@ -200,7 +200,7 @@ fn tell_statics(error: &StaticsError, facts: &Bound<'_, PyDict>) -> PyResult<()>
     facts.set_item("residual", residual)
 }
 
-fn tell_step(error: &StepError, facts: &Bound<'_, PyDict>) -> PyResult<()> {
+fn set_step(error: &StepError, facts: &Bound<'_, PyDict>) -> PyResult<()> {
     let StepError {
         time,
         line,

@@ -1,4 +1,4 @@
-//! Columns of a motion as the motion of a scene: what a motion file is, from memory.
+//! Columns of a motion in memory as the motion of a scene, as a motion file has them.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,11 @@ const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 /// Column of the time [s].
 const TIME: &str = "time";
 
-/// Scene with the motion of columns such as `time` and `fairlead.x`; the bodies that the columns name move no longer as the scene says.
+/// Scene with the motion of columns such as `time` and `fairlead.x`; it replaces the motions that the scene has for these bodies.
 /// The run lasts until `duration` [s], or until the last time.
 ///
 /// # Errors
-/// The column, and what would be right.
+/// The column, the mistake and a correction.
 pub(crate) fn with_columns(
     mut scene: Scene,
     columns: &[(String, Vec<f64>)],

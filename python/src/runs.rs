@@ -20,7 +20,7 @@ use crate::errors::Failure;
 use crate::parameters;
 use crate::scene::Scene;
 
-/// What to keep of a run.
+/// Parts of a run to be kept.
 #[derive(Debug, Clone, Default)]
 struct Kept {
     /// Columns beside the time; all where absent.
@@ -242,7 +242,7 @@ impl Outcome {
     }
 
     /// The table, or an exception with the table up to the failure.
-    fn told(self, py: Python<'_>) -> PyResult<Result<Bound<'_, PyAny>, PyErr>> {
+    fn into_python(self, py: Python<'_>) -> PyResult<Result<Bound<'_, PyAny>, PyErr>> {
         let table = self.rows.map(|rows| rows.table(py)).transpose()?;
         let table = table.unwrap_or_else(|| py.None().into_bound(py));
         let Some(failure) = self.failure else {
@@ -288,7 +288,7 @@ pub(crate) fn run<'py>(
         control.expect(count(&scene.loaded));
         run_one(&scene.discretise(), &kept, control)
     })?;
-    done.told(py)?
+    done.into_python(py)?
 }
 
 /// Runs scenes on several threads: see `moorline.batch`.
@@ -318,7 +318,7 @@ pub(crate) fn batch<'py>(
     })?;
     let list = PyList::empty(py);
     for one in done {
-        match one.told(py)? {
+        match one.into_python(py)? {
             Ok(table) => list.append(table)?,
             Err(exception) => list.append(exception.value(py))?,
         }

@@ -117,7 +117,7 @@ impl State {
     }
 }
 
-/// What does not change in a simulation.
+/// Constant part of a simulation.
 #[derive(Debug)]
 struct Table {
     loaded: Arc<LoadedScene>,

@@ -1,4 +1,4 @@
-"""What tests of the Python package share. They run against the installed wheel."""
+"""Scenes and fixtures of the tests, which run against the installed wheel."""
 
 import pathlib
 import subprocess

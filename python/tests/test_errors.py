@@ -1,4 +1,4 @@
-"""Errors say where, what, and what would be right."""
+"""Errors give the place, the mistake and a correction."""
 
 import math
 import pickle

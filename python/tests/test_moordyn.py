@@ -51,8 +51,8 @@ def place(t):
 
 
 def driven(module, deck, end=24.0, dt=0.02):
-    """A script of a host, for either module: forces on the fairlead in time. MoorDyn's points jump at the end of a step where the velocity is
-    not that of the way through it."""
+    """A script of a host, for either module: forces on the fairlead in time. The velocity is the mean over a step: MoorDyn's points jump at
+    the end of a step with another."""
     system = module.Create(deck)
     assert module.NCoupledDOF(system) == 3
     module.Init(system, [5.0, 0.0, -10.0], [0.0] * 3)

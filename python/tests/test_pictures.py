@@ -1,4 +1,4 @@
-"""Pictures: what is drawn. Their looks are checked by eye."""
+"""Content of pictures."""
 
 import matplotlib
 

@@ -60,7 +60,7 @@ def test_a_table_is_a_frame_of_pandas_polars_and_arrow_as_it_is(chain):
     assert table.substeps == table["solver.substeps"].sum() > 0
 
 
-def test_columns_and_shapes_are_kept_as_asked(chain):
+def test_a_run_keeps_the_columns_and_shapes_requested(chain):
     table = moorline.run(chain, duration=2.0, columns=["line1.tension_b"], shapes=0.5)
     assert list(table) == ["time", "line1.tension_b"]
     line = table.shapes.lines["line1"]
@@ -112,10 +112,10 @@ def test_other_threads_of_python_run_meanwhile(chain):
     assert counted[0] > 20
 
 
-def test_progress_is_told_and_can_end_a_run(chain):
-    told = []
-    moorline.run(chain, duration=600.0, progress=lambda done, total: told.append((done, total)))
-    assert told and told[-1] == (12000, 12000) and sorted(told) == told
+def test_progress_is_reported_and_can_end_a_run(chain):
+    reported = []
+    moorline.run(chain, duration=600.0, progress=lambda done, total: reported.append((done, total)))
+    assert reported and reported[-1] == (12000, 12000) and sorted(reported) == reported
 
     class Enough(Exception):
         pass

@@ -1,4 +1,4 @@
-"""What the wheel holds: the command line, the FMU library, types."""
+"""Content of the wheel: the command line, the FMU library, types."""
 
 import ast
 import importlib.metadata
@@ -90,7 +90,7 @@ def test_the_snippet_of_the_readme_runs(tmp_path):
     assert float(done.stdout.split()[0]) > 1e5
 
 
-def test_help_says_what_the_stubs_say():
+def test_help_and_stubs_have_the_same_text():
     tree = ast.parse(pathlib.Path(moorline.__file__).with_name("_moorline.pyi").read_text())
     compared = 0
     for node in tree.body:

@@ -1,4 +1,4 @@
-"""Errors of moorline: what is wrong, where, and what would be right."""
+"""Errors of moorline, with the place, the mistake and a correction."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ class Error(Exception):
     problem: str
     """The problem, without its place."""
     advice: str | None
-    """What to try; None where the problem says what would be right."""
+    """A remedy; None where the problem contains it."""
     partial: Any
     """Table of a failed run up to the failure; None of other errors."""
 

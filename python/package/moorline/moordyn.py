@@ -7,9 +7,9 @@
 
 Positions and velocities are those of the coupled bodies (six numbers each) and then of the coupled points (three each), in the order of the
 deck; angles are MoorDyn's, R = Rx·Ry·Rz. Positions hold for the start of a step and velocities over all of it; forces are those at its end,
-where the points have moved on by velocity times step. Points move smoothly from one such place to the next. Contact and the law of slack lines are
-MoorDyn's too. Forces are the reaction at the coupled points: with the inertia of the half segments there, which MoorDyn leaves out. What
-moorline does not model raises NotImplementedError. Messages go to the logger `moorline.moordyn`.
+where the points have moved on by velocity times step. Points move smoothly from one such place to the next. Contact and the law of slack
+lines are MoorDyn's too. Forces are the reaction at the coupled points: with the inertia of the half segments there, which MoorDyn leaves
+out. Functions for things that moorline does not model raise NotImplementedError. Messages go to the logger `moorline.moordyn`.
 """
 
 import logging
@@ -53,7 +53,7 @@ class System:
         return 6 * len(self.vessels) + 3 * len(self.coupled)
 
     def inputs(self, x: Sequence[float], v: Sequence[float], dt: float) -> dict[str, float | None]:
-        """Inputs of moorline at the end of a step [s] over which the velocities are constant: displacements from the reference, angles Z-Y-X."""
+        """Inputs of moorline at the end of a step [s] of constant velocities: displacements from the reference, angles Z-Y-X."""
         for name, given in (("x", x), ("v", v)):
             if len(given) != self.freedom:
                 raise InputError(f"{name}: {len(given)} numbers, but there are {self.freedom} coupled degrees of freedom", place=name)
@@ -408,7 +408,7 @@ REFUSED = {
                      "SetLineConstantEA", "IsLinePressBend", "SetLinePressBend", "SetLinePressInt"], _LINES),
     **dict.fromkeys(["GetSeafloor", "GetDepthAt", "GetAverageDepth", "GetMinDepth"], "the seabed is that of the scene"),
     **dict.fromkeys(["GetBodyType", "GetPointType"], "types are words in moorline: see the scene's points and vessels"),
-    **dict.fromkeys(["GetBodyState", "GetBodyPos", "GetBodyAngle", "GetBodyVel", "GetBodyAngVel"], "bodies move as the host says"),
-    "BreakLine": "a line that may be released says so in the scene, and `release` is then an input of Simulation",
+    **dict.fromkeys(["GetBodyState", "GetBodyPos", "GetBodyAngle", "GetBodyVel", "GetBodyAngVel"], "the motion of a body is an input"),
+    "BreakLine": "`release` in the scene declares a line that may be released, and is then an input of Simulation",
 }
 globals().update({name: _refusal(name) for name in REFUSED})

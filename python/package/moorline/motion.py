@@ -1,4 +1,4 @@
-"""Motions from memory: what a motion file is, as columns."""
+"""Motions in memory: the columns of a motion file as arrays."""
 
 from collections.abc import Mapping
 from typing import Any

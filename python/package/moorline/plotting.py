@@ -47,7 +47,7 @@ class Frame(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """What is to be drawn at one time."""
+    """Content of a picture at one time."""
 
     scene: dict[str, Any]
     """The scene."""
@@ -76,7 +76,7 @@ def plot(what: Scene | Simulation | Table, *, ax: "Axes | None" = None, across: 
 
 
 def plot3d(what: Scene | Simulation | Table, *, ax: "Axes3D | None" = None, frame: int = -1) -> "Axes3D":
-    """Draws a view in space of what `plot` takes."""
+    """Draws a view in space; the arguments are those of `plot`."""
     picture = _picture(what, frame)
     if ax is None:
         from matplotlib import pyplot
@@ -128,7 +128,7 @@ def _shapes(table: Table) -> Shapes:
 
 
 def _picture(what: Any, frame: int) -> Picture:
-    """The lines and vessels of what is to be drawn."""
+    """Lines and vessels at the time of the picture."""
     if isinstance(what, Simulation):
         scene = what.scene.to_dict()
         lines = [Shape(name, what.positions(name), what.tensions(name)) for name in what.scene.lines]
@@ -224,7 +224,7 @@ def _bed(scene: dict[str, Any], x: Array, y: Array) -> Array | None:
 
 
 def _between(lines: list[float], places: Array) -> tuple[Any, Any, Array]:
-    """Lines of a grid on both sides of places, and the part of the way between them [-]; the outer lines stand for what is beyond."""
+    """Lines of a grid on both sides of places, and the part of the way between them [-]; outside, the outermost line holds."""
     last = len(lines) - 1
     at = np.interp(places, lines, np.arange(last + 1.0))
     below = np.minimum(at.astype(int), last)

@@ -127,7 +127,7 @@ class PointState(NamedTuple):
     velocity: Array
     """Velocity [m/s]."""
     force: Array
-    """Force of all lines, and of the mass and volume of the point, on what carries it [N]."""
+    """Force of all lines, and of the mass and volume of the point, on its support [N]."""
 
 
 class Hold(NamedTuple):
@@ -248,7 +248,7 @@ class Table(dict[str, NDArray[Any]]):
     notes: list[str]
     """Remarks on the scene and on the course of the run."""
     shapes: Shapes | None
-    """Shapes of the lines, where the run was asked for them."""
+    """Shapes of the lines; None of a run that does not keep them."""
     substeps: int
     """Internal steps [-]."""
     wall: float
