@@ -23,10 +23,12 @@ pub fn check_finite(columns: &[Column], row: &[f64]) -> Result<(), String> {
 }
 
 /// Columns of the results: time, variables of the interface, then channels.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Recorder {
     variables: Vec<Variable>,
     channels: Channels,
+    /// False if inputs and the elevation of the waves are left out.
+    has_inputs: bool,
     row: Vec<f64>,
 }
 
@@ -40,15 +42,29 @@ impl Recorder {
         Ok(Recorder {
             variables: recorded(&interface).cloned().collect(),
             channels: Channels::new(scene, model)?,
+            has_inputs: true,
             row: Vec::new(),
         })
+    }
+
+    /// Those columns of a scene's runs that the lines determine: outputs and channels, without inputs and the elevation of the waves.
+    ///
+    /// # Errors
+    /// As [`Recorder::new`].
+    pub fn of_outputs(scene: &Scene, model: &Model) -> Result<Recorder, SceneError> {
+        let mut recorder = Recorder::new(scene, model)?;
+        recorder
+            .variables
+            .retain(|variable| variable.causality == Causality::Output);
+        recorder.has_inputs = false;
+        Ok(recorder)
     }
 
     /// Columns behind the time.
     pub fn columns(&self, model: &Model) -> Vec<Column> {
         let mut all = columns(&self.variables);
         let elevation = "elevation of the surface at x = y = 0";
-        let waves = model.waves.as_ref();
+        let waves = model.waves.as_ref().filter(|_| self.has_inputs);
         all.extend(waves.map(|_| Column::new(ELEVATION, "m", elevation, Form::Real)));
         all.extend(self.channels.columns());
         all
@@ -59,14 +75,17 @@ impl Recorder {
         let (row, model) = (&mut self.row, simulation.model());
         row.clear();
         row.push(time);
-        let moving = model.moving(time);
+        let moving = match self.has_inputs {
+            true => model.moving(time),
+            false => Vec::new(),
+        };
         for variable in &self.variables {
             row.push(match input_of(variable, model, &moving, time) {
                 Some(input) => input,
                 None => output_of(variable, simulation),
             });
         }
-        let waves = model.waves.as_ref();
+        let waves = model.waves.as_ref().filter(|_| self.has_inputs);
         row.extend(waves.map(|waves| waves.elevation(0.0, 0.0, time)));
         row.extend(self.channels.values(simulation));
         row

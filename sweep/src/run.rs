@@ -104,6 +104,8 @@ struct Run {
     simulation: Simulation,
     recorder: Recorder,
     columns: Vec<Column>,
+    /// Places of the outputs in a row.
+    places: Vec<usize>,
     sums: Vec<RangeSum>,
     table: Option<WholeTable>,
     watch: Watch,
@@ -115,9 +117,20 @@ impl Run {
     fn start(case: &Case, scene: &Scene, series: Option<&Path>) -> Result<Run, Ended> {
         let mut simulation = Simulation::new(scene).map_err(failed)?;
         simulation.follow_scene().map_err(failed)?;
-        let recorder = Recorder::new(scene, simulation.model()).map_err(failed)?;
+        let outputs = Recorder::of_outputs(scene, simulation.model()).map_err(failed)?;
+        // inputs and the elevation of the waves stand in series only
+        let recorder = match series {
+            Some(_) => Recorder::new(scene, simulation.model()).map_err(failed)?,
+            None => outputs.clone(),
+        };
         let mut columns = vec![Column::time()];
         columns.extend(recorder.columns(simulation.model()));
+        let place = |output: Column| columns.iter().position(|column| column.name == output.name);
+        let places = outputs
+            .columns(simulation.model())
+            .into_iter()
+            .filter_map(place)
+            .collect();
         let table = series.map(|folder| {
             let format = scene.output.format.unwrap_or(Format::Parquet);
             let ending = if format == Format::Csv { "csv" } else { "parquet" };
@@ -131,6 +144,7 @@ impl Run {
             simulation,
             recorder,
             columns,
+            places,
             sums: Vec::new(),
             table: table.transpose()?,
             notes: Vec::new(),
@@ -171,12 +185,14 @@ impl Run {
         if let Some(table) = &mut self.table {
             table.row(row)?;
         }
-        let values = &row[1..];
+        let values = self.places.iter().map(|&place| [time, row[place]]);
         if counts && self.sums.is_empty() {
-            self.sums = values.iter().map(|value| RangeSum::new([time, *value])).collect();
+            self.sums = values.map(RangeSum::new).collect();
         } else if counts {
-            let sums = self.sums.iter_mut().zip(values);
-            sums.for_each(|(sum, value)| sum.add([time, *value]));
+            self.sums
+                .iter_mut()
+                .zip(values)
+                .for_each(|(sum, value)| sum.add(value));
         }
         Ok(())
     }
@@ -186,9 +202,9 @@ impl Run {
         if let Some(table) = self.table.take() {
             table.finish()?;
         }
-        let quantities = self.columns[1..].iter().map(|column| Quantity {
-            name: column.name.clone(),
-            unit: column.unit.clone(),
+        let quantities = self.places.iter().map(|&place| Quantity {
+            name: self.columns[place].name.clone(),
+            unit: self.columns[place].unit.clone(),
         });
         let figures = self.sums.iter().map(|sum| {
             let range = sum.range();

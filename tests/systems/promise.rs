@@ -364,7 +364,7 @@ fn field(name: &str, copies: usize) -> Scene {
     let motion = scene.motion[&to.name].clone();
     for copy in 1..=copies {
         let along = [700.0 * copy as f64, -300.0 * copy as f64];
-        let named = |name: &str| format!("{name} {copy}");
+        let named = |name: &str| format!("{name}_{copy}");
         for point in [&from, &to] {
             let [x, y, z] = point.position;
             let mut point = point.clone();

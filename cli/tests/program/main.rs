@@ -5,11 +5,13 @@ mod continued;
 mod decks;
 mod drive;
 mod fmu;
+mod manual;
 mod modes;
 mod places;
 mod run;
 mod statics;
 mod study;
+mod sweep;
 #[path = "../../../tests/common/text.rs"]
 mod text;
 
