@@ -163,8 +163,7 @@ pub(crate) enum Shell {
     /// Fish.
     Fish,
     /// PowerShell.
-    #[value(name = "powershell")]
-    PowerShell,
+    Powershell,
 }
 
 /// Input file, with the data that a deck leaves to its host.
