@@ -4,15 +4,17 @@
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use moorline::output::channels::Channels;
+use moorline::output::{collect, vtk, write_file};
 use moorline::simulation::Simulation;
 
 use crate::deck::Deck;
 use crate::failure::{Code, Failure, Outcome};
 use crate::log::{Log, WARNING};
 use crate::nodes::{Quantity, damping, stretch, vector};
+use crate::system::System;
 
 /// Part of an interval by which a row may come early [-].
 const EARLY: f64 = 1e-6;
@@ -76,7 +78,7 @@ impl Table {
     }
 }
 
-fn refusal(path: &std::path::Path, error: &std::io::Error) -> Failure {
+fn refusal(path: &Path, error: &std::io::Error) -> Failure {
     Failure::new(
         Code::InvalidOutputFile,
         format!("cannot write {}: {error}", path.display()),
@@ -243,6 +245,25 @@ fn values(group: Group, simulation: &Simulation, line: usize) -> Vec<f64> {
         Group::Damping => (0..count)
             .flat_map(|segment| damping(simulation, line, segment).unwrap_or([f64::NAN; 3]))
             .collect(),
+    }
+}
+
+impl System {
+    /// Writes the shape of all lines, or of one by its row in the deck, for ParaView.
+    ///
+    /// # Errors
+    /// No such line, a system that was not started, or a file that the operating system refuses.
+    pub fn save_vtk(&self, path: &Path, line: Option<usize>) -> Outcome {
+        if let Some(line) = line {
+            self.line(line)?;
+        }
+        let simulation = self.simulation()?;
+        let mut frame = collect::frame(simulation, self.time()?);
+        if let Some(line) = line {
+            frame.lines = vec![frame.lines.swap_remove(line)];
+        }
+        write_file(path, |out| vtk::write_frame(&frame, out))
+            .map_err(|error| Failure::new(Code::InvalidOutputFile, error.to_string()))
     }
 }
 

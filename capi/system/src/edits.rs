@@ -6,6 +6,11 @@ use moorline::simulation::Simulation;
 use crate::failure::{Code, Failure, Outcome};
 use crate::system::{Start, System};
 
+/// Names of time schemes without their numbers.
+const SCHEMES: [&str; 11] = [
+    "Euler", "LEuler", "Heun", "RK", "AB", "LAB", "BEuler", "Midpoint", "ACA", "Wilson", "LRK",
+];
+
 impl System {
     fn check_not_started(&self, what: &str) -> Outcome {
         match self.simulation {
@@ -107,6 +112,36 @@ impl System {
         }
         self.dt = dt;
         self.deck.scene.solver.time_step_max = dt.min(1e4);
+        Ok(())
+    }
+
+    /// Keeps a Courant number [-].
+    ///
+    /// # Errors
+    /// A number that is not positive.
+    pub fn set_cfl(&mut self, cfl: f64) -> Outcome {
+        if !(cfl.is_finite() && cfl > 0.0) {
+            return Err(Failure::value(format!(
+                "the Courant number {cfl} is not positive"
+            )));
+        }
+        self.cfl = cfl;
+        Ok(())
+    }
+
+    /// Keeps the name of a time scheme.
+    ///
+    /// # Errors
+    /// A name that is none of such schemes.
+    pub fn set_scheme(&mut self, name: &str) -> Outcome {
+        let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        if !SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(stem)) {
+            let known = SCHEMES.join(", ");
+            return Err(Failure::value(format!(
+                "there is no time scheme {name:?}: known are {known}, with a number where they have one"
+            )));
+        }
+        self.scheme = name.to_string();
         Ok(())
     }
 
