@@ -2,9 +2,11 @@
 //!
 //! Two lines of names and units, then a row for every `dtOut`, in columns of fixed width: time in ten letters, every value in twenty.
 
+use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use moorline::output::channels::Channels;
 use moorline::output::{collect, vtk, write_file};
@@ -15,6 +17,9 @@ use crate::failure::{Code, Failure, Outcome};
 use crate::log::{Log, WARNING};
 use crate::nodes::{Quantity, damping, stretch, vector};
 use crate::system::System;
+
+/// Time after which rows are in the file.
+const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Part of an interval by which a row may come early [-].
 const EARLY: f64 = 1e-6;
@@ -51,6 +56,8 @@ enum Group {
 struct Table {
     path: PathBuf,
     out: BufWriter<File>,
+    line: String,
+    flushed: Instant,
 }
 
 impl Table {
@@ -58,6 +65,8 @@ impl Table {
         let file = File::create(&path).map_err(|error| refusal(&path, &error))?;
         let mut table = Table {
             out: BufWriter::new(file),
+            line: String::new(),
+            flushed: Instant::now(),
             path,
         };
         table.head("Time", names)?;
@@ -72,8 +81,17 @@ impl Table {
     }
 
     fn row(&mut self, time: f64, values: impl Iterator<Item = f64>) -> Outcome {
-        let cells: String = values.map(|value| format!("{:>20}", scientific(value))).collect();
-        let written = writeln!(self.out, "{time:>10.4}{cells}").and_then(|()| self.out.flush());
+        self.line.clear();
+        let _ = write!(self.line, "{time:>10.4}"); // a text takes any text
+        for value in values {
+            push_scientific(value, &mut self.line);
+        }
+        self.line.push('\n');
+        let mut written = self.out.write_all(self.line.as_bytes());
+        if self.flushed.elapsed() > FLUSH_INTERVAL {
+            self.flushed = Instant::now();
+            written = written.and_then(|()| self.out.flush());
+        }
         written.map_err(|error| refusal(&self.path, &error))
     }
 }
@@ -85,17 +103,23 @@ fn refusal(path: &Path, error: &std::io::Error) -> Failure {
     )
 }
 
-/// A number with seven decimals and a signed exponent of two digits or more, as C writes it.
-fn scientific(value: f64) -> String {
-    let text = format!("{value:.7e}");
-    let Some((digits, exponent)) = text.split_once('e') else {
-        return text;
-    };
-    let (sign, size) = match exponent.strip_prefix('-') {
-        Some(size) => ('-', size),
-        None => ('+', exponent),
-    };
-    format!("{digits}e{sign}{size:0>2}")
+/// Adds a number in twenty letters: with seven decimals and a signed exponent of two digits or more, as C writes it.
+fn push_scientific(value: f64, line: &mut String) {
+    let start = line.len();
+    let _ = write!(line, "{value:.7e}"); // a text takes any text
+    if let Some(at) = line[start..].find('e').map(|at| start + at + 1) {
+        let is_negative = line[at..].starts_with('-');
+        let digits = at + usize::from(is_negative);
+        if line.len() - digits < 2 {
+            line.insert(digits, '0');
+        }
+        if !is_negative {
+            line.insert(at, '+');
+        }
+    }
+    const BLANKS: &str = "                    ";
+    let missing = BLANKS.len().saturating_sub(line.len() - start);
+    line.insert_str(start, &BLANKS[..missing]);
 }
 
 /// Files of a system.
@@ -273,14 +297,11 @@ mod tests {
 
     #[test]
     fn numbers_are_written_as_c_writes_them() {
-        let written = [0.0, -1.5, 1.0e100, 839_376.28, 1e-9].map(scientific);
-        let expected = [
-            "0.0000000e+00",
-            "-1.5000000e+00",
-            "1.0000000e+100",
-            "8.3937628e+05",
-            "1.0000000e-09",
-        ];
-        assert_eq!(written, expected);
+        let mut line = String::from("|");
+        for value in [0.0, -1.5, 1.0e100, 839_376.28, 1e-9] {
+            push_scientific(value, &mut line);
+        }
+        let expected = "|       0.0000000e+00      -1.5000000e+00      1.0000000e+100       8.3937628e+05       1.0000000e-09";
+        assert_eq!(line, expected);
     }
 }

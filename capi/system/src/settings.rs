@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `MOORLINE_FORCE` | `nodal`: force of the lumped end node without its inertia; `reaction`: the load on the support, with it | `nodal` |
 //! | `MOORLINE_LAWS` | `moordyn`: damping acts in compression, contact as given in the deck; `moorline`: neither | `moordyn` |
-//! | `MOORLINE_PATH` | `smooth`: a C1 path through the ends of the steps; `jump`: constant velocity from where the host is; `predict`: the C1 path of moorline's own hosts | `smooth` |
+//! | `MOORLINE_PATH` | `jump`: constant velocity from where the host is, as in MoorDyn, with a jump at the start of the step; `smooth`: a C1 path through the ends of the same steps; `predict`: the C1 path of moorline's own hosts | `jump` |
 //! | `MOORLINE_TOLERANCE` | target error of the fairlead tension by the time steps, 1e-12 to 0.5 | `0.005` |
 
 use moorline::scene::{ContactLaw, Reconstruction, Scene};
@@ -34,11 +34,11 @@ pub enum Laws {
 /// Path of coupled objects within a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Path {
-    /// C1 through the positions that constant velocities reach at the ends of the steps.
-    #[default]
-    Smooth,
     /// Constant velocity from the position that the host gives, with a jump at the start of the step.
+    #[default]
     Jump,
+    /// C1 through the positions that constant velocities reach at the ends of the steps.
+    Smooth,
     /// C1 towards a predicted position.
     Predict,
 }
@@ -92,8 +92,8 @@ impl Settings {
             path: choice(
                 of("MOORLINE_PATH"),
                 &[
-                    ("smooth", Path::Smooth),
                     ("jump", Path::Jump),
+                    ("smooth", Path::Smooth),
                     ("predict", Path::Predict),
                 ],
             )?,

@@ -108,6 +108,7 @@ impl System {
         self.place = [x.to_vec(), xd.to_vec()];
         self.files = None;
         self.open_files()?;
+        self.write_channels(0.0)?;
         for choice in self.simulation.iter().flat_map(Simulation::choices) {
             let text = format!("integrator {:?}, {}", choice.integrator, choice.in_words());
             self.log.write(MESSAGE, &text);
@@ -225,8 +226,11 @@ impl System {
             return Err(step_failure(&error));
         }
         self.has_stepped = true;
-        let reached = x.iter().zip(xd).map(|(x, v)| x + v * dt);
-        self.place = [reached.collect(), xd.to_vec()];
+        let [place, rate] = &mut self.place;
+        place.clear();
+        place.extend(x.iter().zip(xd).map(|(x, v)| x + v * dt));
+        rate.clear();
+        rate.extend_from_slice(xd);
         let time = t + dt;
         self.write_channels(time)?;
         Ok(Stepped { time })

@@ -57,7 +57,7 @@ impl Header {
             cpp_compat: true,
             include_guard: Some(self.guard.to_string()),
             header: Some(format!("/* {}\n *\n * {}\n */", self.title, self.note)),
-            documentation_style: cbindgen::DocumentationStyle::C,
+            documentation_style: cbindgen::DocumentationStyle::C99,
             line_length: 140,
             usize_is_size_t: true,
             no_includes: true,
