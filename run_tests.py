@@ -33,7 +33,8 @@ REQUIREMENTS = [ROOT / "python_tests" / "requirements.txt", ROOT / "python" / "r
 CONFORMANCE = ROOT / "fmu" / "conformance" / "run.sh"
 PYTHON_MIN = (3, 11)
 # Does not change the program: it is built with the feature so that the library is built once.
-SLOW_TESTS = "--features", "moorline/slow-tests,moorline-accuracy/slow-tests,moorline-cli/slow-tests,moorline-fmu/slow-tests"
+PACKAGES = "moorline", "moorline-accuracy", "moorline-c", "moorline-cli", "moorline-fmu", "moorline-moordyn"
+SLOW_TESTS = "--features", ",".join(f"{package}/slow-tests" for package in PACKAGES)
 # The first needs libclang from .venv and has a script of its own; the second is a module of Python, tested as its wheel.
 LEFT_OUT = "--exclude", "moorline-conformance", "--exclude", "moorline-python"
 

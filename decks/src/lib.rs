@@ -28,6 +28,8 @@ use moorline::scene::{
     LoadError, LoadedScene, Note, Scene, SceneError, TensionStrain, folder_of, is_toml, load_text, read_text,
 };
 
+pub use moordyn::lists::{BodyRow, Carrier, LineRow, Lists, RodRow, lists as moordyn_lists};
+
 use draft::Draft;
 use findings::MISTAKES_MAX;
 

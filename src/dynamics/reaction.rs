@@ -86,64 +86,44 @@ pub fn end_force(
     state: &LineState,
     end: End,
     point: &PointState,
-    (water, moments): (WaterAlong, [Vector3<f64>; 2]),
+    loads: (WaterAlong, [Vector3<f64>; 2]),
     negative_tension: bool,
 ) -> Vector3<f64> {
+    force_of_line(line, state, end, point).unwrap_or_else(|| {
+        let half = HalfNode::new(line, state, end, point, loads);
+        half.force(state, line.linear_load[end as usize], negative_tension)
+    })
+}
+
+/// Force [N] of the end node on its point as codes of lumped masses report it: pull of the end's segment, weight, drag and contact of its
+/// half, all lumped at the node, without inertia. Beams and closed-form catenaries have no such node: theirs is [`end_force`].
+pub fn nodal_force(
+    line: &Line,
+    state: &LineState,
+    end: End,
+    point: &PointState,
+    loads: (WaterAlong, [Vector3<f64>; 2]),
+    negative_tension: bool,
+) -> Vector3<f64> {
+    force_of_line(line, state, end, point).unwrap_or_else(|| {
+        let point = point.without_acceleration();
+        HalfNode::new(line, state, end, &point, loads).force(state, false, negative_tension)
+    })
+}
+
+/// Force [N] at an end that has no half node: of a released end, a beam or a closed-form catenary.
+fn force_of_line(line: &Line, state: &LineState, end: End, point: &PointState) -> Option<Vector3<f64>> {
     if state.released[usize::from(end == End::B)] {
-        return Vector3::zeros();
+        return Some(Vector3::zeros());
     }
     if let Some(view) = BeamView::of(line, state) {
-        return view.end_action(end, point).0;
+        return Some(view.end_action(end, point).0);
     }
-    if let Some(closed_form) = &state.closed_form {
-        let [a, b] = closed_form.end_force;
-        return match end {
-            End::A => a,
-            End::B => b,
-        };
-    }
-    let node = line.end_node(end);
-    let (segment, other) = match end {
-        End::A => (0, 1),
-        End::B => (node - 1, node - 1),
-    };
-    let chord = state.position[other] - state.position[node];
-    let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-    let nodes = &line.nodes;
-    let dry = line.surface.as_ref().map_or(Dry::default(), |surface| {
-        surface.node_in(water, node, &state.position)
-    });
-    let half = HalfNode {
-        line,
-        end,
-        node,
-        point,
-        water,
-        flow: water.velocity(node, state.position[node].z),
-        dry,
-        moments,
-    };
-    let pull = tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
-    let load = match line.linear_load[end as usize] {
-        true => half.linear_load(state, [inward, pull], negative_tension),
-        false => half.load(inward, dry.part)[0],
-    };
-    let mut force = pull + load;
-    if let (Some(winch_state), End::B) = (state.winch_state, end) {
-        force -= passing(line, winch_state) * chord / line.segments.length[segment];
-    }
-    force.z -= nodes.weight[node] + dry.weight;
-    if let Some(contact) = &nodes.contact {
-        let velocity = |i: usize| {
-            if i == node {
-                point.velocity
-            } else {
-                state.velocity[i]
-            }
-        };
-        force += contact.push(node, &state.position, velocity);
-    }
-    force
+    let [a, b] = state.closed_form.as_ref()?.end_force;
+    Some(match end {
+        End::A => a,
+        End::B => b,
+    })
 }
 
 /// The half node at an end.
@@ -160,7 +140,62 @@ struct HalfNode<'a> {
     moments: [Vector3<f64>; 2],
 }
 
-impl HalfNode<'_> {
+impl<'a> HalfNode<'a> {
+    fn new(
+        line: &'a Line,
+        state: &LineState,
+        end: End,
+        point: &'a PointState,
+        (water, moments): (WaterAlong<'a>, [Vector3<f64>; 2]),
+    ) -> HalfNode<'a> {
+        let node = line.end_node(end);
+        let dry = line.surface.as_ref().map_or(Dry::default(), |surface| {
+            surface.node_in(water, node, &state.position)
+        });
+        HalfNode {
+            line,
+            end,
+            node,
+            point,
+            water,
+            flow: water.velocity(node, state.position[node].z),
+            dry,
+            moments,
+        }
+    }
+
+    /// Force on the point [N], with the load linear to the next node or uniform over the half.
+    fn force(&self, state: &LineState, is_linear: bool, negative_tension: bool) -> Vector3<f64> {
+        let (line, end, node, nodes) = (self.line, self.end, self.node, &self.line.nodes);
+        let (segment, other) = match end {
+            End::A => (0, 1),
+            End::B => (node - 1, node - 1),
+        };
+        let chord = state.position[other] - state.position[node];
+        let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let pull = tension(line, state, segment, negative_tension) * inward + self.shear(state, segment);
+        let load = match is_linear {
+            true => self.linear_load(state, [inward, pull], negative_tension),
+            false => self.load(inward, self.dry.part)[0],
+        };
+        let mut force = pull + load;
+        if let (Some(winch_state), End::B) = (state.winch_state, end) {
+            force -= passing(line, winch_state) * chord / line.segments.length[segment];
+        }
+        force.z -= nodes.weight[node] + self.dry.weight;
+        if let Some(contact) = &nodes.contact {
+            let velocity = |i: usize| {
+                if i == node {
+                    self.point.velocity
+                } else {
+                    state.velocity[i]
+                }
+            };
+            force += contact.push(node, &state.position, velocity);
+        }
+        force
+    }
+
     /// Shear of a segment on its node towards this end [N].
     fn shear(&self, state: &LineState, segment: usize) -> Vector3<f64> {
         if self.line.bending.is_none() {

@@ -157,6 +157,14 @@ impl PointState {
             ..self
         }
     }
+
+    /// The point there in its present motion, as if it were not accelerated.
+    pub fn without_acceleration(self) -> PointState {
+        PointState {
+            acceleration: Vector3::zeros(),
+            ..self
+        }
+    }
 }
 
 impl PointState {

@@ -13,7 +13,9 @@ use crate::dynamics::energy_balance::{Energy, EnergyBalance};
 use crate::dynamics::reaction;
 use crate::elements;
 use crate::math::attitude::angle_rates;
-use crate::model::{Body, ClosedForm, End, Line, LineState, Model, Network, Point, PointState, Role, joint};
+use crate::model::{
+    Body, ClosedForm, End, Line, LineState, Model, Network, Point, PointState, Role, WaterAlong, joint,
+};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
@@ -95,10 +97,15 @@ impl Simulation {
     /// Force [N] and moment [N m] of the mooring on a vessel, about its origin, in global axes.
     pub fn vessel_force(&self, vessel: usize) -> [f64; 6] {
         let force = &self.reactions.vessels[vessel];
-        *force.get_or_init(|| self.sum_of_forces(vessel))
+        *force.get_or_init(|| self.sum_of_forces(vessel, |point| self.end_force(point)))
     }
 
-    fn sum_of_forces(&self, vessel: usize) -> [f64; 6] {
+    /// [`Simulation::nodal_force`] of all points on a vessel [N], and its moment [N m] about the vessel's origin, in global axes.
+    pub fn vessel_nodal_force(&self, vessel: usize) -> [f64; 6] {
+        self.sum_of_forces(vessel, |point| self.nodal_force(point))
+    }
+
+    fn sum_of_forces(&self, vessel: usize, of_point: impl Fn(usize) -> [f64; 3]) -> [f64; 6] {
         let model = &*self.model;
         let origin = self.vessel_origin(vessel);
         let mut sum = Vector6::zeros();
@@ -106,7 +113,7 @@ impl Simulation {
             if !matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel) {
                 continue;
             }
-            let force = Vector3::from(self.end_force(index));
+            let force = Vector3::from(of_point(index));
             let arm = self.snapshot.state.points[index].position - origin;
             let moment = arm.cross(&force) + self.end_moment(index);
             sum += Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
@@ -245,17 +252,42 @@ impl Simulation {
     /// Force of the mooring on a point [N]: the load on a vessel there, from the lines and, where forces do not move
     /// the point, from its mass.
     pub fn end_force(&self, point: usize) -> [f64; 3] {
+        let lines = self.model.points[point].attached.iter();
+        let of_lines: Vector3<f64> = lines.map(|&(line, end)| self.line_end_force(line, end)).sum();
+        (of_lines + self.own_force(point, |state| state)).into()
+    }
+
+    /// Force of the mooring on a point as codes of lumped masses report it [N]: the sum over its lines of [`reaction::nodal_force`], and
+    /// weight, buoyancy and drag of the point, without inertia. It tends to [`Simulation::end_force`] as the mesh is refined.
+    pub fn nodal_force(&self, point: usize) -> [f64; 3] {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let at = self.point_as_it_acts(point);
+        let of_line = |&(line, end): &(usize, End)| {
+            let (data, shape) = (&model.lines[line], &state.lines[line]);
+            let loads = self.loads_along(line);
+            reaction::nodal_force(data, shape, end, &at, loads, model.solver.negative_tension)
+        };
+        let of_lines: Vector3<f64> = model.points[point].attached.iter().map(of_line).sum();
+        (of_lines + self.own_force(point, |state| state.without_acceleration())).into()
+    }
+
+    /// Force of a point itself on its support [N], in the state that `seen` makes of its present one.
+    fn own_force(&self, point: usize, seen: impl Fn(PointState) -> PointState) -> Vector3<f64> {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let data = &model.points[point];
-        let lines = data.attached.iter();
-        let of_lines: Vector3<f64> = lines.map(|&(line, end)| self.line_end_force(line, end)).sum();
         if data.own.is_none() && data.load.is_none() {
-            return of_lines.into();
+            return Vector3::zeros();
         }
         let time = state.time;
         let water = (model.stream(time), state.waves_at_point(point, time));
-        let own = data.own_force(&self.point_as_it_acts(point), time, water);
-        (of_lines + own).into()
+        data.own_force(&seen(self.point_as_it_acts(point)), time, water)
+    }
+
+    /// Water along a line and moments on its ends [N m].
+    fn loads_along(&self, line: usize) -> (WaterAlong<'_>, [Vector3<f64>; 2]) {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let water = model.water_along(state, line, state.time);
+        (water, model.end_moments(&model.lines[line], state.time))
     }
 
     /// A point as its forces are found: at rest in quasi-static runs.
@@ -286,10 +318,7 @@ impl Simulation {
             &state.lines[line],
             end,
             &point,
-            (
-                model.water_along(state, line, state.time),
-                model.end_moments(&model.lines[line], state.time),
-            ),
+            self.loads_along(line),
             negative,
         )
     }

@@ -11,6 +11,7 @@
 
 mod build;
 mod deck;
+pub(crate) mod lists;
 mod options;
 mod refusals;
 mod sections;

@@ -1,0 +1,110 @@
+//! The guard that stops a panic before it leaves the library.
+
+use std::any::Any;
+use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+
+use moorline::dynamics::is_worker;
+
+thread_local! {
+    /// True while this thread is inside the guard. Without a destructor, so that the library can be unloaded.
+    static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Key of all worker threads of a simulation, whose panics a guard passes on.
+const WORKER: usize = 0;
+
+/// Places of guarded panics, by thread, until their guards have reported them.
+static PLACES: Mutex<BTreeMap<usize, String>> = Mutex::new(BTreeMap::new());
+
+fn places() -> MutexGuard<'static, BTreeMap<usize, String>> {
+    PLACES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A number that no other living thread has: the address of its flag.
+fn thread_number() -> usize {
+    IS_GUARDED.with(|flag| std::ptr::from_ref(flag).addr())
+}
+
+/// Keeps guarded panics off the console; others go where they went before.
+fn silence_guarded_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let before = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            let is_worker = is_worker();
+            if !is_worker && !IS_GUARDED.get() {
+                return before(info);
+            }
+            if let Some(place) = info.location() {
+                let thread = if is_worker { WORKER } else { thread_number() };
+                places().insert(thread, place.to_string());
+            }
+        }));
+    });
+}
+
+/// Runs `body`; a panic becomes its message.
+///
+/// # Errors
+/// The panic, with its place.
+pub fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
+    silence_guarded_panics();
+    let outer = IS_GUARDED.replace(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(body));
+    IS_GUARDED.set(outer);
+    result.map_err(|payload| {
+        let mut places = places();
+        let place = places.remove(&thread_number());
+        let place = place.or_else(|| places.remove(&WORKER));
+        drop(places);
+        let text = text_of(payload.as_ref());
+        // A payload with a destructor that panics must not do so here.
+        std::mem::forget(payload);
+        format!(
+            "internal fault at {}: {text}; close this system and please report it",
+            place.as_deref().unwrap_or("an unknown place")
+        )
+    })
+}
+
+fn text_of(payload: &(dyn Any + Send)) -> String {
+    let fixed = payload.downcast_ref::<&str>().map(ToString::to_string);
+    let text = fixed.or_else(|| payload.downcast_ref::<String>().cloned());
+    text.unwrap_or_else(|| "no message".to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moorline::dynamics::as_worker;
+
+    #[test]
+    fn a_panic_becomes_its_message_and_place() {
+        let message = guard(|| -> u32 { panic!("node {} lost", 7) }).unwrap_err();
+        assert!(
+            message.contains("node 7 lost") && message.contains("guard.rs"),
+            "{message}"
+        );
+        assert_eq!(guard(|| 42), Ok(42));
+        let message = guard(|| -> u32 { panic::panic_any(42_u8) }).unwrap_err();
+        assert!(message.contains("no message"), "{message}");
+    }
+
+    #[test]
+    fn a_panic_of_a_worker_becomes_its_message_and_place() {
+        let message = guard(|| {
+            let worker = std::thread::spawn(|| as_worker(|| panic!("line {} lost", 3)));
+            worker
+                .join()
+                .unwrap_or_else(|payload| panic::resume_unwind(payload))
+        });
+        let message = message.unwrap_err();
+        assert!(
+            message.contains("line 3 lost") && message.contains("guard.rs"),
+            "{message}"
+        );
+    }
+}

@@ -1,0 +1,153 @@
+//! A deck as a scene, with its objects and degrees of freedom in the deck's own order.
+
+use std::path::{Path, PathBuf};
+
+use moorline::model::Body;
+use moorline::scene::{LoadError, PointKind, Scene};
+use moorline_decks::{BodyRow, Carrier, Lists, load, moordyn_lists};
+
+use crate::failure::{Code, Failure, Outcome};
+use crate::settings::Settings;
+
+/// Name that the reader gives to the one vessel of OpenFAST; the interface has coupled points in its place.
+const VESSEL: &str = "vessel";
+
+/// Object that the host moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Coupled {
+    /// Point or vessel of the scene; `None` of a body that carries nothing.
+    pub body: Option<Body>,
+    /// First of its degrees of freedom.
+    pub first: usize,
+    /// Number of its degrees of freedom: 3 or 6.
+    pub size: usize,
+}
+
+/// A deck that was read.
+#[derive(Debug)]
+pub struct Deck {
+    /// Scene with the laws of the settings.
+    pub scene: Scene,
+    /// Objects in the deck's order.
+    pub lists: Lists,
+    /// Objects that the host moves, in the order of their degrees of freedom.
+    pub coupled: Vec<Coupled>,
+    /// Path of the deck without its extension, to which those of output files are added.
+    pub stem: PathBuf,
+    /// Remarks of the reader.
+    pub remarks: Vec<String>,
+}
+
+impl Deck {
+    /// Reads a deck.
+    ///
+    /// # Errors
+    /// The file cannot be read, has mistakes, or asks for something that is not modelled.
+    pub fn read(path: &Path, settings: &Settings) -> Outcome<Deck> {
+        let loaded = load(path).map_err(|error| refusal(&error))?;
+        if loaded.format.contains("MAP++") || loaded.format == moorline::scene::TOML {
+            let message = format!(
+                "{} is a {} file: this interface reads decks of MoorDyn",
+                path.display(),
+                loaded.format
+            );
+            return Err(Failure::new(Code::InvalidInputFile, message));
+        }
+        let lists = moordyn_lists(&loaded.text);
+        let mut scene = loaded.scene;
+        check(&lists, &scene)?;
+        for point in &mut scene.points {
+            if point.on.as_deref() == Some(VESSEL) {
+                point.on = None;
+            }
+        }
+        scene.vessels.retain(|vessel| vessel.name != VESSEL);
+        settings.apply(&mut scene);
+        Ok(Deck {
+            coupled: coupled(&lists, &scene),
+            stem: path.with_extension(""),
+            remarks: loaded.notes.iter().map(ToString::to_string).collect(),
+            lists,
+            scene,
+        })
+    }
+
+    /// Number of coupled degrees of freedom.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.coupled.iter().map(|coupled| coupled.size).sum()
+    }
+
+    /// Index in the scene of the point of a deck's row, counted from 0.
+    pub fn point(&self, row: usize) -> Option<usize> {
+        let name = format!("point{}", self.lists.points.get(row)?);
+        self.scene.points.iter().position(|point| point.name == name)
+    }
+
+    /// The coupled object of a body's row, counted from 0.
+    pub fn coupled_body(&self, row: usize) -> Option<&Coupled> {
+        let before = self.lists.bodies[..row.min(self.lists.bodies.len())].iter();
+        let moved = |body: &&BodyRow| body.carrier == Carrier::Host;
+        let is_moved = self.lists.bodies.get(row).filter(moved).is_some();
+        is_moved.then(|| &self.coupled[before.filter(moved).count()])
+    }
+
+    /// The coupled object of a point of the scene.
+    pub fn coupled_point(&self, point: usize) -> Option<&Coupled> {
+        let mut coupled = self.coupled.iter();
+        coupled.find(|coupled| coupled.body == Some(Body::Point(point)))
+    }
+}
+
+/// Refuses what a host would count otherwise than the scene does.
+fn check(lists: &Lists, scene: &Scene) -> Outcome {
+    if lists.is_of_farm {
+        return Err(Failure::missing(
+            "points on turbines belong to the farm of OpenFAST: this interface has Coupled points and bodies",
+        ));
+    }
+    let mut on_vessel = scene
+        .points
+        .iter()
+        .filter(|point| point.on.as_deref() == Some(VESSEL));
+    if let Some(rod) = on_vessel.find(|point| !point.name.starts_with("point")) {
+        let message = format!(
+            "{} belongs to a rod that the host moves by itself, which is not modelled: put the rod on a coupled body",
+            rod.name
+        );
+        return Err(Failure::missing(message));
+    }
+    Ok(())
+}
+
+fn coupled(lists: &Lists, scene: &Scene) -> Vec<Coupled> {
+    let vessel = |number: usize| {
+        let name = format!("body{number}");
+        let index = scene.vessels.iter().position(|vessel| vessel.name == name);
+        (index.map(Body::Vessel), 6)
+    };
+    let moved = lists.bodies.iter().filter(|body| body.carrier == Carrier::Host);
+    let bodies = moved.map(|body| vessel(body.number));
+    let points = scene.points.iter().enumerate();
+    let points = points.filter(|(_, point)| point.kind == PointKind::Coupled && point.on.is_none());
+    let mut first = 0;
+    let place = |(body, size)| {
+        let coupled = Coupled { body, first, size };
+        first += size;
+        coupled
+    };
+    let points = points.map(|(index, _)| (Some(Body::Point(index)), 3));
+    bodies.chain(points).map(place).collect()
+}
+
+/// A deck that cannot be used, with all of its mistakes.
+fn refusal(error: &LoadError) -> Failure {
+    let mut message = error.to_string();
+    if let LoadError::Scene { mistakes, .. } = error {
+        let others = mistakes.iter().map(|mistake| format!("\n  {mistake}"));
+        let list: String = others.collect();
+        if !message.contains(list.trim()) {
+            message.push_str(&list);
+        }
+    }
+    Failure::new(Code::InvalidInputFile, message)
+}

@@ -1,0 +1,315 @@
+//! Bodies, points and rods, by their rows in the deck, counted from 0.
+
+use moorline::model::{Body, Line, Model, PointState, Role};
+use moorline::physics::slender::Slender;
+use moorline::scene::AngleOrder;
+use moorline::simulation::Simulation;
+use moorline_decks::{BodyRow, Carrier, RodRow};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use crate::failure::{Code, Failure, Outcome};
+use crate::system::System;
+
+/// Numbers of the kinds of motion.
+pub mod kind {
+    /// The host moves it.
+    pub const COUPLED: i32 = -1;
+    /// Forces move it.
+    pub const FREE: i32 = 0;
+    /// It never moves.
+    pub const FIXED: i32 = 1;
+}
+
+/// Pose and motion of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyState {
+    /// Position [m] and Rx·Ry·Rz angles [rad].
+    pub place: [f64; 6],
+    /// Velocity [m/s] and angular velocity in global axes [rad/s].
+    pub rate: [f64; 6],
+}
+
+/// Six-by-six mass matrix by rows [kg, kg m, kg m²].
+pub type BodyMass = [[f64; 6]; 6];
+
+/// The row of an object, or a refusal.
+fn row<'a, T>(rows: &'a [T], index: usize, what: &str) -> Outcome<&'a T> {
+    rows.get(index).ok_or_else(|| {
+        let message = format!("there is no {what} {}: the deck has {}", index + 1, rows.len());
+        Failure::new(Code::InvalidInput, message)
+    })
+}
+
+impl System {
+    /// A body's row.
+    ///
+    /// # Errors
+    /// No such body.
+    pub fn body(&self, index: usize) -> Outcome<&BodyRow> {
+        row(&self.deck.lists.bodies, index, "body")
+    }
+
+    /// A rod's row.
+    ///
+    /// # Errors
+    /// No such rod.
+    pub fn rod(&self, index: usize) -> Outcome<&RodRow> {
+        row(&self.deck.lists.rods, index, "rod")
+    }
+
+    /// Number of a point in the deck.
+    ///
+    /// # Errors
+    /// No such point.
+    pub fn point_number(&self, index: usize) -> Outcome<usize> {
+        row(&self.deck.lists.points, index, "point").copied()
+    }
+
+    /// Index of a point in the scene.
+    fn scene_point(&self, index: usize) -> Outcome<usize> {
+        self.point_number(index)?;
+        let missing = || {
+            Failure::new(
+                Code::Unhandled,
+                format!("point {} is not in the scene", index + 1),
+            )
+        };
+        self.deck.point(index).ok_or_else(missing)
+    }
+
+    /// Kind of a body's motion.
+    ///
+    /// # Errors
+    /// No such body.
+    pub fn body_type(&self, index: usize) -> Outcome<i32> {
+        Ok(match self.body(index)?.carrier {
+            Carrier::Host => kind::COUPLED,
+            Carrier::Free => kind::FREE,
+            Carrier::Fixed | Carrier::Body(_) => kind::FIXED,
+        })
+    }
+
+    /// Pose and motion of a body: those that the host gave, extended to the end of the last step.
+    ///
+    /// # Errors
+    /// No such body, or a system that was not started.
+    pub fn body_state(&self, index: usize) -> Outcome<BodyState> {
+        let body = self.body(index)?;
+        self.simulation()?;
+        let Some(coupled) = self.deck.coupled_body(index) else {
+            let ([x, y, z], [a, b, c]) = (body.position, body.angles);
+            return Ok(BodyState {
+                place: [x, y, z, a, b, c],
+                rate: [0.0; 6],
+            });
+        };
+        let part = |values: &[f64]| std::array::from_fn(|axis| values[coupled.first + axis]);
+        Ok(BodyState {
+            place: part(&self.place[0]),
+            rate: part(&self.place[1]),
+        })
+    }
+
+    /// Force [N] and moment [N m] about a coupled body's reference point.
+    ///
+    /// # Errors
+    /// No such body, one that does not move, or a system that was not started.
+    pub fn body_force(&self, index: usize) -> Outcome<[f64; 6]> {
+        self.body(index)?;
+        let mut all = vec![0.0; self.deck.degrees_of_freedom()];
+        self.forces(&mut all)?;
+        let Some(coupled) = self.deck.coupled_body(index) else {
+            return Err(Failure::missing(
+                "the force on a fixed body is not found: read those of its points",
+            ));
+        };
+        Ok(std::array::from_fn(|axis| all[coupled.first + axis]))
+    }
+
+    /// Mass matrix of the end nodes that a coupled body carries, about its reference point: the host has the body's own.
+    ///
+    /// # Errors
+    /// As [`System::body_force`].
+    pub fn body_mass(&self, index: usize) -> Outcome<BodyMass> {
+        let place = self.body_state(index)?.place;
+        let simulation = self.simulation()?;
+        let Some(coupled) = self.deck.coupled_body(index) else {
+            return Err(Failure::missing("a fixed body has no mass matrix"));
+        };
+        let mut sum = [[0.0; 6]; 6];
+        let points = simulation.model().points.iter().enumerate();
+        for (point, data) in points {
+            let carrier = match data.role {
+                Role::Carried { vessel, .. } => Some(Body::Vessel(vessel)),
+                _ => None,
+            };
+            if carrier.is_none() || carrier != coupled.body {
+                continue;
+            }
+            let at = simulation.state().points[point].position;
+            add_mass(
+                &mut sum,
+                &end_mass(simulation, point),
+                at - Vector3::from_row_slice(&place[..3]),
+            );
+        }
+        Ok(sum)
+    }
+
+    /// Kind of a point's motion; one that a body carries is fixed.
+    ///
+    /// # Errors
+    /// No such point.
+    pub fn point_type(&self, index: usize) -> Outcome<i32> {
+        let point = &self.deck.scene.points[self.scene_point(index)?];
+        Ok(match (point.kind, &point.on) {
+            (moorline::scene::PointKind::Free, _) => kind::FREE,
+            (moorline::scene::PointKind::Coupled, None) => kind::COUPLED,
+            _ => kind::FIXED,
+        })
+    }
+
+    /// State of a point.
+    ///
+    /// # Errors
+    /// No such point, or a system that was not started.
+    pub fn point_state(&self, index: usize) -> Outcome<PointState> {
+        let point = self.scene_point(index)?;
+        Ok(self.simulation()?.state().points[point])
+    }
+
+    /// Force on a point of its lines and of itself, without the inertia of nodes and point [N]; with it where the settings want reactions and
+    /// the point is not free.
+    ///
+    /// # Errors
+    /// As [`System::point_state`].
+    pub fn point_force(&self, index: usize) -> Outcome<[f64; 3]> {
+        let (point, simulation) = (self.scene_point(index)?, self.simulation()?);
+        Ok(match self.settings.force {
+            crate::settings::Force::Nodal => simulation.nodal_force(point),
+            crate::settings::Force::Reaction => simulation.end_force(point),
+        })
+    }
+
+    /// Mass matrix of a point with the end nodes of its lines, added mass included, by rows [kg].
+    ///
+    /// # Errors
+    /// As [`System::point_state`].
+    pub fn point_mass(&self, index: usize) -> Outcome<[[f64; 3]; 3]> {
+        let point = self.scene_point(index)?;
+        Ok(rows(&end_mass(self.simulation()?, point)))
+    }
+
+    /// Line, by its order in the deck, and end, 0 of A and 1 of B, of each attachment of a point.
+    ///
+    /// # Errors
+    /// No such point.
+    pub fn point_attached(&self, index: usize) -> Outcome<Vec<(usize, i32)>> {
+        let name = &self.deck.scene.points[self.scene_point(index)?].name;
+        let mut found = Vec::new();
+        for (line, data) in self.deck.scene.lines.iter().enumerate() {
+            let ends = [&data.from, &data.to].into_iter().zip([0, 1]);
+            found.extend(ends.filter(|(end, _)| *end == name).map(|(_, end)| (line, end)));
+        }
+        Ok(found)
+    }
+
+    /// Place of a node of a rod, from end A [m], and its velocity [m/s].
+    ///
+    /// # Errors
+    /// No such rod or node, or a system that was not started.
+    pub fn rod_node(&self, index: usize, node: usize) -> Outcome<[[f64; 3]; 2]> {
+        let rod = self.rod(index)?;
+        self.simulation()?;
+        let count = rod.segments.max(1);
+        if node > rod.segments {
+            let message = format!(
+                "rod {} has no node {node}: it has {} segments",
+                rod.number, rod.segments
+            );
+            return Err(Failure::value(message));
+        }
+        let share = node as f64 / count as f64;
+        let [a, b] = rod.ends.map(Vector3::from);
+        let arm = a + share * (b - a);
+        let Carrier::Body(number) = rod.carrier else {
+            return Ok([arm.into(), [0.0; 3]]);
+        };
+        let body = self
+            .deck
+            .lists
+            .bodies
+            .iter()
+            .position(|body| body.number == number);
+        let state = self.body_state(body.unwrap_or(usize::MAX))?;
+        let (place, rate) = (state.place, state.rate);
+        let turned = rotation(&place) * arm;
+        let spin = Vector3::from_row_slice(&rate[3..]);
+        let position = Vector3::from_row_slice(&place[..3]) + turned;
+        let velocity = Vector3::from_row_slice(&rate[..3]) + spin.cross(&turned);
+        Ok([position.into(), velocity.into()])
+    }
+}
+
+fn rotation(place: &[f64; 6]) -> UnitQuaternion<f64> {
+    AngleOrder::Xyz.rotation(Vector3::from_row_slice(&place[3..]))
+}
+
+/// Rows of a matrix, in its unit.
+pub(crate) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    [0, 1, 2].map(|row| [0, 1, 2].map(|column| matrix[(row, column)]))
+}
+
+/// Mass matrix of a point and the end nodes on it [kg].
+fn end_mass(simulation: &Simulation, point: usize) -> Matrix3<f64> {
+    let (model, state) = (simulation.model(), simulation.state());
+    let data = &model.points[point];
+    let height = state.points[point].position.z;
+    let own = data.body().map_or(0.0, |own| own.at(height).mass);
+    let ends = data.attached.iter();
+    let of_ends = ends.map(|&(line, end)| {
+        let node = model.lines[line].end_node(end);
+        node_mass(model, simulation, (line, node))
+    });
+    of_ends.fold(own * Matrix3::identity(), |sum, mass| sum + mass)
+}
+
+/// Mass matrix of a node of a line, added mass included [kg].
+pub(crate) fn node_mass(
+    model: &Model,
+    simulation: &Simulation,
+    (line, node): (usize, usize),
+) -> Matrix3<f64> {
+    let (data, shape) = (&model.lines[line], &simulation.state().lines[line]);
+    let masses = [data.nodes.mass_normal[node], data.nodes.mass_tangent[node]];
+    Slender::new(masses).matrix(tangent(data, &shape.position, node))
+}
+
+/// Unit tangent of a line at a node [-]: the mean of the directions of the segments beside it.
+pub(crate) fn tangent(line: &Line, position: &[Vector3<f64>], node: usize) -> Vector3<f64> {
+    let direction = |segment: usize| {
+        let chord = position[segment + 1] - position[segment];
+        chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+    };
+    let last = line.segment_count();
+    let both = match node {
+        0 => direction(0),
+        node if node >= last => direction(last - 1),
+        node => direction(node - 1) + direction(node),
+    };
+    both.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+}
+
+/// Adds a mass [kg] at an arm [m] to a matrix about another point.
+fn add_mass(sum: &mut BodyMass, mass: &Matrix3<f64>, arm: Vector3<f64>) {
+    let cross = arm.cross_matrix();
+    let [coupling, turning] = [mass * cross.transpose(), cross * mass * cross.transpose()];
+    for row in 0..3 {
+        for column in 0..3 {
+            sum[row][column] += mass[(row, column)];
+            sum[row][column + 3] += coupling[(row, column)];
+            sum[column + 3][row] += coupling[(row, column)];
+            sum[row + 3][column + 3] += turning[(row, column)];
+        }
+    }
+}

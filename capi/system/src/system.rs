@@ -1,0 +1,391 @@
+//! The life of a system: created from a deck, started at the host's positions, stepped.
+
+use std::path::Path;
+
+use moorline::dynamics::{StepError, StepFailure};
+use moorline::model::Body;
+use moorline::scene::{AngleOrder, InitialShape, Scene};
+use moorline::simulation::Simulation;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::channels::Files;
+use crate::deck::Deck;
+use crate::failure::{Code, Failure, Outcome};
+use crate::log::{Log, MESSAGE, WARNING};
+use crate::saved::check_sum;
+use crate::settings::{Force, Path as HostPath, Settings};
+
+/// Difference between the host's clock and that of the simulation that is rounding [s].
+const CLOCK_TOLERANCE: f64 = 1e-6;
+
+/// Words of remarks of the reader that do not hold behind this interface, which has MoorDyn's laws and files of single lines.
+const OVERRULED: [&str; 2] = ["negative_tension", "no files of single lines"];
+
+/// All that determines the simulation before its first step, beside the scene of the deck.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    /// Coupled positions [m] and angles [rad].
+    pub place: Vec<f64>,
+    /// True if lines start as catenaries and not in equilibrium.
+    pub is_approximate: bool,
+    /// Lines that may be released at end A or B, by the order of the scene.
+    pub loose: Vec<(usize, bool)>,
+    /// Time [s].
+    pub time: f64,
+}
+
+/// A system.
+#[derive(Debug)]
+pub struct System {
+    /// The deck.
+    pub deck: Deck,
+    /// Messages.
+    pub log: Log,
+    /// Name of the time scheme, of the deck or the host; nothing follows from it.
+    pub scheme: String,
+    /// Courant number of the deck or the host [-]; nothing follows from it.
+    pub cfl: f64,
+    /// Internal step of the deck or the host [s].
+    pub dt: f64,
+    pub(crate) settings: Settings,
+    pub(crate) simulation: Option<Simulation>,
+    pub(crate) start: Start,
+    /// Check sum of the scene that was started.
+    pub(crate) scene_sum: [u8; 32],
+    /// Coupled positions [m] and angles [rad] at the end of the last step, and their rates [m/s, rad/s].
+    pub(crate) place: [Vec<f64>; 2],
+    /// Time of the host less that of the simulation [s].
+    pub(crate) ahead: f64,
+    files: Option<Files>,
+    pub(crate) has_stepped: bool,
+    has_warned_of_time: bool,
+}
+
+/// Result of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stepped {
+    /// Time at the end of the step [s].
+    pub time: f64,
+}
+
+impl System {
+    /// Reads a deck, with choices from the environment and messages to `log`.
+    ///
+    /// # Errors
+    /// The deck cannot be used, or a choice is unknown.
+    pub fn create(path: &Path, settings: Settings, log: Log) -> Outcome<System> {
+        let deck = Deck::read(path, &settings)?;
+        let number = |keys: &[&str]| deck.lists.option(keys).and_then(|text| text.parse::<f64>().ok());
+        let mut system = System {
+            dt: number(&["DTM", "DT"]).unwrap_or(deck.scene.solver.time_step_max),
+            cfl: number(&["CFL"]).unwrap_or(0.5),
+            scheme: deck.lists.option(&["TSCHEME"]).unwrap_or("RK2").to_string(),
+            log,
+            settings,
+            simulation: None,
+            start: Start::default(),
+            scene_sum: [0; 32],
+            place: [Vec::new(), Vec::new()],
+            ahead: 0.0,
+            files: None,
+            has_stepped: false,
+            has_warned_of_time: false,
+            deck,
+        };
+        let remarks = std::mem::take(&mut system.deck.remarks).into_iter();
+        for remark in remarks.filter(|remark| !OVERRULED.iter().any(|words| remark.contains(words))) {
+            system.log.write(MESSAGE, &remark);
+        }
+        Ok(system)
+    }
+
+    /// Starts at coupled positions `x` [m, rad] that move by `xd` [m/s, rad/s]: in static equilibrium or, `is_approximate`, on catenaries.
+    ///
+    /// # Errors
+    /// Wrong or non-finite positions, or no equilibrium.
+    pub fn start(&mut self, x: &[f64], xd: &[f64], is_approximate: bool) -> Outcome {
+        self.check_motion(x, xd)?;
+        let start = Start {
+            place: x.to_vec(),
+            is_approximate,
+            loose: Vec::new(),
+            time: 0.0,
+        };
+        self.begin(start)?;
+        self.scene_sum = check_sum(&self.deck.scene);
+        self.place = [x.to_vec(), xd.to_vec()];
+        self.files = None;
+        self.open_files()?;
+        self.write_channels(0.0)?;
+        for choice in self.simulation.iter().flat_map(Simulation::choices) {
+            let text = format!("integrator {:?}, {}", choice.integrator, choice.in_words());
+            self.log.write(MESSAGE, &text);
+        }
+        Ok(())
+    }
+
+    /// Builds the simulation of a start; on failure the present one stays.
+    fn begin(&mut self, start: Start) -> Outcome {
+        self.simulation = Some(self.simulation_of(&start)?);
+        self.start = start;
+        self.has_stepped = false;
+        self.has_warned_of_time = false;
+        self.ahead = 0.0;
+        Ok(())
+    }
+
+    /// Simulation of a start.
+    pub(crate) fn simulation_of(&self, start: &Start) -> Outcome<Simulation> {
+        if start.place.len() != self.deck.degrees_of_freedom() {
+            return Err(Failure::value(
+                "the start has another number of degrees of freedom than the deck",
+            ));
+        }
+        let mut simulation = simulation(&self.scene_of(start))?;
+        if start.time != 0.0 {
+            let restarted = simulation.restart(start.time);
+            restarted.map_err(|error| Failure::value(error.to_string()))?;
+        }
+        Ok(simulation)
+    }
+
+    /// Scene of a start: its references are the positions of the host.
+    fn scene_of(&self, start: &Start) -> Scene {
+        let mut scene = self.deck.scene.clone();
+        for coupled in &self.deck.coupled {
+            let place = &start.place[coupled.first..];
+            match coupled.body {
+                Some(Body::Point(point)) => scene.points[point].position = [place[0], place[1], place[2]],
+                Some(Body::Vessel(vessel)) => {
+                    let vessel = &mut scene.vessels[vessel];
+                    vessel.position = [place[0], place[1], place[2]];
+                    let near = Vector3::from(vessel.attitude);
+                    vessel.attitude = host_angles(&place[3..6], near).into();
+                }
+                None => {}
+            }
+        }
+        for line in &mut scene.lines {
+            if start.is_approximate && line.initial == InitialShape::Static {
+                line.initial = InitialShape::Catenary;
+            }
+        }
+        for &(line, at_b) in &start.loose {
+            let end = match at_b {
+                true => moorline::scene::LineEnd::B,
+                false => moorline::scene::LineEnd::A,
+            };
+            scene.lines[line].release = Some(end);
+        }
+        scene
+    }
+
+    /// The simulation.
+    ///
+    /// # Errors
+    /// The system was not started.
+    pub fn simulation(&self) -> Outcome<&Simulation> {
+        let missing = || Failure::value("the system was not started: call Init first");
+        self.simulation.as_ref().ok_or_else(missing)
+    }
+
+    fn check_motion(&self, x: &[f64], xd: &[f64]) -> Outcome {
+        let count = self.deck.degrees_of_freedom();
+        if [x, xd].iter().any(|values| values.len() != count) {
+            return Err(Failure::value(format!(
+                "the system has {count} coupled degrees of freedom, but {} positions and {} velocities are given",
+                x.len(),
+                xd.len()
+            )));
+        }
+        match x.iter().chain(xd).position(|value| !value.is_finite()) {
+            None => Ok(()),
+            Some(index) => Err(Failure::new(
+                Code::InvalidValue,
+                format!(
+                    "a {} is not finite, at coupled degree of freedom {}",
+                    if index < count { "position" } else { "velocity" },
+                    index % count
+                ),
+            )),
+        }
+    }
+
+    /// Steps from the host's time `t` to `t + dt` [s] with coupled positions `x` [m, rad] at its start, which move by `xd` [m/s, rad/s] all the
+    /// time. A step of 0 s changes nothing.
+    ///
+    /// # Errors
+    /// Arguments that cannot be used, or a step that fails; the state is then that before the call.
+    pub fn step(&mut self, x: &[f64], xd: &[f64], t: f64, dt: f64) -> Outcome<Stepped> {
+        self.check_motion(x, xd)?;
+        if !t.is_finite() || !dt.is_finite() || dt < 0.0 {
+            return Err(Failure::value(format!(
+                "a step of {dt} s from {t} s: both must be finite, the step not negative"
+            )));
+        }
+        self.simulation()?;
+        if dt == 0.0 {
+            return Ok(Stepped { time: t });
+        }
+        self.follow_clock(t)?;
+        self.set_motion(x, xd, dt);
+        let advanced = self.simulation.as_mut().map(|simulation| simulation.advance(dt));
+        if let Some(Err(error)) = advanced {
+            return Err(step_failure(&error));
+        }
+        self.has_stepped = true;
+        let [place, rate] = &mut self.place;
+        place.clear();
+        place.extend(x.iter().zip(xd).map(|(x, v)| x + v * dt));
+        rate.clear();
+        rate.extend_from_slice(xd);
+        let time = t + dt;
+        self.write_channels(time)?;
+        Ok(Stepped { time })
+    }
+
+    /// Takes the host's clock at the first step; later it may differ only where nothing depends on time.
+    fn follow_clock(&mut self, t: f64) -> Outcome {
+        let gap = t - self.simulation()?.time() - self.ahead;
+        if gap.abs() <= CLOCK_TOLERANCE * t.abs().max(1.0) {
+            return Ok(());
+        }
+        let moves = self.simulation()?.model().waves.is_some();
+        if !self.has_stepped && moves {
+            let start = Start {
+                time: t,
+                ..self.start.clone()
+            };
+            return self.begin(start);
+        }
+        if moves {
+            return Err(Failure::value(format!(
+                "the host steps from {t} s, but the last step ended at {} s: waves depend on time, restore a state to go back",
+                t - gap
+            )));
+        }
+        if self.has_stepped && !self.has_warned_of_time {
+            self.has_warned_of_time = true;
+            let text = format!(
+                "the host steps from {t} s, but the last step ended at {} s; said once",
+                t - gap
+            );
+            self.log.write(WARNING, &text);
+        }
+        self.ahead += gap;
+        Ok(())
+    }
+
+    /// Hands the motion over a step [s] to the simulation, as its paths want it.
+    fn set_motion(&mut self, x: &[f64], xd: &[f64], dt: f64) {
+        let Some(simulation) = &mut self.simulation else {
+            return;
+        };
+        let (reach, is_given) = match self.settings.path {
+            HostPath::Smooth => (dt, false),
+            HostPath::Jump | HostPath::Predict => (0.0, true),
+        };
+        for coupled in &self.deck.coupled {
+            let Some(body) = coupled.body else { continue };
+            let at = |index: usize| x[coupled.first + index] + reach * xd[coupled.first + index];
+            let rate = |index: usize| is_given.then(|| xd[coupled.first + index]);
+            let model = simulation.model();
+            match body {
+                Body::Point(point) => {
+                    let from = model.points[point].reference;
+                    let displacement = [0, 1, 2].map(|axis| at(axis) - from[axis]);
+                    simulation.set_displacement(point, displacement);
+                    simulation.set_velocity(point, [0, 1, 2].map(rate));
+                }
+                Body::Vessel(vessel) => {
+                    let (origin, attitude) = (model.vessels[vessel].position, model.vessels[vessel].attitude);
+                    let present = simulation.pose(vessel);
+                    let near = attitude + Vector3::from_row_slice(&present[3..]);
+                    let turned = host_angles(&[at(3), at(4), at(5)], near) - attitude;
+                    let moved = [0, 1, 2].map(|axis| at(axis) - origin[axis]);
+                    let pose = [moved[0], moved[1], moved[2], turned.x, turned.y, turned.z];
+                    simulation.set_pose(vessel, pose);
+                    simulation.set_vessel_velocity(vessel, [0, 1, 2, 3, 4, 5].map(rate));
+                }
+            }
+        }
+    }
+
+    /// Writes the forces on the coupled objects [N, N m], in the order of the degrees of freedom.
+    ///
+    /// # Errors
+    /// Room for another number of forces, a system that was not started, or a force that is not finite.
+    pub fn forces(&self, forces: &mut [f64]) -> Outcome {
+        let simulation = self.simulation()?;
+        if forces.len() != self.deck.degrees_of_freedom() {
+            return Err(Failure::value(format!(
+                "room for {} forces, but the system has {} coupled degrees of freedom",
+                forces.len(),
+                self.deck.degrees_of_freedom()
+            )));
+        }
+        for coupled in &self.deck.coupled {
+            let force = match (coupled.body, self.settings.force) {
+                (Some(Body::Point(point)), Force::Nodal) => &simulation.nodal_force(point)[..],
+                (Some(Body::Point(point)), Force::Reaction) => &simulation.end_force(point)[..],
+                (Some(Body::Vessel(vessel)), Force::Nodal) => &simulation.vessel_nodal_force(vessel)[..],
+                (Some(Body::Vessel(vessel)), Force::Reaction) => &simulation.vessel_force(vessel)[..],
+                (None, _) => &[0.0; 6][..],
+            };
+            if force.iter().any(|value| !value.is_finite()) {
+                return Err(Failure::new(Code::NotFinite, "a force is not finite"));
+            }
+            forces[coupled.first..coupled.first + coupled.size].copy_from_slice(force);
+        }
+        Ok(())
+    }
+
+    /// Time of the host [s].
+    ///
+    /// # Errors
+    /// The system was not started.
+    pub fn time(&self) -> Outcome<f64> {
+        Ok(self.simulation()?.time() + self.ahead)
+    }
+
+    /// Begins the files of channels, unless they are being written.
+    pub(crate) fn open_files(&mut self) -> Outcome {
+        if self.files.is_none()
+            && let Some(simulation) = &self.simulation
+        {
+            self.files = Files::create(&self.deck, simulation, &mut self.log)?;
+        }
+        Ok(())
+    }
+
+    fn write_channels(&mut self, time: f64) -> Outcome {
+        match (&mut self.files, &self.simulation) {
+            (Some(files), Some(simulation)) => files.row(time, simulation),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Roll, pitch and yaw in moorline's order of those of a host [rad], nearest to others [rad].
+pub(crate) fn host_angles(angles: &[f64], near: Vector3<f64>) -> Vector3<f64> {
+    let rotation = AngleOrder::Xyz.rotation(Vector3::from_row_slice(angles));
+    AngleOrder::Zyx.angles(&rotation, near)
+}
+
+fn simulation(scene: &Scene) -> Outcome<Simulation> {
+    Simulation::new(scene).map_err(|error| match &error {
+        moorline::simulation::Error::Scene(_) => Failure::new(Code::InvalidInputFile, error.to_string()),
+        moorline::simulation::Error::Statics(_) => Failure::value(error.to_string()),
+    })
+}
+
+fn step_failure(error: &StepError) -> Failure {
+    let code = match error.cause {
+        StepFailure::Input(_) | StepFailure::Winch(_) | StepFailure::TooManySteps { .. } => {
+            Code::InvalidValue
+        }
+        _ => Code::NotFinite,
+    };
+    Failure::new(code, error.to_string())
+}

@@ -1,0 +1,88 @@
+//! Water and seabed.
+
+use moorline::physics::airy::Instant;
+use nalgebra::Vector3;
+
+use crate::failure::{Failure, Outcome};
+use crate::system::System;
+
+/// Motion of the water at a place.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Flow {
+    /// Velocity [m/s].
+    pub velocity: [f64; 3],
+    /// Acceleration [m/s²].
+    pub acceleration: [f64; 3],
+    /// Elevation of the surface [m].
+    pub elevation: f64,
+}
+
+/// Sentence of everything that needs water from a host.
+pub const NO_HOST_WATER: &str = "water kinematics that the host gives are not modelled: give waves and currents in the deck \
+     (WaveKin 7 or 0, Currents 1 or 0)";
+
+impl System {
+    /// Motion of the water at a place [m], by current and waves, at the present time.
+    ///
+    /// # Errors
+    /// A system that was not started, or a place that is not finite.
+    pub fn flow(&self, place: [f64; 3]) -> Outcome<Flow> {
+        let simulation = self.simulation()?;
+        if place.iter().any(|value| !value.is_finite()) {
+            return Err(Failure::value("a place is not finite"));
+        }
+        let (model, time) = (simulation.model(), simulation.state().time);
+        let mut velocity = Vector3::zeros();
+        if let Some(stream) = model.stream(time) {
+            velocity += stream.velocity(place[2]);
+        }
+        let Some(waves) = &model.waves else {
+            return Ok(Flow {
+                velocity: velocity.into(),
+                ..Flow::default()
+            });
+        };
+        let mut instant = Instant::default();
+        waves.turn_to(time, &mut instant);
+        let orbit = waves.orbit(Vector3::from(place), &mut instant);
+        Ok(Flow {
+            velocity: (velocity + orbit.velocity).into(),
+            acceleration: orbit.acceleration.into(),
+            elevation: waves.elevation(place[0], place[1], time),
+        })
+    }
+
+    /// Depth of the seabed at a place, positive down [m].
+    ///
+    /// # Errors
+    /// A system that was not started, or one without a seabed.
+    pub fn depth_at(&self, x: f64, y: f64) -> Outcome<f64> {
+        let model = self.simulation()?.model();
+        if !x.is_finite() || !y.is_finite() {
+            return Err(Failure::value("a place is not finite"));
+        }
+        match (&model.bottom, model.bed) {
+            (Some(bottom), _) if !bottom.level => Ok(-bottom.ground.height(x, y)),
+            (_, Some(bed)) => Ok(-bed),
+            (_, None) => Err(Failure::value("the deck has no seabed")),
+        }
+    }
+
+    /// Mean and least of the soundings [m], or the depth where the seabed is level.
+    ///
+    /// # Errors
+    /// No seabed.
+    pub fn depths(&self) -> Outcome<[f64; 2]> {
+        let seabed = self.deck.scene.seabed.as_ref();
+        let seabed = seabed.ok_or_else(|| Failure::value("the deck has no seabed"))?;
+        let Some(grid) = &seabed.grid else {
+            return Ok([seabed.depth; 2]);
+        };
+        let depths = || grid.depth.iter().flatten().copied();
+        let count = depths().count().max(1) as f64;
+        Ok([
+            depths().sum::<f64>() / count,
+            depths().fold(f64::INFINITY, f64::min),
+        ])
+    }
+}
