@@ -1,6 +1,6 @@
 //! Plan of a scene: choices that all its parts share.
 
-use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solver, Threads};
+use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solver, Threads, ToleranceOf};
 
 use crate::dice::{Dice, Tape};
 use crate::surroundings;
@@ -129,6 +129,10 @@ impl Plan {
             threads: match dice.chance(0.2) {
                 true => Threads::Number(2),
                 false => Threads::Auto,
+            },
+            tolerance_of: match dice.chance(0.3) {
+                true => ToleranceOf::Position,
+                false => ToleranceOf::Tension,
             },
         }
     }

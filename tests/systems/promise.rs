@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use crate::common::*;
 use moorline::discretisation::{self, discretised};
 use moorline::math::low_pass::low_pass;
-use moorline::scene::{Integrator, MotionPath, Scene};
+use moorline::scene::{Integrator, MotionPath, Scene, ToleranceOf};
 use moorline::simulation::Simulation;
 
 const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
@@ -397,6 +397,46 @@ fn of_lines_that_are_copies_one_is_tried() {
     );
     assert_eq!((&copy.trials, copy.elements), (&one.trials, one.elements));
     assert_ne!(longer.trials, one.trials);
+}
+
+/// RMS error of the position of the middle of a scene's line on the mesh selected, over its deviation from its mean [-].
+fn error_of_middle(scene: &Scene) -> f64 {
+    let middle = |scene: &Scene| {
+        let mut simulation = following(scene);
+        let count = (scene.output.duration / scene.output.interval).round() as usize;
+        let mut places: Vec<[f64; 3]> = Vec::new();
+        for _ in 0..count {
+            simulation.advance(scene.output.interval).unwrap();
+            let nodes = simulation.profile(0);
+            let middle = nodes[nodes.len() / 2];
+            places.push([middle.x, middle.y, middle.z]);
+        }
+        places.split_off(count / 2)
+    };
+    let mut selected = discretised(scene).into_owned();
+    selected.solver.elements = selected.solver.elements.map(|elements| elements + elements % 2);
+    let mut fine = scene.clone();
+    fine.solver.elements = Some(4 * selected.solver.elements.unwrap());
+    fine.solver.tolerance = 1e-3;
+    let (own, right) = (middle(&selected), middle(&fine));
+    let count = right.len() as f64;
+    let mean = [0, 1, 2].map(|axis| right.iter().map(|place| place[axis]).sum::<f64>() / count);
+    let square = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>();
+    let wrong: f64 = own.iter().zip(&right).map(|(a, b)| square(a, b)).sum();
+    let scale: f64 = right.iter().map(|place| square(place, &mean)).sum();
+    (wrong / scale).sqrt()
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn the_error_of_positions_is_kept_where_the_tolerance_is_of_position() {
+    for name in ["oc3_catenary", "taut_polyester"] {
+        let mut scene = moved(name, [1.0, 1.0]);
+        scene.solver.tolerance_of = ToleranceOf::Position;
+        let error = error_of_middle(&scene);
+        println!("{name}: {error:.4}");
+        assert!(error <= scene.solver.tolerance, "{name}: {error}");
+    }
 }
 
 #[test]
