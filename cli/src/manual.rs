@@ -4,9 +4,10 @@ use std::io;
 use std::path::Path;
 
 use clap::CommandFactory;
+use clap_complete::Shell;
 use moorline::output::write_file;
 
-use crate::arguments::{Arguments, Shell};
+use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::terminal::print;
@@ -16,12 +17,6 @@ const NAME: &str = "moorline";
 
 /// Prints the completions of a shell.
 pub(crate) fn completions(shell: Shell) -> Result<(), Failure> {
-    let shell = match shell {
-        Shell::Bash => clap_complete::Shell::Bash,
-        Shell::Zsh => clap_complete::Shell::Zsh,
-        Shell::Fish => clap_complete::Shell::Fish,
-        Shell::Powershell => clap_complete::Shell::PowerShell,
-    };
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), NAME, &mut text);
     print(&String::from_utf8_lossy(&text))

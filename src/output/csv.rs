@@ -99,6 +99,9 @@ struct RowText {
 impl RowText {
     fn new(columns: &[Column], digits: Option<usize>) -> RowText {
         let quoted_name = |name: &String| {
+            if name.is_empty() {
+                return String::new(); // alone in a row it would be quoted
+            }
             let row = quoted(&[name]);
             String::from_utf8_lossy(&row[..row.len() - 1]).into_owned()
         };
