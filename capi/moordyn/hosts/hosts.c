@@ -152,7 +152,7 @@ static void foam_mooring(struct run *run) {
         step(run, k);
     }
     run->seconds += now() - start;
-    MUST(MoorDyn_SaveVTK, run->system, beside(run, ".vtm"));
+    MUST(MoorDyn_SaveVTK, run->system, beside(run, "_shape.vtm"));
     MUST(MoorDyn_Close, run->system);
 }
 

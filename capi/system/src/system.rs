@@ -13,10 +13,14 @@ use crate::channels::Files;
 use crate::deck::Deck;
 use crate::failure::{Code, Failure, Outcome};
 use crate::log::{Log, MESSAGE, WARNING};
+use crate::saved::check_sum;
 use crate::settings::{Force, Path as HostPath, Settings};
 
 /// Difference between the host's clock and that of the simulation that is rounding [s].
 const CLOCK_TOLERANCE: f64 = 1e-6;
+
+/// Words of remarks of the reader that do not hold behind this interface, which has MoorDyn's laws and files of single lines.
+const OVERRULED: [&str; 2] = ["negative_tension", "no files of single lines"];
 
 /// All that determines the simulation before its first step, beside the scene of the deck.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -47,6 +51,8 @@ pub struct System {
     pub(crate) settings: Settings,
     pub(crate) simulation: Option<Simulation>,
     pub(crate) start: Start,
+    /// Check sum of the scene that was started.
+    pub(crate) scene_sum: [u8; 32],
     /// Coupled positions [m] and angles [rad] at the end of the last step, and their rates [m/s, rad/s].
     pub(crate) place: [Vec<f64>; 2],
     /// Time of the host less that of the simulation [s].
@@ -79,6 +85,7 @@ impl System {
             settings,
             simulation: None,
             start: Start::default(),
+            scene_sum: [0; 32],
             place: [Vec::new(), Vec::new()],
             ahead: 0.0,
             files: None,
@@ -86,7 +93,8 @@ impl System {
             has_warned_of_time: false,
             deck,
         };
-        for remark in std::mem::take(&mut system.deck.remarks) {
+        let remarks = std::mem::take(&mut system.deck.remarks).into_iter();
+        for remark in remarks.filter(|remark| !OVERRULED.iter().any(|words| remark.contains(words))) {
             system.log.write(MESSAGE, &remark);
         }
         Ok(system)
@@ -105,6 +113,7 @@ impl System {
             time: 0.0,
         };
         self.begin(start)?;
+        self.scene_sum = check_sum(&self.deck.scene);
         self.place = [x.to_vec(), xd.to_vec()];
         self.files = None;
         self.open_files()?;
