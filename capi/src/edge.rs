@@ -1,0 +1,185 @@
+//! Handles, messages, and everything that touches a host's pointer.
+//!
+//! Guarantees of the host: a pointer that is not null points to as many values as the function says, which stay valid and unchanged by others
+//! during the call; a text ends with a zero byte. Null pointers, wrong lengths and closed handles are refused. Any thread may call; calls on
+//! one simulation wait for one another. The message of a failure is that of the calling thread.
+
+use std::cell::RefCell;
+use std::ffi::{c_char, c_int};
+
+use moorline_boundary::guard::guard;
+use moorline_boundary::handles::{Denied, Handles};
+use moorline_boundary::pointers;
+
+use crate::codes::*;
+use crate::session::{Failure, Outcome, Session};
+
+/// Target of [`moorline_simulation`].
+pub struct MoorlineSimulationTarget {
+    _private: [u8; 0],
+}
+
+/// Handle of a simulation.
+#[allow(non_camel_case_types, reason = "its name in C")]
+pub type moorline_simulation = *mut MoorlineSimulationTarget;
+
+static SESSIONS: Handles<Session> = Handles::new();
+
+thread_local! {
+    /// Message of the last call that failed.
+    static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Keeps the message of a failure and returns its code.
+fn report(function: &str, result: Outcome) -> c_int {
+    match result {
+        Ok(()) => MOORLINE_OK,
+        Err(failure) => {
+            MESSAGE.with_borrow_mut(|message| *message = format!("{function}: {}", failure.message));
+            failure.code
+        }
+    }
+}
+
+/// The message of the last failure of this thread.
+pub(crate) fn message() -> String {
+    MESSAGE.with_borrow(Clone::clone)
+}
+
+/// Makes a simulation and gives its handle.
+///
+/// # Safety
+/// `target` is null or may be written to.
+pub(crate) unsafe fn create(
+    function: &str,
+    version: u32,
+    target: *mut moorline_simulation,
+    make: impl FnOnce() -> Outcome<Session>,
+) -> c_int {
+    let made = guard(|| {
+        if version != MOORLINE_ABI_VERSION {
+            return Err(Failure::new(
+                MOORLINE_WRONG_VERSION,
+                format!(
+                    "the host was built for version {version} of this interface, and this is {MOORLINE_ABI_VERSION}"
+                ),
+            ));
+        }
+        // SAFETY: by the caller's promise; a handle that cannot be given is not made.
+        unsafe { put(target, std::ptr::null_mut()) }?;
+        let handle = SESSIONS.insert(make()?, 0);
+        // SAFETY: as above.
+        unsafe { put(target, std::ptr::without_provenance_mut(handle)) }
+    });
+    report(
+        function,
+        made.unwrap_or_else(|panic| Err(Failure::new(MOORLINE_INTERNAL_ERROR, panic))),
+    )
+}
+
+/// Closes a simulation; null is nothing to close.
+pub(crate) fn close(simulation: moorline_simulation) -> c_int {
+    let is_done = simulation.is_null() || SESSIONS.remove(simulation.addr());
+    let unknown = || Failure::new(MOORLINE_INVALID_HANDLE, "the handle is closed, or none");
+    report("moorline_close", if is_done { Ok(()) } else { Err(unknown()) })
+}
+
+/// Serves a call on a simulation: handle, panic guard, message, code.
+pub(crate) fn call(
+    simulation: moorline_simulation,
+    function: &str,
+    body: impl FnOnce(&mut Session) -> Outcome,
+) -> c_int {
+    let served = SESSIONS.with(simulation.addr(), |session, _| body(session));
+    let result = served.unwrap_or_else(|denied| {
+        let (code, message) = match denied {
+            Denied::Null => (MOORLINE_INVALID_HANDLE, "the handle is null".to_string()),
+            Denied::Unknown => (
+                MOORLINE_INVALID_HANDLE,
+                "the handle is closed, or none".to_string(),
+            ),
+            Denied::Poisoned => (
+                MOORLINE_INTERNAL_ERROR,
+                "an earlier call failed inside: close the simulation".to_string(),
+            ),
+            Denied::Panicked(message) => (MOORLINE_INTERNAL_ERROR, message),
+        };
+        Err(Failure::new(code, message))
+    });
+    report(function, result)
+}
+
+/// Values of the host.
+///
+/// # Safety
+/// As [`pointers::slice`].
+pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> Outcome<&'a [T]> {
+    // SAFETY: by the caller's promise.
+    unsafe { pointers::slice(pointer, count) }.map_err(Failure::argument)
+}
+
+/// Room of the host.
+///
+/// # Safety
+/// As [`pointers::slice_mut`].
+pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> Outcome<&'a mut [T]> {
+    // SAFETY: by the caller's promise.
+    unsafe { pointers::slice_mut(pointer, count) }.map_err(Failure::argument)
+}
+
+/// Writes a value to the host.
+///
+/// # Safety
+/// As [`pointers::write`].
+pub(crate) unsafe fn put<T>(target: *mut T, value: T) -> Outcome {
+    // SAFETY: by the caller's promise.
+    unsafe { pointers::write(target, value) }.map_err(Failure::argument)
+}
+
+/// Text of the host.
+///
+/// # Safety
+/// As [`pointers::text`].
+pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Outcome<&'a str> {
+    // SAFETY: by the caller's promise.
+    unsafe { pointers::text(pointer) }.map_err(Failure::argument)
+}
+
+/// Copies a text to the host, cut to its room, and gives the room that the whole needs unless `needed` is null [bytes].
+///
+/// # Safety
+/// `target` is null or points to `room` bytes, `needed` is null or may be written to.
+pub(crate) unsafe fn give_text(text: &str, target: *mut c_char, room: usize, needed: *mut usize) -> Outcome {
+    // SAFETY: by the caller's promise.
+    unsafe {
+        let size = pointers::copy_text(text, target, room).map_err(Failure::argument)?;
+        match needed.is_null() {
+            true => Ok(()),
+            false => put(needed, size),
+        }
+    }
+}
+
+/// Copies bytes to a host with room for all of them, and gives their number; with no room only the latter.
+///
+/// # Safety
+/// `target` is null or points to `room` bytes, `needed` is null or may be written to.
+pub(crate) unsafe fn give_bytes(bytes: &[u8], target: *mut u8, room: usize, needed: *mut usize) -> Outcome {
+    // SAFETY: by the caller's promise.
+    unsafe {
+        if !needed.is_null() {
+            put(needed, bytes.len())?;
+        }
+        if room == 0 {
+            return Ok(());
+        }
+        if room < bytes.len() {
+            return Err(Failure::argument(format!(
+                "{} bytes are wanted, and there is room for {room}",
+                bytes.len()
+            )));
+        }
+        slice_mut(target, bytes.len())?.copy_from_slice(bytes);
+    }
+    Ok(())
+}

@@ -1,0 +1,570 @@
+//! A mooring that a host drives: a scene, its variables, and from the start on a simulation. Safe code without pointers.
+
+use std::ffi::c_int;
+use std::path::Path;
+
+use moorline::discretisation::discretised;
+use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
+use moorline::model::{Body, Model};
+use moorline::output::{collect, json};
+use moorline::scene::{LoadError, Scene};
+use moorline::simulation::{self, Simulation, Snapshot};
+use moorline_decks::load;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::codes::*;
+
+/// Greatest magnitude of an input [m, rad, m/s, rad/s]: beyond this, squares and cubes of it would overflow.
+const INPUT_MAX: f64 = 1e12;
+
+/// Failure with its code and a sentence.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Failure {
+    pub(crate) code: c_int,
+    pub(crate) message: String,
+}
+
+impl Failure {
+    pub(crate) fn new(code: c_int, message: impl Into<String>) -> Failure {
+        Failure {
+            code,
+            message: message.into(),
+        }
+    }
+
+    pub(crate) fn argument(message: impl Into<String>) -> Failure {
+        Failure::new(MOORLINE_INVALID_ARGUMENT, message)
+    }
+}
+
+pub(crate) type Outcome<T = ()> = Result<T, Failure>;
+
+/// Last input of the host for a point or a vessel; points use the first three axes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct BodyInput {
+    /// Displacement [m] and angles [rad].
+    displacement: [f64; 6],
+    /// Velocity [m/s] and angular velocity [rad/s], where the host gives them.
+    velocity: [Option<f64>; 6],
+}
+
+/// Inputs of a host.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Inputs {
+    /// Of every point of the scene, then of every vessel.
+    bodies: Vec<BodyInput>,
+    releases: Vec<bool>,
+    /// Length changes of the winches, by line [m].
+    length_changes: Vec<f64>,
+}
+
+/// All that changes.
+#[derive(Debug, Serialize, Deserialize)]
+struct Saved {
+    version: String,
+    scene: String,
+    origin: Inputs,
+    start_time: f64,
+    inputs: Inputs,
+    snapshot: Option<Snapshot>,
+}
+
+/// A body that the host moves.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Moved {
+    pub(crate) name: String,
+    pub(crate) body: Body,
+    /// Degrees of freedom: 3 or 6.
+    pub(crate) size: usize,
+}
+
+/// A mooring.
+#[derive(Debug)]
+pub(crate) struct Session {
+    scene: Scene,
+    interface: Interface,
+    moved: Vec<Moved>,
+    inputs: Inputs,
+    /// Inputs at the start, from which the equilibrium was found.
+    origin: Inputs,
+    start_time: f64,
+    simulation: Option<Simulation>,
+}
+
+impl Session {
+    pub(crate) fn load(path: &Path) -> Outcome<Session> {
+        let loaded = load(path).map_err(|error| Failure::new(MOORLINE_SCENE_ERROR, in_words(&error)))?;
+        Session::new(loaded.scene)
+    }
+
+    pub(crate) fn read(text: &str) -> Outcome<Session> {
+        Session::new(Scene::from_toml(text).map_err(scene_error)?)
+    }
+
+    fn new(scene: Scene) -> Outcome<Session> {
+        let model = Model::new(&scene).map_err(scene_error)?;
+        let interface = Interface::new(&scene, &model, Layout::Scalars).map_err(scene_error)?;
+        let inputs = Inputs {
+            bodies: vec![BodyInput::default(); scene.points.len() + scene.vessels.len()],
+            releases: vec![false; scene.lines.len()],
+            length_changes: vec![0.0; scene.lines.len()],
+        };
+        Ok(Session {
+            moved: moved(&scene, &model),
+            origin: inputs.clone(),
+            inputs,
+            interface,
+            scene,
+            start_time: 0.0,
+            simulation: None,
+        })
+    }
+
+    /// Selects by trials what the scene leaves open: elements, integrator and step.
+    pub(crate) fn select(&mut self) -> Outcome {
+        self.expect_not_started("select")?;
+        let scene = discretised(&self.scene).into_owned();
+        *self = Session {
+            inputs: self.inputs.clone(),
+            ..Session::new(scene)?
+        };
+        Ok(())
+    }
+
+    fn expect_not_started(&self, what: &str) -> Outcome {
+        match self.simulation {
+            None => Ok(()),
+            Some(_) => Err(Failure::new(
+                MOORLINE_WRONG_PHASE,
+                format!("{what} comes before start: reset first"),
+            )),
+        }
+    }
+
+    pub(crate) fn simulation(&self) -> Outcome<&Simulation> {
+        let missing = || {
+            Failure::new(
+                MOORLINE_WRONG_PHASE,
+                "the simulation was not started: call start first",
+            )
+        };
+        self.simulation.as_ref().ok_or_else(missing)
+    }
+
+    /// Finds the equilibrium at the present inputs, at a time [s].
+    pub(crate) fn start(&mut self, time: f64) -> Outcome {
+        if !time.is_finite() {
+            return Err(Failure::argument(format!(
+                "the start time {time} s is not finite"
+            )));
+        }
+        self.simulation = Some(equilibrium(&self.scene, time, &self.inputs)?);
+        self.origin = self.inputs.clone();
+        self.start_time = time;
+        Ok(())
+    }
+
+    /// Goes back to before the start; parameters and inputs stay.
+    pub(crate) fn reset(&mut self) {
+        self.simulation = None;
+    }
+
+    /// Steps by a time [s].
+    pub(crate) fn step(&mut self, step: f64) -> Outcome {
+        if !(step.is_finite() && step >= 0.0) {
+            return Err(Failure::argument(format!(
+                "a step of {step} s: it must be finite and not negative"
+            )));
+        }
+        self.simulation()?;
+        if let Some(simulation) = &mut self.simulation {
+            hand_over(&self.inputs, simulation);
+            let advanced = simulation.advance(step);
+            advanced.map_err(|error| Failure::new(MOORLINE_STEP_ERROR, error.to_string()))?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn variables(&self) -> &[Variable] {
+        self.interface.variables()
+    }
+
+    pub(crate) fn variable(&self, reference: u32) -> Outcome<&Variable> {
+        let count = self.variables().len();
+        let unknown = || {
+            Failure::argument(format!(
+                "there is no variable {reference}: 1 to {count} would be right"
+            ))
+        };
+        self.interface.variable(reference).ok_or_else(unknown)
+    }
+
+    pub(crate) fn find(&self, name: &str) -> Outcome<u32> {
+        let found = self.variables().iter().position(|variable| variable.name == name);
+        let unknown = || Failure::argument(format!("there is no variable `{name}`"));
+        found.map(Interface::reference).ok_or_else(unknown)
+    }
+
+    /// References of all variables of a causality, in their order.
+    pub(crate) fn references(&self, causality: Causality) -> Vec<u32> {
+        let variables = self.variables().iter().enumerate();
+        let wanted = variables.filter(|(_, variable)| variable.causality == causality);
+        wanted.map(|(index, _)| Interface::reference(index)).collect()
+    }
+
+    pub(crate) fn get(&self, references: &[u32], values: &mut [f64]) -> Outcome {
+        check_lengths(references.len(), values.len())?;
+        for (&reference, value) in references.iter().zip(values) {
+            *value = self.value(self.variable(reference)?)?;
+        }
+        Ok(())
+    }
+
+    fn value(&self, variable: &Variable) -> Outcome<f64> {
+        match &variable.binding {
+            Binding::Displacement { body, axis } => {
+                Ok(self.inputs.bodies[self.slot(*body)].displacement[*axis])
+            }
+            Binding::Velocity { body, axis } => {
+                let velocity = self.inputs.bodies[self.slot(*body)].velocity[*axis];
+                Ok(velocity.unwrap_or(0.0))
+            }
+            Binding::Release { line } => Ok(f64::from(u8::from(self.inputs.releases[*line]))),
+            Binding::LengthChange { line } => Ok(self.inputs.length_changes[*line]),
+            Binding::Parameter(parameter) => parameter.value(&self.scene).ok_or_else(|| {
+                Failure::new(MOORLINE_NOT_AVAILABLE, format!("{} has no value", variable.name))
+            }),
+            _ => {
+                let mut value = [0.0];
+                let read = Interface::read(variable, self.simulation()?, &mut value);
+                read.map_err(|problem| Failure::new(MOORLINE_NOT_AVAILABLE, problem))?;
+                match value[0].is_finite() {
+                    true => Ok(value[0]),
+                    false => Err(Failure::new(
+                        MOORLINE_STEP_ERROR,
+                        format!("{} is {}: look at the inputs", variable.name, value[0]),
+                    )),
+                }
+            }
+        }
+    }
+
+    /// Sets inputs, and parameters before the start: all of them or, where one is refused, none.
+    pub(crate) fn set(&mut self, references: &[u32], values: &[f64]) -> Outcome {
+        check_lengths(references.len(), values.len())?;
+        let (mut scene, mut inputs) = (None, self.inputs.clone());
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = self.variable(reference)?;
+            if !value.is_finite() || value.abs() > INPUT_MAX && variable.causality == Causality::Input {
+                return Err(Failure::argument(format!(
+                    "{}: {value} cannot be used; nothing was set",
+                    variable.name
+                )));
+            }
+            match &variable.binding {
+                Binding::Displacement { body, axis } => {
+                    inputs.bodies[self.slot(*body)].displacement[*axis] = value
+                }
+                Binding::Velocity { body, axis } => {
+                    inputs.bodies[self.slot(*body)].velocity[*axis] = Some(value)
+                }
+                Binding::Release { line } => inputs.releases[*line] = value != 0.0,
+                Binding::LengthChange { line } => inputs.length_changes[*line] = value,
+                Binding::Parameter(parameter) => {
+                    self.expect_not_started("a parameter")?;
+                    let scene = scene.get_or_insert_with(|| self.scene.clone());
+                    let set = parameter.set(scene, value);
+                    set.map_err(|problem| Failure::argument(format!("{}: {problem}", variable.name)))?;
+                }
+                _ => {
+                    return Err(Failure::argument(format!(
+                        "{} is a result and not to be set",
+                        variable.name
+                    )));
+                }
+            }
+        }
+        if let Some(scene) = scene {
+            Model::new(&scene).map_err(scene_error)?;
+            self.scene = scene;
+        }
+        self.inputs = inputs;
+        Ok(())
+    }
+
+    /// Place of a body among the inputs: all points, then all vessels.
+    fn slot(&self, body: Body) -> usize {
+        match body {
+            Body::Point(point) => point,
+            Body::Vessel(vessel) => self.scene.points.len() + vessel,
+        }
+    }
+
+    pub(crate) fn moved(&self) -> &[Moved] {
+        &self.moved
+    }
+
+    pub(crate) fn body(&self, index: usize) -> Outcome<&Moved> {
+        let count = self.moved.len();
+        let unknown = || Failure::argument(format!("there is no body {index}: there are {count}, from 0"));
+        self.moved.get(index).ok_or_else(unknown)
+    }
+
+    /// Sets where a body is now, and its velocity where it is given.
+    pub(crate) fn move_body(&mut self, index: usize, place: &[f64], velocity: Option<&[f64]>) -> Outcome {
+        let body = self.body(index)?.clone();
+        check_lengths(body.size, place.len())?;
+        let given = place.iter().chain(velocity.unwrap_or(&[]));
+        if let Some(value) = given
+            .into_iter()
+            .find(|value| value.is_nan() || value.abs() > INPUT_MAX)
+        {
+            return Err(Failure::argument(format!(
+                "{}: {value} cannot be used; nothing was set",
+                body.name
+            )));
+        }
+        let slot = self.slot(body.body);
+        let input = &mut self.inputs.bodies[slot];
+        input.displacement[..body.size].copy_from_slice(place);
+        input.velocity = std::array::from_fn(|axis| velocity?.get(axis).copied());
+        Ok(())
+    }
+
+    /// Force on a body [N], and moment on a vessel [N m].
+    pub(crate) fn force(&self, index: usize) -> Outcome<Vec<f64>> {
+        let (body, simulation) = (self.body(index)?, self.simulation()?);
+        Ok(match body.body {
+            Body::Point(point) => simulation.end_force(point).to_vec(),
+            Body::Vessel(vessel) => simulation.vessel_force(vessel).to_vec(),
+        })
+    }
+
+    /// Stiffness of the mooring on a vessel by rows of force [N/m, N, N m].
+    pub(crate) fn stiffness(&self, index: usize) -> Outcome<[[f64; 6]; 6]> {
+        let (body, simulation) = (self.body(index)?, self.simulation()?);
+        let Body::Vessel(vessel) = body.body else {
+            return Err(Failure::new(
+                MOORLINE_NOT_AVAILABLE,
+                format!("{} is a point: the stiffness is that on a vessel", body.name),
+            ));
+        };
+        simulation.vessel_stiffness(vessel).ok_or_else(|| {
+            Failure::new(
+                MOORLINE_NOT_AVAILABLE,
+                format!(
+                    "{}: no stiffness, for a beam holds it or its lines are not stable as they are",
+                    body.name
+                ),
+            )
+        })
+    }
+
+    /// Name of a line.
+    pub(crate) fn line(&self, index: usize) -> Outcome<&str> {
+        let lines = &self.scene.lines;
+        let unknown = || {
+            Failure::argument(format!(
+                "there is no line {index}: there are {}, from 0",
+                lines.len()
+            ))
+        };
+        lines
+            .get(index)
+            .map(|line| line.name.as_str())
+            .ok_or_else(unknown)
+    }
+
+    pub(crate) fn line_count(&self) -> usize {
+        self.scene.lines.len()
+    }
+
+    /// Positions of the nodes of a line from end A to end B [m], with their tensions [N].
+    pub(crate) fn nodes(&self, index: usize) -> Outcome<Vec<([f64; 3], f64)>> {
+        self.line(index)?;
+        let profile = self.simulation()?.profile(index).into_iter();
+        Ok(profile
+            .map(|node| ([node.x, node.y, node.z], node.tension))
+            .collect())
+    }
+
+    /// The equilibrium as `moorline statics --json` writes it.
+    pub(crate) fn statics(&self) -> Outcome<String> {
+        let mut scene = self.scene.clone();
+        if let Some(water) = &mut scene.water {
+            water.waves = None; // an equilibrium is that of the sea at rest
+        }
+        let simulation = Simulation::at_rest(&scene).map_err(building_error)?;
+        let mut bytes = Vec::new();
+        json::write(&collect::statics(&scene, &simulation), &mut bytes)
+            .map_err(|error| Failure::new(MOORLINE_INTERNAL_ERROR, error.to_string()))?;
+        String::from_utf8(bytes).map_err(|error| Failure::new(MOORLINE_INTERNAL_ERROR, error.to_string()))
+    }
+
+    /// The scene with its present parameters, as TOML.
+    pub(crate) fn scene(&self) -> String {
+        self.scene.to_toml()
+    }
+
+    /// All that changes, as bytes: SHA-256, then the state in postcard.
+    pub(crate) fn save(&self) -> Outcome<Vec<u8>> {
+        let saved = Saved {
+            version: env!("CARGO_PKG_VERSION").to_string(),
+            scene: self.scene.to_toml(),
+            origin: self.origin.clone(),
+            start_time: self.start_time,
+            inputs: self.inputs.clone(),
+            snapshot: self
+                .simulation
+                .as_ref()
+                .map(|simulation| simulation.snapshot().clone()),
+        };
+        let body = postcard::to_stdvec(&saved).map_err(|error| {
+            Failure::new(
+                MOORLINE_INTERNAL_ERROR,
+                format!("the state cannot be written: {error}"),
+            )
+        })?;
+        let mut bytes = Sha256::digest(&body).to_vec();
+        bytes.extend(body);
+        Ok(bytes)
+    }
+
+    /// Goes back to a saved state, of this scene with any parameters.
+    pub(crate) fn restore(&mut self, bytes: &[u8]) -> Outcome {
+        let damaged = || Failure::argument("the bytes are no state of this version of moorline, or damaged");
+        let (sum, body) = bytes
+            .split_at_checked(Sha256::output_size())
+            .ok_or_else(damaged)?;
+        if Sha256::digest(body).as_slice() != sum {
+            return Err(damaged());
+        }
+        let saved: Saved = postcard::from_bytes(body).map_err(|_| damaged())?;
+        if saved.version != env!("CARGO_PKG_VERSION") {
+            return Err(damaged());
+        }
+        let same_start = self.simulation.is_some()
+            && saved.scene == self.scene.to_toml()
+            && saved.origin == self.origin
+            && saved.start_time.to_bits() == self.start_time.to_bits();
+        let mut next = match same_start {
+            true => None,
+            false => Some(self.sibling(&saved)?),
+        };
+        let target = next.as_mut().unwrap_or(self);
+        match (saved.snapshot, &mut target.simulation) {
+            (Some(snapshot), Some(simulation)) => simulation.restore(snapshot),
+            (None, simulation) => *simulation = None,
+            (Some(_), None) => return Err(damaged()),
+        }
+        target.inputs = saved.inputs;
+        if let Some(next) = next {
+            *self = next;
+        }
+        Ok(())
+    }
+
+    /// A session with the scene and start of a saved state, whose variables are those of this one.
+    fn sibling(&self, saved: &Saved) -> Outcome<Session> {
+        let mut other = Session::read(&saved.scene)?;
+        let names = |session: &Session| -> Vec<String> {
+            session
+                .variables()
+                .iter()
+                .map(|variable| variable.name.clone())
+                .collect()
+        };
+        if names(&other) != names(self) {
+            return Err(Failure::argument("the state is that of another scene"));
+        }
+        other.inputs = saved.origin.clone();
+        if saved.snapshot.is_some() {
+            other.start(saved.start_time)?;
+        }
+        Ok(other)
+    }
+}
+
+/// Bodies that a host moves, in the order of the variables: coupled points, then vessels.
+fn moved(scene: &Scene, model: &Model) -> Vec<Moved> {
+    let bodies = model.bodies().map(|body| match body {
+        Body::Point(point) => Moved {
+            name: scene.points[point].name.clone(),
+            body,
+            size: 3,
+        },
+        Body::Vessel(vessel) => Moved {
+            name: scene.vessels[vessel].name.clone(),
+            body,
+            size: 6,
+        },
+    });
+    let is_moved = |body: &Moved| match body.body {
+        Body::Point(point) => matches!(model.points[point].role, moorline::model::Role::Coupled { .. }),
+        Body::Vessel(_) => true,
+    };
+    bodies.filter(is_moved).collect()
+}
+
+fn check_lengths(wanted: usize, given: usize) -> Outcome {
+    match wanted == given {
+        true => Ok(()),
+        false => Err(Failure::argument(format!(
+            "{wanted} values are wanted, and there is room for {given}"
+        ))),
+    }
+}
+
+fn scene_error(error: moorline::scene::SceneError) -> Failure {
+    Failure::new(MOORLINE_SCENE_ERROR, error.to_string())
+}
+
+fn building_error(error: simulation::Error) -> Failure {
+    let code = match &error {
+        simulation::Error::Scene(_) => MOORLINE_SCENE_ERROR,
+        simulation::Error::Statics(_) => MOORLINE_STATICS_ERROR,
+    };
+    Failure::new(code, error.to_string())
+}
+
+/// A file that cannot be used, with all of its mistakes.
+fn in_words(error: &LoadError) -> String {
+    match error {
+        LoadError::Scene { path, text, mistakes } => {
+            let place = |mistake: &moorline::scene::SceneError| {
+                let (line, column) = mistake.line_column(text);
+                format!("{}:{line}:{column}: {mistake}", path.display())
+            };
+            mistakes.iter().map(place).collect::<Vec<_>>().join("\n")
+        }
+        other => other.to_string(),
+    }
+}
+
+fn equilibrium(scene: &Scene, time: f64, inputs: &Inputs) -> Outcome<Simulation> {
+    let mut simulation = Simulation::new(scene).map_err(building_error)?;
+    let bodies: Vec<Body> = simulation.model().bodies().collect();
+    for (body, input) in bodies.into_iter().zip(&inputs.bodies) {
+        simulation.set_body(body, input.displacement, [None; 6]);
+    }
+    for (line, &change) in inputs.length_changes.iter().enumerate() {
+        simulation.set_length_change(line, change);
+    }
+    simulation.restart(time).map_err(building_error)?;
+    Ok(simulation)
+}
+
+/// Passes the inputs to the simulation.
+fn hand_over(inputs: &Inputs, simulation: &mut Simulation) {
+    for (index, input) in inputs.bodies.iter().enumerate() {
+        let body = simulation.model().body(index);
+        simulation.set_body(body, input.displacement, input.velocity);
+    }
+    for (line, &release) in inputs.releases.iter().enumerate() {
+        simulation.set_release(line, release);
+    }
+    for (line, &change) in inputs.length_changes.iter().enumerate() {
+        simulation.set_length_change(line, change);
+    }
+}
