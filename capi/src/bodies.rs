@@ -29,8 +29,7 @@ pub unsafe extern "C" fn moorline_body_count(simulation: moorline_simulation, co
     })
 }
 
-/// Gives the name of a body, counted from 0. See `moorline_message` for
-/// the way a text is given.
+/// Gives the name of a body, counted from 0. `moorline_message` says how a text is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_body_name(
     simulation: moorline_simulation,
@@ -122,8 +121,7 @@ pub unsafe extern "C" fn moorline_line_count(simulation: moorline_simulation, co
     })
 }
 
-/// Gives the name of a line, counted from 0. See `moorline_message` for
-/// the way a text is given.
+/// Gives the name of a line, counted from 0. `moorline_message` says how a text is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_line_name(
     simulation: moorline_simulation,

@@ -133,8 +133,7 @@ pub unsafe extern "C" fn moorline_restore(
     })
 }
 
-/// Gives the static equilibrium of the scene at its reference positions as JSON, as `moorline statics --json` does. See `moorline_message` for
-/// the way a text is given.
+/// Gives the static equilibrium of the scene at its reference positions as JSON, as `moorline statics --json` does. `moorline_message` says how a text is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_statics(
     simulation: moorline_simulation,
@@ -149,8 +148,7 @@ pub unsafe extern "C" fn moorline_statics(
     })
 }
 
-/// Gives the scene with its present parameters as TOML. See `moorline_message` for
-/// the way a text is given.
+/// Gives the scene with its present parameters as TOML. `moorline_message` says how a text is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_scene(
     simulation: moorline_simulation,

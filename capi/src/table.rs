@@ -47,8 +47,7 @@ pub unsafe extern "C" fn moorline_find(
     })
 }
 
-/// Gives the name of a variable. See `moorline_message` for
-/// the way a text is given.
+/// Gives the name of a variable. `moorline_message` says how a text is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_name(
     simulation: moorline_simulation,
@@ -64,8 +63,7 @@ pub unsafe extern "C" fn moorline_variable_name(
     })
 }
 
-/// Gives the unit of a variable. See `moorline_message` for
-/// the way a text is given.
+/// Gives the unit of a variable. `moorline_message` says how a text is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_unit(
     simulation: moorline_simulation,
@@ -81,8 +79,7 @@ pub unsafe extern "C" fn moorline_variable_unit(
     })
 }
 
-/// Gives the description of a variable in a sentence. See `moorline_message` for
-/// the way a text is given.
+/// Gives the description of a variable in a sentence. `moorline_message` says how a text is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_description(
     simulation: moorline_simulation,

@@ -488,43 +488,83 @@ void setWaveKin(const double *_U, const double *_Ud, double _t);
 // Does nothing: `MoorDynStep` writes the files of channels.
 void AllOutput(double _t, double _dt);
 
-// Gives velocity `U` [m/s], acceleration `Ud` [m/s²], elevation [m] and dynamic pressure [Pa] of the water at a place [m]. The pressure of waves is
-// not found: give null for it where there are waves.
-int MoorDyn_GetWavesKin(MoorDynWaves waves,
-                        double x,
-                        double y,
-                        double z,
-                        double *U,
-                        double *Ud,
-                        double *zeta,
-                        double *PDyn,
-                        MoorDynSeafloor _seafloor);
+// Gives the number of a line in the deck.
+int MoorDyn_GetLineID(MoorDynLine l, int *id);
 
-// Returns the wave number [1/m] of a circular frequency [rad/s] with gravity `g` [m/s²] over a depth `h` [m]; NaN where one of them is not positive.
-double WaveNumber(double Omega,
-                  double g,
-                  double h);
+// Gives the number of segments of a line.
+int MoorDyn_GetLineN(MoorDynLine l, unsigned int *n);
 
-// Gives the depth of the seabed at a place [m], positive down.
-int MoorDyn_GetDepthAt(MoorDynSeafloor seafloor, double x, double y, double *depth);
+// Gives the number of nodes of a line.
+int MoorDyn_GetLineNumberNodes(MoorDynLine l, unsigned int *n);
 
-// Gives the mean of the soundings [m].
-int MoorDyn_GetAverageDepth(MoorDynSeafloor seafloor, double *avgDepth);
+// Gives the unstretched length of a line [m].
+int MoorDyn_GetLineUnstretchedLength(MoorDynLine l, double *ul);
 
-// Gives the least of the soundings [m].
-int MoorDyn_GetMinDepth(MoorDynSeafloor seafloor, double *minDepth);
+// Sets the unstretched length of a line [m], before the start only.
+int MoorDyn_SetLineUnstretchedLength(MoorDynLine l, double ul);
 
-// Is not modelled; gives 0 places.
-int MoorDyn_ExternalWaveKinInit(MoorDyn system, unsigned int *n);
+// Refuses a rate of the unstretched length [m/s] other than 0.
+int MoorDyn_SetLineUnstretchedLengthVel(MoorDynLine l, double v);
 
-// Is not modelled; gives 0 places.
-int MoorDyn_ExternalWaveKinGetN(MoorDyn system, unsigned int *n);
+// Gives 1 where a line has one constant axial stiffness, else 0.
+int MoorDyn_IsLineConstantEA(MoorDynLine l, int *b);
 
-// Is not modelled.
-int MoorDyn_ExternalWaveKinGetCoordinates(MoorDyn system, double *_r);
+// Gives the axial stiffness of a line [N].
+int MoorDyn_GetLineConstantEA(MoorDynLine l, double *EA);
+
+// Sets the axial stiffness of a line [N], before the start only.
+int MoorDyn_SetLineConstantEA(MoorDynLine l, double EA);
+
+// Gives 0: bending by pressure is not modelled.
+int MoorDyn_IsLinePressBend(MoorDynLine l, int *b);
+
+// Refuses bending by pressure.
+int MoorDyn_SetLinePressBend(MoorDynLine l, int b);
 
 // Is not modelled.
-int MoorDyn_ExternalWaveKinSet(MoorDyn system, const double *_U, const double *_Ud, double _t);
+int MoorDyn_SetLinePressInt(MoorDynLine l, const double *_p);
+
+// Gives the position [m] of a node of a line, from end A.
+int MoorDyn_GetLineNodePos(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the velocity [m/s] of a node of a line, from end A.
+int MoorDyn_GetLineNodeVel(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the sum of all forces but inertia [N] of a node of a line, from end A.
+int MoorDyn_GetLineNodeForce(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the tension, towards end B [N], of a node of a line, from end A.
+int MoorDyn_GetLineNodeTen(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the force of bending stiffness [N] of a node of a line, from end A.
+int MoorDyn_GetLineNodeBendStiff(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the weight less buoyancy [N] of a node of a line, from end A.
+int MoorDyn_GetLineNodeWeight(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the drag [N] of a node of a line, from end A.
+int MoorDyn_GetLineNodeDrag(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the force of accelerated water [N] of a node of a line, from end A.
+int MoorDyn_GetLineNodeFroudeKrilov(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the force of the seabed [N] of a node of a line, from end A.
+int MoorDyn_GetLineNodeSeabedForce(MoorDynLine l, unsigned int i, double *out);
+
+// Gives the curvature of a line at a node [1/m]; 0 without bending stiffness.
+int MoorDyn_GetLineNodeCurv(MoorDynLine l, unsigned int i, double *curv);
+
+// Gives the mass matrix of a node of a line, added mass included, by rows [kg].
+int MoorDyn_GetLineNodeM(MoorDynLine l, unsigned int i, double (*m)[3]);
+
+// Gives the tension of the last segment of a line at end B [N].
+int MoorDyn_GetLineFairTen(MoorDynLine l, double *t);
+
+// Gives the greatest tension of all nodes of a line [N].
+int MoorDyn_GetLineMaxTen(MoorDynLine l, double *t);
+
+// Writes the shape of a line for ParaView.
+int MoorDyn_SaveLineVTK(MoorDynLine l, const char *filename);
 
 // Gives the number of a body in the deck.
 int MoorDyn_GetBodyID(MoorDynBody b, int *id);
@@ -609,84 +649,6 @@ int MoorDyn_GetRodNodeVel(MoorDynRod rod, unsigned int i, double *out);
 
 // Is not modelled: a rod only holds the ends of lines.
 int MoorDyn_SaveRodVTK(MoorDynRod rod, const char *_filename);
-
-// Gives the number of a line in the deck.
-int MoorDyn_GetLineID(MoorDynLine l, int *id);
-
-// Gives the number of segments of a line.
-int MoorDyn_GetLineN(MoorDynLine l, unsigned int *n);
-
-// Gives the number of nodes of a line.
-int MoorDyn_GetLineNumberNodes(MoorDynLine l, unsigned int *n);
-
-// Gives the unstretched length of a line [m].
-int MoorDyn_GetLineUnstretchedLength(MoorDynLine l, double *ul);
-
-// Sets the unstretched length of a line [m], before the start only.
-int MoorDyn_SetLineUnstretchedLength(MoorDynLine l, double ul);
-
-// Refuses a rate of the unstretched length [m/s] other than 0.
-int MoorDyn_SetLineUnstretchedLengthVel(MoorDynLine l, double v);
-
-// Gives 1 where a line has one constant axial stiffness, else 0.
-int MoorDyn_IsLineConstantEA(MoorDynLine l, int *b);
-
-// Gives the axial stiffness of a line [N].
-int MoorDyn_GetLineConstantEA(MoorDynLine l, double *EA);
-
-// Sets the axial stiffness of a line [N], before the start only.
-int MoorDyn_SetLineConstantEA(MoorDynLine l, double EA);
-
-// Gives 0: bending by pressure is not modelled.
-int MoorDyn_IsLinePressBend(MoorDynLine l, int *b);
-
-// Refuses bending by pressure.
-int MoorDyn_SetLinePressBend(MoorDynLine l, int b);
-
-// Is not modelled.
-int MoorDyn_SetLinePressInt(MoorDynLine l, const double *_p);
-
-// Gives the position [m] of a node of a line, from end A.
-int MoorDyn_GetLineNodePos(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the velocity [m/s] of a node of a line, from end A.
-int MoorDyn_GetLineNodeVel(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the sum of all forces but inertia [N] of a node of a line, from end A.
-int MoorDyn_GetLineNodeForce(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the tension, towards end B [N], of a node of a line, from end A.
-int MoorDyn_GetLineNodeTen(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the force of bending stiffness [N] of a node of a line, from end A.
-int MoorDyn_GetLineNodeBendStiff(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the weight less buoyancy [N] of a node of a line, from end A.
-int MoorDyn_GetLineNodeWeight(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the drag [N] of a node of a line, from end A.
-int MoorDyn_GetLineNodeDrag(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the force of accelerated water [N] of a node of a line, from end A.
-int MoorDyn_GetLineNodeFroudeKrilov(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the force of the seabed [N] of a node of a line, from end A.
-int MoorDyn_GetLineNodeSeabedForce(MoorDynLine l, unsigned int i, double *out);
-
-// Gives the curvature of a line at a node [1/m]; 0 without bending stiffness.
-int MoorDyn_GetLineNodeCurv(MoorDynLine l, unsigned int i, double *curv);
-
-// Gives the mass matrix of a node of a line, added mass included, by rows [kg].
-int MoorDyn_GetLineNodeM(MoorDynLine l, unsigned int i, double (*m)[3]);
-
-// Gives the tension of the last segment of a line at end B [N].
-int MoorDyn_GetLineFairTen(MoorDynLine l, double *t);
-
-// Gives the greatest tension of all nodes of a line [N].
-int MoorDyn_GetLineMaxTen(MoorDynLine l, double *t);
-
-// Writes the shape of a line for ParaView.
-int MoorDyn_SaveLineVTK(MoorDynLine l, const char *filename);
 
 // Creates a system from a deck, by default `Mooring/lines.txt`; null where the deck cannot be used, with the reason in the console.
 MoorDyn MoorDyn_Create(const char *infilename);
@@ -798,6 +760,44 @@ MoorDynWaves MoorDyn_GetWaves(MoorDyn system);
 
 // Returns the handle of the seabed; null where there is none.
 MoorDynSeafloor MoorDyn_GetSeafloor(MoorDyn system);
+
+// Gives velocity `U` [m/s], acceleration `Ud` [m/s²], elevation [m] and dynamic pressure [Pa] of the water at a place [m]. The pressure of waves is
+// not found: give null for it where there are waves.
+int MoorDyn_GetWavesKin(MoorDynWaves waves,
+                        double x,
+                        double y,
+                        double z,
+                        double *U,
+                        double *Ud,
+                        double *zeta,
+                        double *PDyn,
+                        MoorDynSeafloor _seafloor);
+
+// Returns the wave number [1/m] of a circular frequency [rad/s] with gravity `g` [m/s²] over a depth `h` [m]; NaN where one of them is not positive.
+double WaveNumber(double Omega,
+                  double g,
+                  double h);
+
+// Gives the depth of the seabed at a place [m], positive down.
+int MoorDyn_GetDepthAt(MoorDynSeafloor seafloor, double x, double y, double *depth);
+
+// Gives the mean of the soundings [m].
+int MoorDyn_GetAverageDepth(MoorDynSeafloor seafloor, double *avgDepth);
+
+// Gives the least of the soundings [m].
+int MoorDyn_GetMinDepth(MoorDynSeafloor seafloor, double *minDepth);
+
+// Is not modelled; gives 0 places.
+int MoorDyn_ExternalWaveKinInit(MoorDyn system, unsigned int *n);
+
+// Is not modelled; gives 0 places.
+int MoorDyn_ExternalWaveKinGetN(MoorDyn system, unsigned int *n);
+
+// Is not modelled.
+int MoorDyn_ExternalWaveKinGetCoordinates(MoorDyn system, double *_r);
+
+// Is not modelled.
+int MoorDyn_ExternalWaveKinSet(MoorDyn system, const double *_U, const double *_Ud, double _t);
 
 #ifdef __cplusplus
 }  // extern "C"

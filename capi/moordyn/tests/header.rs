@@ -13,7 +13,6 @@ const HEADER: Header = Header {
     note: "A handle is null or came from a function here; one that was closed is refused. Any thread may call; calls on one system wait for one \
            another.\n * Functions that return int return 0 or a code below 0, and write a sentence to the log of the system. Lines, points, rods, bodies \
            count from 1\n * in the deck's order, nodes and attachments from 0. SI units and radians throughout.",
-    rename: &[],
     library: "moordyn",
 };
 

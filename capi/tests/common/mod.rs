@@ -44,15 +44,13 @@ pub struct Header {
     pub guard: &'static str,
     pub title: &'static str,
     pub note: &'static str,
-    /// Names in Rust and in C.
-    pub rename: &'static [(&'static str, &'static str)],
     /// Name of the library.
     pub library: &'static str,
 }
 
 impl Header {
     fn text(&self) -> String {
-        let mut config = cbindgen::Config {
+        let config = cbindgen::Config {
             language: cbindgen::Language::C,
             cpp_compat: true,
             include_guard: Some(self.guard.to_string()),
@@ -64,19 +62,16 @@ impl Header {
             sys_includes: vec!["stddef.h".to_string(), "stdint.h".to_string()],
             ..cbindgen::Config::default()
         };
-        for (name, other) in self.rename {
-            config
-                .export
-                .rename
-                .insert((*name).to_string(), (*other).to_string());
-        }
         let builder = cbindgen::Builder::new().with_config(config);
         let mut builder = builder.with_src(Path::new(self.package).join("src/lib.rs"));
-        for entry in std::fs::read_dir(Path::new(self.package).join("src")).unwrap() {
-            let path = entry.unwrap().path();
-            if path.extension().is_some_and(|ending| ending == "rs") && !path.ends_with("lib.rs") {
-                builder = builder.with_src(path);
-            }
+        let entries = std::fs::read_dir(Path::new(self.package).join("src")).unwrap();
+        let mut modules: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+        modules.retain(|path| {
+            path.extension().is_some_and(|ending| ending == "rs") && !path.ends_with("lib.rs")
+        });
+        modules.sort();
+        for module in modules {
+            builder = builder.with_src(module);
         }
         let mut text = Vec::new();
         builder.generate().unwrap().write(&mut text);

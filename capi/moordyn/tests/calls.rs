@@ -1,0 +1,418 @@
+//! Calls in any order and with any arguments: no panic, no crash, and only the codes of the interface.
+
+use std::ffi::{CString, c_char, c_int, c_uint, c_void};
+use std::path::Path;
+use std::ptr::{null, null_mut, without_provenance_mut};
+
+use moordyn::codes::*;
+use moorline::math::random::Random;
+
+type Handle = *mut c_void;
+
+unsafe extern "C" {
+    fn MoorDyn_Create(path: *const c_char) -> Handle;
+    fn MoorDyn_NCoupledDOF(system: Handle, n: *mut c_uint) -> c_int;
+    fn MoorDyn_SetVerbosity(system: Handle, level: c_int) -> c_int;
+    fn MoorDyn_Init(system: Handle, x: *const f64, xd: *const f64) -> c_int;
+    fn MoorDyn_Init_NoIC(system: Handle, x: *const f64, xd: *const f64) -> c_int;
+    fn MoorDyn_Step(
+        system: Handle,
+        x: *const f64,
+        xd: *const f64,
+        f: *mut f64,
+        t: *mut f64,
+        dt: *mut f64,
+    ) -> c_int;
+    fn MoorDyn_Close(system: Handle) -> c_int;
+    fn MoorDyn_GetBody(system: Handle, number: c_uint) -> Handle;
+    fn MoorDyn_GetRod(system: Handle, number: c_uint) -> Handle;
+    fn MoorDyn_GetPoint(system: Handle, number: c_uint) -> Handle;
+    fn MoorDyn_GetLine(system: Handle, number: c_uint) -> Handle;
+    fn MoorDyn_GetSeafloor(system: Handle) -> Handle;
+    fn MoorDyn_GetWaves(system: Handle) -> Handle;
+    fn MoorDyn_GetLineNodePos(line: Handle, node: c_uint, out: *mut f64) -> c_int;
+    fn MoorDyn_GetLineNodeForce(line: Handle, node: c_uint, out: *mut f64) -> c_int;
+    fn MoorDyn_GetLineNodeM(line: Handle, node: c_uint, out: *mut [f64; 3]) -> c_int;
+    fn MoorDyn_GetLineMaxTen(line: Handle, out: *mut f64) -> c_int;
+    fn MoorDyn_SetLineUnstretchedLength(line: Handle, length: f64) -> c_int;
+    fn MoorDyn_SetLineConstantEA(line: Handle, stiffness: f64) -> c_int;
+    fn MoorDyn_GetPointAttached(point: Handle, i: c_uint, line: *mut Handle, end: *mut c_int) -> c_int;
+    fn MoorDyn_GetPointForce(point: Handle, out: *mut f64) -> c_int;
+    fn MoorDyn_GetPointM(point: Handle, out: *mut [f64; 3]) -> c_int;
+    fn MoorDyn_GetBodyState(body: Handle, r: *mut f64, rd: *mut f64) -> c_int;
+    fn MoorDyn_GetBodyM(body: Handle, out: *mut [f64; 6]) -> c_int;
+    fn MoorDyn_GetBodyForce(body: Handle, out: *mut f64) -> c_int;
+    fn MoorDyn_GetRodNodePos(rod: Handle, node: c_uint, out: *mut f64) -> c_int;
+    fn MoorDyn_GetDepthAt(seafloor: Handle, x: f64, y: f64, depth: *mut f64) -> c_int;
+    fn MoorDyn_GetWavesKin(
+        waves: Handle,
+        x: f64,
+        y: f64,
+        z: f64,
+        u: *mut f64,
+        ud: *mut f64,
+        zeta: *mut f64,
+        pressure: *mut f64,
+        seafloor: Handle,
+    ) -> c_int;
+    fn MoorDyn_Serialize(system: Handle, size: *mut usize, data: *mut u64) -> c_int;
+    fn MoorDyn_Deserialize(system: Handle, data: *const u64) -> c_int;
+    fn MoorDyn_BreakLine(system: Handle, point: Handle, line: Handle) -> c_int;
+    fn MoorDyn_SetDt(system: Handle, dt: f64) -> c_int;
+    fn MoorDyn_SetTimeScheme(system: Handle, name: *const c_char) -> c_int;
+    fn MoorDyn_GetTimeScheme(system: Handle, name: *mut c_char, room: *mut usize) -> c_int;
+    fn MoorDyn_GetFASTtens(
+        system: Handle,
+        count: *const c_int,
+        fair_h: *mut f32,
+        fair_v: *mut f32,
+        anchor_h: *mut f32,
+        anchor_v: *mut f32,
+    ) -> c_int;
+    fn MoorDyn_Save(system: Handle, path: *const c_char) -> c_int;
+    fn MoorDyn_Load(system: Handle, path: *const c_char) -> c_int;
+    fn MoorDyn_ExternalWaveKinInit(system: Handle, n: *mut c_uint) -> c_int;
+    fn MoorDynInit(x: *const f64, xd: *const f64, path: *const c_char) -> c_int;
+    fn MoorDynStep(x: *const f64, xd: *const f64, f: *mut f64, t: *mut f64, dt: *mut f64) -> c_int;
+    fn MoorDynClose() -> c_int;
+    fn SetDisableConsole(disable: c_int);
+    fn GetFairTen(line: c_int) -> f64;
+    fn GetNodePos(line: c_int, node: c_int, out: *mut f64) -> c_int;
+    fn WaveNumber(frequency: f64, gravity: f64, depth: f64) -> f64;
+}
+
+/// Two lines, one on a coupled body with a rod of no length, the other on a coupled point.
+const DECK: &str = "\
+two lines
+--- LINE TYPES ---
+Name Diam Mass EA BA EI Cd Ca CdAx CaAx
+- m kg/m N N-s N-m2 - - - -
+chain 0.1 100 1E8 -0.8 0 1.6 1.0 0.1 0.0
+--- ROD TYPES ---
+Name Diam Mass Cd Ca CdEnd CaEnd
+- m kg/m - - - -
+pin 0.1 0 0 0 0 0
+--- BODIES ---
+ID Attachment X0 Y0 Z0 r0 p0 y0 Mass CG I Volume CdA Ca
+- - m m m deg deg deg kg m kg-m2 m3 m2 -
+1 Coupled 0 0 -10 0 0 0 0 0 0 0 0 0
+--- RODS ---
+ID RodType Attachment Xa Ya Za Xb Yb Zb NumSegs Outputs
+- - - m m m m m m - -
+1 pin Body1 3 0 0 3 0 1 0 -
+--- POINTS ---
+ID Type X Y Z Mass Volume CdA Ca
+- - m m m kg m3 m2 -
+1 Fixed 100 0 -60 0 0 0 0
+2 Fixed -100 0 -60 0 0 0 0
+3 Coupled -4 0 -10 0 0 0 0
+--- LINES ---
+ID LineType AttachA AttachB UnstrLen NumSegs Outputs
+- - - - m - -
+1 chain 1 R1A 115 4 -
+2 chain 2 3 115 4 -
+--- OPTIONS ---
+0.002 dtM
+60 WtrDpth
+1 disableOutput
+--- end ---
+";
+const FREEDOM: usize = 9;
+const PLACE: [f64; FREEDOM] = [0.0, 0.0, -10.0, 0.0, 0.0, 0.0, -4.0, 0.0, -10.0];
+
+const CODES: [c_int; 8] = [
+    MOORDYN_SUCCESS,
+    MOORDYN_INVALID_INPUT_FILE,
+    MOORDYN_INVALID_OUTPUT_FILE,
+    MOORDYN_INVALID_INPUT,
+    MOORDYN_NAN_ERROR,
+    MOORDYN_INVALID_VALUE,
+    MOORDYN_NOT_IMPLEMENTED,
+    MOORDYN_UNHANDLED_ERROR,
+];
+
+/// A host that calls anything.
+struct Host {
+    random: Random,
+    deck: CString,
+    saved: CString,
+    handles: Vec<Handle>,
+    state: Vec<u64>,
+    codes: [usize; CODES.len()],
+}
+
+impl Host {
+    fn new(folder: &Path, seed: u64) -> Host {
+        let text = |name: &str| CString::new(folder.join(name).to_str().unwrap()).unwrap();
+        std::fs::write(folder.join("deck.txt"), DECK).unwrap();
+        Host {
+            random: Random::new(seed),
+            deck: text("deck.txt"),
+            saved: text("saved"),
+            handles: vec![null_mut()],
+            state: Vec::new(),
+            codes: [0; CODES.len()],
+        }
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.random.unit() * count as f64) as usize
+    }
+
+    /// A handle that is open, closed, null or invented.
+    fn handle(&mut self) -> Handle {
+        match self.below(12) {
+            0 => null_mut(),
+            1 => without_provenance_mut(self.below(100_000)),
+            _ => {
+                let index = self.below(self.handles.len());
+                self.handles[index]
+            }
+        }
+    }
+
+    /// A number that is usual, or not.
+    fn number(&mut self) -> f64 {
+        match self.below(24) {
+            0 => f64::NAN,
+            1 => f64::INFINITY,
+            2 => 1e300,
+            3 => -1.0,
+            4 => 0.0,
+            _ => 0.05 * self.random.unit(),
+        }
+    }
+
+    fn count(&mut self) -> c_uint {
+        match self.below(8) {
+            0 => c_uint::MAX,
+            _ => self.below(7) as c_uint,
+        }
+    }
+
+    fn places(&mut self) -> [f64; FREEDOM] {
+        let mut place = PLACE.map(|value| value + 0.01 * self.random.unit());
+        let axis = self.below(FREEDOM);
+        if self.below(6) == 0 {
+            place[axis] = self.number();
+        }
+        place
+    }
+
+    fn rates(&mut self) -> [f64; FREEDOM] {
+        std::array::from_fn(|_| 0.01 * self.random.unit())
+    }
+
+    /// The pointer, or now and then null.
+    fn or_null<T>(&mut self, pointer: *mut T) -> *mut T {
+        if self.below(12) == 0 { null_mut() } else { pointer }
+    }
+
+    fn keep(&mut self, handle: Handle) -> c_int {
+        if !handle.is_null() {
+            self.handles.push(handle);
+        }
+        MOORDYN_SUCCESS
+    }
+
+    /// One call; all arrays are as long as the interface wants them.
+    fn call(&mut self) -> c_int {
+        let (handle, other) = (self.handle(), self.handle());
+        let (number, count) = (self.number(), self.count());
+        let (mut place, mut rate, mut force) = (self.places(), self.rates(), [0.0; 36]);
+        let (x, xd) = (self.or_null(place.as_mut_ptr()), self.or_null(rate.as_mut_ptr()));
+        let out = self.or_null(force.as_mut_ptr());
+        let (mut t, mut dt) = (0.0, number);
+        let (mut integer, mut natural, mut end) = (0, 0, null_mut());
+        let deck = self.deck.clone();
+        // SAFETY: pointers are null or those of arrays of the right length, texts end with a zero byte; handles may be anything.
+        unsafe {
+            match self.below(42) {
+                0 | 1 => {
+                    let system = MoorDyn_Create(deck.as_ptr());
+                    MoorDyn_SetVerbosity(system, MOORDYN_NO_OUTPUT);
+                    self.keep(system)
+                }
+                2..=4 => MoorDyn_Init(handle, x, xd),
+                5..=9 => MoorDyn_Step(
+                    handle,
+                    x,
+                    xd,
+                    out,
+                    self.or_null(&raw mut t),
+                    self.or_null(&raw mut dt),
+                ),
+                10 => MoorDyn_Close(handle),
+                11 => self.keep(MoorDyn_GetLine(handle, count)),
+                12 => self.keep(MoorDyn_GetPoint(handle, count)),
+                13 => self.keep(MoorDyn_GetBody(handle, count)),
+                14 => self.keep(MoorDyn_GetRod(handle, count)),
+                15 => self.keep(MoorDyn_GetSeafloor(handle)),
+                16 => self.keep(MoorDyn_GetWaves(handle)),
+                17 => MoorDyn_GetLineNodePos(handle, count, out),
+                18 => MoorDyn_GetLineNodeForce(handle, count, out),
+                19 => MoorDyn_GetLineNodeM(handle, count, out.cast()),
+                20 => MoorDyn_GetLineMaxTen(handle, out),
+                21 => MoorDyn_SetLineUnstretchedLength(handle, 115.0 + number),
+                22 => MoorDyn_SetLineConstantEA(handle, 1e8 + number),
+                23 => MoorDyn_GetPointAttached(handle, count, &raw mut end, &raw mut integer),
+                24 => MoorDyn_GetPointForce(handle, out),
+                25 => MoorDyn_GetPointM(handle, out.cast()),
+                26 => MoorDyn_GetBodyState(handle, out, self.or_null(rate.as_mut_ptr())),
+                27 => MoorDyn_GetBodyM(handle, out.cast()),
+                28 => MoorDyn_GetBodyForce(handle, out),
+                29 => MoorDyn_GetRodNodePos(handle, count, out),
+                30 => MoorDyn_GetDepthAt(handle, number, number, out),
+                31 => MoorDyn_GetWavesKin(
+                    handle,
+                    number,
+                    0.0,
+                    -1.0,
+                    out,
+                    null_mut(),
+                    &raw mut t,
+                    &raw mut dt,
+                    other,
+                ),
+                32 => self.serialize(handle),
+                33 => self.deserialize(handle),
+                34 => MoorDyn_BreakLine(handle, other, self.handle()),
+                35 => MoorDyn_SetDt(handle, number),
+                36 => self.schemes(handle),
+                37 => MoorDyn_Save(handle, self.saved.as_ptr()),
+                38 => MoorDyn_Load(handle, self.saved.as_ptr()),
+                39 => self.tensions(handle),
+                40 => self.first(x, xd, out),
+                _ => match self.below(3) {
+                    0 => MoorDyn_Init_NoIC(handle, x, xd),
+                    1 => MoorDyn_ExternalWaveKinInit(handle, self.or_null(&raw mut natural)),
+                    _ => MoorDyn_NCoupledDOF(handle, self.or_null(&raw mut natural)),
+                },
+            }
+        }
+    }
+
+    /// # Safety
+    /// None: a handle may be anything.
+    unsafe fn serialize(&mut self, handle: Handle) -> c_int {
+        let mut size = 0;
+        // SAFETY: room for the number and then for the words.
+        unsafe {
+            let code = MoorDyn_Serialize(handle, &raw mut size, null_mut());
+            if code != MOORDYN_SUCCESS {
+                return code;
+            }
+            self.state = vec![0; size.div_ceil(8)];
+            MoorDyn_Serialize(handle, null_mut(), self.state.as_mut_ptr())
+        }
+    }
+
+    /// Words of a state, with a wrong one now and then.
+    ///
+    /// # Safety
+    /// None: a handle may be anything.
+    unsafe fn deserialize(&mut self, handle: Handle) -> c_int {
+        let mut words = self.state.clone();
+        words.resize(words.len().max(3), 0);
+        let at = self.below(words.len());
+        match self.below(4) {
+            0 if at != 1 => words[at] ^= 1 << self.below(64), // the second word is their number
+            1 => return unsafe { MoorDyn_Deserialize(handle, null()) }, // SAFETY: null is refused
+            _ => {}
+        }
+        // SAFETY: as many words as the second says.
+        unsafe { MoorDyn_Deserialize(handle, words.as_ptr()) }
+    }
+
+    /// # Safety
+    /// None: a handle may be anything.
+    unsafe fn schemes(&mut self, handle: Handle) -> c_int {
+        let mut name = [0 as c_char; 64];
+        let mut room = self.below(name.len());
+        // SAFETY: `room` is at most that of the name.
+        unsafe {
+            let _ = MoorDyn_SetTimeScheme(handle, [c"RK4", c"", c"\xff", c"foo"][self.below(4)].as_ptr());
+            MoorDyn_GetTimeScheme(handle, self.or_null(name.as_mut_ptr()), &raw mut room)
+        }
+    }
+
+    /// # Safety
+    /// None: a handle may be anything.
+    unsafe fn tensions(&mut self, handle: Handle) -> c_int {
+        let count = self.below(4) as c_int - 1;
+        let mut values = [[0.0_f32; 4]; 4];
+        let [a, b, c, d] = values.each_mut().map(|row| row.as_mut_ptr());
+        // SAFETY: each array has more values than lines.
+        unsafe { MoorDyn_GetFASTtens(handle, &raw const count, self.or_null(a), b, c, d) }
+    }
+
+    /// The first interface.
+    ///
+    /// # Safety
+    /// Pointers are null or point to as many values as the interface wants.
+    unsafe fn first(&mut self, x: *mut f64, xd: *mut f64, out: *mut f64) -> c_int {
+        let deck = self.deck.clone();
+        let (mut t, mut dt) = (0.0, self.number());
+        let (line, node) = (self.count() as c_int, self.count() as c_int);
+        // SAFETY: by the caller's promise.
+        unsafe {
+            match self.below(5) {
+                0 => MoorDynInit(x, xd, deck.as_ptr()),
+                1 => MoorDynClose(),
+                2 => {
+                    let _ = GetFairTen(line);
+                    let _ = WaveNumber(self.number(), self.number(), self.number());
+                    GetNodePos(line, node, out)
+                }
+                _ => MoorDynStep(x, xd, out, &raw mut t, &raw mut dt),
+            }
+        }
+    }
+
+    /// Some calls, after which all systems are closed.
+    fn sequence(&mut self) {
+        for _ in 0..12 {
+            let code = self.call();
+            let known = CODES.iter().position(|known| *known == code);
+            self.codes[known.unwrap_or_else(|| panic!("{code} is no code"))] += 1;
+        }
+        for handle in std::mem::take(&mut self.handles) {
+            // SAFETY: handles may be anything.
+            let _ = unsafe { MoorDyn_Close(handle) };
+            if self.below(2) == 0 {
+                self.handles.push(handle); // closed, and used again
+            }
+        }
+        self.handles.truncate(4);
+        let deck = self.deck.clone();
+        // SAFETY: a text, and arrays of the right length.
+        unsafe {
+            let system = MoorDyn_Create(deck.as_ptr());
+            MoorDyn_SetVerbosity(system, MOORDYN_NO_OUTPUT);
+            if self.below(3) > 0 {
+                assert_eq!(
+                    MoorDyn_Init(system, PLACE.as_ptr(), [0.0; FREEDOM].as_ptr()),
+                    MOORDYN_SUCCESS
+                );
+                self.handles.push(MoorDyn_GetLine(system, 1));
+            }
+            self.handles.extend([system; 3]);
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_random_sequences_of_calls_neither_panic_nor_crash() {
+    let folder = tempfile::tempdir().unwrap();
+    // SAFETY: a number.
+    unsafe { SetDisableConsole(1) };
+    let mut host = Host::new(folder.path(), 29);
+    for _ in 0..10_000 {
+        host.sequence();
+    }
+    println!("calls by code {CODES:?}: {:?}", host.codes);
+    let of = |code| host.codes[CODES.iter().position(|known| *known == code).unwrap()];
+    assert_eq!(of(MOORDYN_UNHANDLED_ERROR), 0, "a panic was caught");
+    assert!(of(MOORDYN_SUCCESS) > 30_000 && of(MOORDYN_INVALID_VALUE) > 10_000);
+    assert!(of(MOORDYN_NOT_IMPLEMENTED) > 0 && of(MOORDYN_INVALID_INPUT) > 0);
+}

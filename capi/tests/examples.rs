@@ -1,0 +1,142 @@
+//! The examples in C, Fortran and Octave: built and run where their tools are, with the same force in all.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use common::{STRICT, has, library, run};
+use moorline::scene::Scene;
+use moorline::simulation::Simulation;
+
+const SCENE: &str = include_str!("../../scenes/oc3_catenary.toml");
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn scene() -> PathBuf {
+    folder().join("../scenes/oc3_catenary.toml")
+}
+
+/// Force [N] that the library in Rust finds for the run of the examples.
+fn expected() -> [f64; 3] {
+    let mut mooring = Simulation::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
+    let fairlead = mooring.model().point_index("fairlead").unwrap();
+    mooring.restart(0.0).unwrap();
+    for _ in 0..600 {
+        let time = mooring.time();
+        let turn = 2.0 * std::f64::consts::PI * time / 12.0;
+        mooring.set_displacement(fairlead, [5.0 * (time / 20.0).min(1.0) * turn.sin(), 0.0, 0.0]);
+        mooring.advance(0.05).unwrap();
+    }
+    mooring.end_force(fairlead)
+}
+
+/// Claims that the numbers after `force` in a line are the expected force, to six digits.
+fn assert_force(said: &str) {
+    let words = said.split("force").nth(1).unwrap_or_else(|| panic!("{said}"));
+    let numbers: Vec<f64> = words
+        .split_whitespace()
+        .map_while(|word| word.parse().ok())
+        .collect();
+    for (found, expected) in numbers.iter().zip(expected()) {
+        assert!(
+            (found - expected).abs() <= 1e-6 * expected.abs().max(1.0),
+            "{said}: {expected}"
+        );
+    }
+    assert_eq!(numbers.len(), 3, "{said}");
+}
+
+/// Runs a program on the scene with the folder of the library where its linker looks.
+fn run_host(program: &Path) -> String {
+    let libraries = library("moorline_c").parent().unwrap().to_path_buf();
+    run(Command::new(program)
+        .arg(scene())
+        .env("LD_LIBRARY_PATH", libraries))
+}
+
+fn link(command: &mut Command) {
+    command
+        .arg("-L")
+        .arg(library("moorline_c").parent().unwrap())
+        .args(["-lmoorline_c", "-lm"]);
+}
+
+#[test]
+fn the_host_in_c_has_the_force_of_the_host_in_rust() {
+    if !cfg!(target_os = "linux") || !has("gcc") {
+        return;
+    }
+    let built = tempfile::tempdir().unwrap();
+    let program = built.path().join("host");
+    let mut command = Command::new("gcc");
+    command
+        .arg("-std=c99")
+        .args(STRICT)
+        .arg("-I")
+        .arg(folder().join("include"));
+    command
+        .arg(folder().join("examples/host.c"))
+        .arg("-o")
+        .arg(&program);
+    link(&mut command);
+    run(&mut command);
+    assert_force(&run_host(&program));
+}
+
+#[test]
+fn the_host_in_fortran_has_the_force_of_the_host_in_rust() {
+    if !cfg!(target_os = "linux") || !has("gfortran") {
+        return;
+    }
+    let built = tempfile::tempdir().unwrap();
+    let program = built.path().join("host");
+    let mut command = Command::new("gfortran");
+    command
+        .args(["-std=f2008", "-Wall", "-Werror", "-J"])
+        .arg(built.path());
+    command
+        .arg(folder().join("examples/host.f90"))
+        .arg("-o")
+        .arg(&program);
+    link(&mut command);
+    run(&mut command);
+    assert_force(&run_host(&program));
+}
+
+/// Needs the headers of Octave: `mkoctfile` of Debian's octave-dev, or their folder in the variable OCTAVE_HEADERS.
+#[test]
+fn the_host_in_octave_has_the_force_of_the_host_in_rust() {
+    if !cfg!(target_os = "linux") || !has("octave-cli") {
+        return;
+    }
+    let built = tempfile::tempdir().unwrap();
+    let source = folder().join("examples/moorline_run.c");
+    let mut command = match std::env::var_os("OCTAVE_HEADERS") {
+        Some(headers) => {
+            let mut command = Command::new("gcc");
+            command.args(["-shared", "-fPIC", "-I"]).arg(headers);
+            command
+        }
+        None if has("mkoctfile") => {
+            let mut command = Command::new("mkoctfile");
+            command.arg("--mex");
+            command
+        }
+        None => return,
+    };
+    command.arg("-I").arg(folder().join("include")).arg(source);
+    command.arg("-o").arg(built.path().join("moorline_run.mex"));
+    link(&mut command);
+    run(&mut command);
+    let mut octave = Command::new("octave-cli");
+    octave
+        .args(["--no-gui", "--quiet", "--path"])
+        .arg(built.path())
+        .arg(folder().join("examples/host.m"));
+    let libraries = library("moorline_c").parent().unwrap().to_path_buf();
+    octave.env("SCENE", scene()).env("LD_LIBRARY_PATH", libraries);
+    assert_force(&run(&mut octave));
+}
