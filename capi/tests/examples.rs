@@ -140,3 +140,35 @@ fn the_host_in_octave_has_the_force_of_the_host_in_rust() {
     octave.env("SCENE", scene()).env("LD_LIBRARY_PATH", libraries);
     assert_force(&run(&mut octave));
 }
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn valgrind_finds_no_error_of_memory_and_no_leak_in_the_host_in_c() {
+    if !cfg!(target_os = "linux") || !has("gcc") || !has("valgrind") {
+        return;
+    }
+    let built = tempfile::tempdir().unwrap();
+    let program = built.path().join("host");
+    let mut command = Command::new("gcc");
+    command
+        .args(["-std=c99", "-g", "-I"])
+        .arg(folder().join("include"));
+    command
+        .arg(folder().join("examples/host.c"))
+        .arg("-o")
+        .arg(&program);
+    link(&mut command);
+    run(&mut command);
+    let libraries = library("moorline_c").parent().unwrap().to_path_buf();
+    let mut valgrind = Command::new("valgrind");
+    valgrind.args([
+        "--quiet",
+        "--error-exitcode=9",
+        "--leak-check=full",
+        "--errors-for-leak-kinds=definite",
+    ]);
+    assert_force(&run(valgrind
+        .arg(&program)
+        .arg(scene())
+        .env("LD_LIBRARY_PATH", libraries)));
+}

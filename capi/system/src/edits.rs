@@ -44,8 +44,11 @@ impl System {
             return Ok(());
         }
         self.check_not_started("the length")?;
-        for section in &mut self.deck.scene.lines[line].sections {
-            section.length *= length / present;
+        match self.deck.scene.lines[line].sections.as_mut_slice() {
+            [section] => section.length = length,
+            sections => sections
+                .iter_mut()
+                .for_each(|section| section.length *= length / present),
         }
         Ok(())
     }

@@ -1,0 +1,373 @@
+//! Meaning of the interface of MoorDyn's hosts: order of degrees of freedom, angles, forces, states, refusals.
+
+use std::path::PathBuf;
+
+use approx::assert_relative_eq;
+use moorline_system::log::{Log, NONE};
+use moorline_system::nodes::Quantity;
+use moorline_system::objects::kind;
+use moorline_system::settings::{Force, Path, Settings};
+use moorline_system::{Code, System};
+
+/// A coupled point, a coupled body with two points and a fixed body with one; a free point between two lines.
+const DECK: &str = "\
+three lines
+--- LINE TYPES ---
+Name Diam Mass EA BA EI Cd Ca CdAx CaAx
+- m kg/m N N-s N-m2 - - - -
+chain 0.1 100 1E8 -0.8 0 1.6 1.0 0.1 0.0
+--- BODIES ---
+ID Attachment X0 Y0 Z0 r0 p0 y0 Mass CG I Volume CdA Ca
+- - m m m deg deg deg kg m kg-m2 m3 m2 -
+1 Fixed 100 0 -60 0 0 0 0 0 0 0 0 0
+2 Coupled 0 0 -10 0 0 0 0 0 0 0 0 0
+--- POINTS ---
+ID Type X Y Z Mass Volume CdA Ca
+- - m m m kg m3 m2 -
+1 Body1 0 0 0 0 0 0 0
+2 Coupled -4 0 -10 0 0 0 0
+3 Body2 3 0 0 0 0 0 0
+4 Fixed -100 0 -60 0 0 0 0
+5 Free -50 0 -58 500 0.1 0 0
+6 Body2 0 4 0 0 0 0 0
+7 Fixed 0 100 -60 0 0 0 0
+--- LINES ---
+ID LineType AttachA AttachB UnstrLen NumSegs Outputs
+- - - - m - -
+1 chain 1 3 115 8 -
+2 chain 4 5 55 4 -
+3 chain 5 2 68 4 -
+4 chain 7 6 115 8 -
+--- OPTIONS ---
+60 WtrDpth
+0.004 dtM
+RK4 tScheme
+--- end ---
+";
+const PLACE: [f64; 9] = [0.0, 0.0, -10.0, 0.0, 0.0, 0.0, -4.0, 0.0, -10.0];
+
+struct Case {
+    folder: tempfile::TempDir,
+    system: System,
+}
+
+fn deck(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("deck.txt");
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+fn case_with(text: &str, settings: Settings) -> Case {
+    let (folder, path) = deck(text);
+    let system = System::create(&path, settings, Log::from_level(NONE)).unwrap();
+    Case { folder, system }
+}
+
+fn case(text: &str) -> Case {
+    case_with(text, Settings::default())
+}
+
+fn started() -> Case {
+    let mut case = case(DECK);
+    case.system.start(&PLACE, &[0.0; 9], false).unwrap();
+    case
+}
+
+fn forces(system: &System) -> [f64; 9] {
+    let mut forces = [0.0; 9];
+    system.forces(&mut forces).unwrap();
+    forces
+}
+
+/// Steps of a swaying and turning body and point [s].
+fn sway(system: &mut System, from: usize, count: usize) -> Vec<[f64; 9]> {
+    let step = 0.02;
+    let row = |k: usize| {
+        let t = k as f64 * step;
+        let (mut x, mut v) = (PLACE, [0.0; 9]);
+        for (axis, size) in [(0, 0.5), (3, 0.05), (5, 0.04), (6, 0.4)] {
+            x[axis] += size * (1.0 - t.cos());
+            v[axis] = size * t.sin();
+        }
+        system.step(&x, &v, t, step).unwrap();
+        forces(system)
+    };
+    (from..from + count).map(row).collect()
+}
+
+#[test]
+fn bodies_come_before_points_in_the_order_of_degrees_of_freedom() {
+    let case = started();
+    let system = &case.system;
+    assert_eq!(system.deck.degrees_of_freedom(), 9);
+    assert_eq!(
+        [0, 1].map(|body| system.body_type(body).unwrap()),
+        [kind::FIXED, kind::COUPLED]
+    );
+    let kinds: Vec<i32> = (0..7).map(|point| system.point_type(point).unwrap()).collect();
+    assert_eq!(
+        kinds,
+        [
+            kind::FIXED,
+            kind::COUPLED,
+            kind::FIXED,
+            kind::FIXED,
+            kind::FREE,
+            kind::FIXED,
+            kind::FIXED
+        ]
+    );
+    let all = forces(system);
+    assert_eq!(system.body_force(1).unwrap(), all[..6]);
+    assert_eq!(system.point_force(1).unwrap(), all[6..]);
+    assert!(all[0] > 0.0 && all[6] < 0.0); // line 1 pulls to +x, line 3 to -x
+    assert_eq!(system.point_attached(4).unwrap(), [(1, 1), (2, 0)]);
+}
+
+#[test]
+fn the_moment_on_a_body_is_that_of_its_points_forces_at_turned_arms() {
+    let mut case = case(DECK);
+    let mut place = PLACE;
+    (place[3], place[4], place[5]) = (0.2, -0.3, 0.4);
+    case.system.start(&place, &[0.0; 9], false).unwrap();
+    let system = &case.system;
+    let [fx, fy, fz, mx, my, mz] = system.body_force(1).unwrap();
+    let mut sum = nalgebra::Vector6::zeros();
+    for point in [2, 5] {
+        let force = nalgebra::Vector3::from(system.point_force(point).unwrap());
+        let arm = system.point_state(point).unwrap().position - nalgebra::Vector3::new(0.0, 0.0, -10.0);
+        let moment = arm.cross(&force);
+        sum += nalgebra::Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+    }
+    assert_relative_eq!(
+        sum,
+        nalgebra::Vector6::new(fx, fy, fz, mx, my, mz),
+        max_relative = 1e-9
+    );
+    // R = Rx Ry Rz of (3, 0, 0): its first column times three
+    let (b, c) = (place[4], place[5]);
+    let arm = system.point_state(2).unwrap().position.x;
+    assert_relative_eq!(arm, 3.0 * b.cos() * c.cos(), max_relative = 1e-12);
+    assert_eq!(system.body_state(1).unwrap().place, place[..6]);
+}
+
+#[test]
+fn the_forces_on_a_node_add_up_to_its_mass_times_its_acceleration() {
+    let mut case = started();
+    sway(&mut case.system, 0, 40);
+    let before = case.system.node_vector(0, 4, Quantity::Velocity).unwrap();
+    let force = case.system.node_vector(0, 4, Quantity::Force).unwrap();
+    sway(&mut case.system, 40, 1);
+    let after = case.system.node_vector(0, 4, Quantity::Velocity).unwrap();
+    let mass = case.system.node_mass(0, 4).unwrap();
+    let weight = case.system.node_vector(0, 4, Quantity::Weight).unwrap()[2].abs();
+    for axis in 0..3 {
+        let inertia: f64 = (0..3)
+            .map(|i| mass[axis][i] * (after[i] - before[i]) / 0.02)
+            .sum();
+        assert!(
+            (force[axis] - inertia).abs() < 0.02 * weight,
+            "{axis}: {} {inertia}",
+            force[axis]
+        );
+    }
+}
+
+#[test]
+fn a_coupled_point_is_where_constant_velocity_takes_it() {
+    for path in [Path::Jump, Path::Smooth] {
+        let settings = Settings {
+            path,
+            ..Settings::default()
+        };
+        let mut case = case_with(DECK, settings);
+        case.system.start(&PLACE, &[0.0; 9], false).unwrap();
+        let mut velocity = [0.0; 9];
+        velocity[6] = 0.3;
+        case.system.step(&PLACE, &velocity, 0.0, 0.1).unwrap();
+        let place = case.system.point_state(1).unwrap().position;
+        assert_relative_eq!(place.x, -4.0 + 0.03, max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn a_reaction_has_the_inertia_of_the_end_nodes_and_a_nodal_force_has_not() {
+    let of = |force| {
+        let settings = Settings {
+            force,
+            path: Path::Smooth,
+            ..Settings::default()
+        };
+        let mut case = case_with(DECK, settings);
+        case.system.start(&PLACE, &[0.0; 9], false).unwrap();
+        sway(&mut case.system, 0, 50).pop().unwrap()
+    };
+    let (nodal, reaction) = (of(Force::Nodal), of(Force::Reaction));
+    let mean = 68.0 / 8.0 * 100.0; // mass of half a segment [kg]
+    let difference = (nodal[6] - reaction[6]).abs();
+    let acceleration = 0.4; // of the point, less than [m/s²]
+    assert!(
+        difference > 0.0 && difference < 5.0 * mean * acceleration,
+        "{difference}"
+    );
+}
+
+#[test]
+fn a_state_goes_on_bit_for_bit_in_this_system_and_in_another_one() {
+    let mut case = started();
+    sway(&mut case.system, 0, 10);
+    let words = case.system.serialize().unwrap();
+    let path = case.folder.path().join("state");
+    case.system.save(&path).unwrap();
+    let first = sway(&mut case.system, 10, 10);
+    case.system.deserialize(&words).unwrap();
+    assert!(sway(&mut case.system, 10, 10) == first);
+    let mut other = System::create(
+        &case.folder.path().join("deck.txt"),
+        Settings::default(),
+        Log::from_level(NONE),
+    )
+    .unwrap();
+    other.load(&path).unwrap();
+    assert!(sway(&mut other, 10, 10) == first);
+    let mut elsewhere = System::create(
+        &case.folder.path().join("deck.txt"),
+        Settings::default(),
+        Log::from_level(NONE),
+    )
+    .unwrap();
+    elsewhere
+        .start(&PLACE.map(|value| value + 0.01), &[0.0; 9], true)
+        .unwrap();
+    elsewhere.load(&path).unwrap();
+    assert!(sway(&mut elsewhere, 10, 10) == first);
+}
+
+#[test]
+fn a_state_of_another_deck_and_damaged_words_are_refused_and_change_nothing() {
+    let mut case = started();
+    sway(&mut case.system, 0, 3);
+    let words = case.system.serialize().unwrap();
+    for (at, bit) in [(0, 3), (1, 2), (2, 0), (10, 17)] {
+        let mut damaged = words.clone();
+        damaged[at] ^= 1 << bit;
+        let failure = case.system.deserialize(&damaged).unwrap_err();
+        assert_eq!(failure.code, Code::InvalidInput, "{failure}");
+    }
+    assert_eq!(case.system.serialize().unwrap(), words);
+    let mut longer = self::case(&DECK.replace("115 8", "116 8"));
+    longer.system.start(&PLACE, &[0.0; 9], false).unwrap();
+    let failure = longer.system.deserialize(&words).unwrap_err();
+    assert!(failure.message.contains("another deck"), "{failure}");
+}
+
+#[test]
+fn a_line_that_breaks_off_pulls_no_more() {
+    let mut case = started();
+    sway(&mut case.system, 0, 5);
+    let before = forces(&case.system)[6];
+    let wrong = case.system.break_line(1, 0).unwrap_err();
+    assert_eq!(wrong.code, Code::InvalidInput);
+    case.system.break_line(1, 2).unwrap();
+    let after = sway(&mut case.system, 5, 5);
+    assert!(
+        before < -1000.0 && after.iter().all(|force| force[6] == 0.0),
+        "{before}"
+    );
+    let words = case.system.serialize().unwrap();
+    let rest = sway(&mut case.system, 10, 3);
+    case.system.deserialize(&words).unwrap();
+    assert!(sway(&mut case.system, 10, 3) == rest);
+}
+
+#[test]
+fn lines_are_changed_before_the_start_and_refused_after_it() {
+    let mut case = case(DECK);
+    let system = &mut case.system;
+    system.set_unstretched_length(0, 118.0).unwrap();
+    system.set_constant_stiffness(0, 2e8).unwrap();
+    assert_eq!(system.unstretched_length(0).unwrap(), 118.0);
+    assert_eq!(
+        [0, 1].map(|line| system.constant_stiffness(line).unwrap()),
+        [2e8, 1e8]
+    );
+    system.start(&PLACE, &[0.0; 9], false).unwrap();
+    assert_eq!(
+        system.set_unstretched_length(0, 119.0).unwrap_err().code,
+        Code::NotImplemented
+    );
+    system.set_unstretched_length(0, 118.0).unwrap(); // no change
+    assert_eq!(
+        system.set_constant_stiffness(0, -1.0).unwrap_err().code,
+        Code::InvalidValue
+    );
+}
+
+#[test]
+fn what_is_not_modelled_and_what_is_no_deck_is_refused_with_a_sentence() {
+    for (from, to, code, words) in [
+        (
+            "2 Coupled 0 0 -10",
+            "2 Free 0 0 -10",
+            Code::InvalidInputFile,
+            "a free body is not modelled",
+        ),
+        (
+            "60 WtrDpth",
+            "1 WaveKin\n60 WtrDpth",
+            Code::InvalidInputFile,
+            "WaveKin",
+        ),
+        ("2 Coupled -4", "2 Turbine1 -4", Code::NotImplemented, "farm"),
+        (
+            "chain 0.1 100",
+            "chain 0.1 heavy",
+            Code::InvalidInputFile,
+            "heavy",
+        ),
+    ] {
+        let (_folder, path) = deck(&DECK.replace(from, to));
+        let failure = System::create(&path, Settings::default(), Log::from_level(NONE)).unwrap_err();
+        assert_eq!(failure.code, code, "{failure}");
+        assert!(failure.message.contains(words), "{failure}");
+    }
+}
+
+#[test]
+fn vessel_points_are_coupled_points_with_degrees_of_freedom_of_their_own() {
+    let case = case(&DECK.replace("2 Coupled -4", "2 Vessel -4"));
+    assert_eq!(case.system.deck.degrees_of_freedom(), 9);
+    assert_eq!(case.system.point_type(1).unwrap(), kind::COUPLED);
+}
+
+#[test]
+fn arguments_that_cannot_be_used_leave_the_state() {
+    let mut case = started();
+    let words = case.system.serialize().unwrap();
+    let mut wrong = PLACE;
+    wrong[2] = f64::NAN;
+    for (x, v, t, dt) in [
+        (&PLACE[..8], &[0.0; 9][..], 0.0, 0.1),
+        (&wrong[..], &[0.0; 9][..], 0.0, 0.1),
+        (&PLACE[..], &[0.0; 9][..], f64::NAN, 0.1),
+        (&PLACE[..], &[0.0; 9][..], 0.0, -0.1),
+    ] {
+        assert_eq!(
+            case.system.step(x, v, t, dt).unwrap_err().code,
+            Code::InvalidValue
+        );
+    }
+    assert_eq!(case.system.serialize().unwrap(), words);
+    let present = forces(&case.system);
+    case.system.step(&PLACE, &[0.0; 9], 0.0, 0.0).unwrap();
+    assert_eq!(forces(&case.system), present);
+}
+
+#[test]
+fn the_host_may_begin_at_any_time() {
+    let mut case = started();
+    let stepped = case.system.step(&PLACE, &[0.0; 9], 100.0, 0.1).unwrap();
+    assert_relative_eq!(stepped.time, 100.1, max_relative = 1e-12);
+    assert_relative_eq!(case.system.time().unwrap(), 100.1, max_relative = 1e-12);
+}

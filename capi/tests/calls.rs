@@ -1,0 +1,387 @@
+//! The library for C: it agrees with the library in Rust, refuses what it cannot use with a code and a sentence, and survives calls in any order.
+
+use std::ffi::{CString, c_char, c_int, c_void};
+use std::ptr::{null, null_mut, without_provenance_mut};
+
+use moorline::math::random::Random;
+use moorline::scene::Scene;
+use moorline::simulation::Simulation;
+use moorline_c::codes::*;
+
+type Handle = *mut c_void;
+
+unsafe extern "C" {
+    fn moorline_abi_version() -> u32;
+    fn moorline_message(text: *mut c_char, room: usize, needed: *mut usize) -> c_int;
+    fn moorline_load(version: u32, path: *const c_char, simulation: *mut Handle) -> c_int;
+    fn moorline_read(version: u32, toml: *const c_char, simulation: *mut Handle) -> c_int;
+    fn moorline_close(simulation: Handle) -> c_int;
+    fn moorline_start(simulation: Handle, time: f64) -> c_int;
+    fn moorline_reset(simulation: Handle) -> c_int;
+    fn moorline_step(simulation: Handle, step: f64) -> c_int;
+    fn moorline_time(simulation: Handle, time: *mut f64) -> c_int;
+    fn moorline_save(simulation: Handle, bytes: *mut u8, room: usize, needed: *mut usize) -> c_int;
+    fn moorline_restore(simulation: Handle, bytes: *const u8, count: usize) -> c_int;
+    fn moorline_statics(simulation: Handle, text: *mut c_char, room: usize, needed: *mut usize) -> c_int;
+    fn moorline_find(simulation: Handle, name: *const c_char, reference: *mut u32) -> c_int;
+    fn moorline_variable_count(simulation: Handle, count: *mut usize) -> c_int;
+    fn moorline_variable_name(
+        simulation: Handle,
+        reference: u32,
+        text: *mut c_char,
+        room: usize,
+        needed: *mut usize,
+    ) -> c_int;
+    fn moorline_set(simulation: Handle, references: *const u32, values: *const f64, count: usize) -> c_int;
+    fn moorline_get(simulation: Handle, references: *const u32, values: *mut f64, count: usize) -> c_int;
+    fn moorline_output_count(simulation: Handle, count: *mut usize) -> c_int;
+    fn moorline_get_outputs(simulation: Handle, values: *mut f64, count: usize) -> c_int;
+    fn moorline_set_inputs(simulation: Handle, values: *const f64, count: usize) -> c_int;
+    fn moorline_move(
+        simulation: Handle,
+        body: usize,
+        place: *const f64,
+        velocity: *const f64,
+        size: usize,
+    ) -> c_int;
+    fn moorline_force(simulation: Handle, body: usize, force: *mut f64, size: usize) -> c_int;
+    fn moorline_stiffness(simulation: Handle, body: usize, stiffness: *mut f64, count: usize) -> c_int;
+    fn moorline_node_count(simulation: Handle, line: usize, count: *mut usize) -> c_int;
+    fn moorline_node_positions(simulation: Handle, line: usize, positions: *mut f64, count: usize) -> c_int;
+}
+
+/// A line from an anchor to a vessel, and one to a coupled point.
+const SCENE: &str = "
+water.density = 1025.0
+seabed.depth = 60.0
+line_types.chain = { mass = 100.0, diameter = 0.1, axial_stiffness = 1.0e8, drag_normal = 1.6 }
+points = [
+    { name = \"left\", position = [-100.0, 0.0, -60.0], kind = \"fixed\" },
+    { name = \"right\", position = [100.0, 0.0, -60.0], kind = \"fixed\" },
+    { name = \"bow\", position = [3.0, 0.0, 0.0], kind = \"coupled\", on = \"hull\" },
+    { name = \"buoy\", position = [-4.0, 0.0, -10.0], kind = \"coupled\" },
+]
+vessels = [{ name = \"hull\", position = [0.0, 0.0, -10.0] }]
+lines = [
+    { name = \"one\", from = \"left\", to = \"buoy\", sections = [{ type = \"chain\", length = 115.0, elements = 6 }] },
+    { name = \"two\", from = \"right\", to = \"bow\", sections = [{ type = \"chain\", length = 115.0, elements = 6 }] },
+]
+";
+
+fn read(text: &str) -> Handle {
+    let (text, mut handle) = (CString::new(text).unwrap(), null_mut());
+    // SAFETY: a text and a handle.
+    let code = unsafe { moorline_read(MOORLINE_ABI_VERSION, text.as_ptr(), &raw mut handle) };
+    assert_eq!(code, MOORLINE_OK, "{}", message());
+    handle
+}
+
+fn message() -> String {
+    let mut text = [0 as c_char; 1000];
+    // SAFETY: room for the text.
+    unsafe { moorline_message(text.as_mut_ptr(), text.len(), null_mut()) };
+    let bytes: Vec<u8> = text.iter().take_while(|c| **c != 0).map(|c| *c as u8).collect();
+    String::from_utf8(bytes).unwrap()
+}
+
+fn find(simulation: Handle, name: &str) -> u32 {
+    let (name, mut reference) = (CString::new(name).unwrap(), 0);
+    // SAFETY: a text and a number.
+    assert_eq!(
+        unsafe { moorline_find(simulation, name.as_ptr(), &raw mut reference) },
+        MOORLINE_OK
+    );
+    reference
+}
+
+fn outputs(simulation: Handle) -> Vec<f64> {
+    let mut count = 0;
+    // SAFETY: room for the number, and then for the outputs.
+    unsafe {
+        assert_eq!(moorline_output_count(simulation, &raw mut count), MOORLINE_OK);
+        let mut values = vec![0.0; count];
+        assert_eq!(
+            moorline_get_outputs(simulation, values.as_mut_ptr(), count),
+            MOORLINE_OK,
+            "{}",
+            message()
+        );
+        values
+    }
+}
+
+fn sway(simulation: Handle, from: usize, count: usize) -> Vec<Vec<f64>> {
+    let row = |k: usize| {
+        let size = 1.0 - (0.05 * k as f64).cos();
+        let (buoy, hull) = ([size, 0.0, 0.0], [size, 0.0, 0.0, 0.05 * size, 0.0, 0.0]);
+        // SAFETY: arrays of three and six values.
+        unsafe {
+            assert_eq!(
+                moorline_move(simulation, 0, buoy.as_ptr(), null(), 3),
+                MOORLINE_OK
+            );
+            assert_eq!(
+                moorline_move(simulation, 1, hull.as_ptr(), null(), 6),
+                MOORLINE_OK
+            );
+            assert_eq!(moorline_step(simulation, 0.05), MOORLINE_OK, "{}", message());
+        }
+        outputs(simulation)
+    };
+    (from..from + count).map(row).collect()
+}
+
+#[test]
+fn forces_and_nodes_are_those_of_the_library_in_rust() {
+    let simulation = read(SCENE);
+    let mut mooring = Simulation::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
+    mooring.restart(0.0).unwrap();
+    let (mut force, mut count, mut places) = ([0.0; 6], 0, [0.0; 21]);
+    let mut stiffness = [0.0; 36];
+    // SAFETY: arrays of the right lengths.
+    unsafe {
+        assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK);
+        assert_eq!(
+            moorline_stiffness(simulation, 1, stiffness.as_mut_ptr(), 36),
+            MOORLINE_OK,
+            "{}",
+            message()
+        );
+    }
+    assert_eq!(
+        stiffness[..],
+        *mooring.vessel_stiffness(0).unwrap().as_flattened()
+    );
+    sway(simulation, 0, 20);
+    for k in 0..20 {
+        let size = 1.0 - (0.05 * f64::from(k)).cos();
+        mooring.set_displacement(3, [size, 0.0, 0.0]);
+        mooring.set_pose(0, [size, 0.0, 0.0, 0.05 * size, 0.0, 0.0]);
+        mooring.advance(0.05).unwrap();
+    }
+    // SAFETY: as above.
+    unsafe {
+        assert_eq!(moorline_force(simulation, 1, force.as_mut_ptr(), 6), MOORLINE_OK);
+        assert_eq!(moorline_node_count(simulation, 1, &raw mut count), MOORLINE_OK);
+        assert_eq!(
+            moorline_node_positions(simulation, 1, places.as_mut_ptr(), 3 * count),
+            MOORLINE_OK
+        );
+        assert_eq!(moorline_close(simulation), MOORLINE_OK);
+    }
+    assert_eq!(force, mooring.vessel_force(0));
+    let profile = mooring.profile(1);
+    assert!(
+        places
+            .chunks(3)
+            .eq(profile.iter().map(|node| [node.x, node.y, node.z]))
+    );
+}
+
+#[test]
+fn a_state_goes_on_bit_for_bit_also_in_another_simulation() {
+    let (one, other) = (read(SCENE), read(SCENE));
+    let (density, value) = (find(one, "water.density"), 1000.0);
+    let mut needed = 0;
+    // SAFETY: numbers, and room for the state.
+    unsafe {
+        assert_eq!(
+            moorline_set(one, &raw const density, &raw const value, 1),
+            MOORLINE_OK,
+            "{}",
+            message()
+        );
+        assert_eq!(moorline_start(one, 2.0), MOORLINE_OK);
+        sway(one, 0, 5);
+        assert_eq!(moorline_save(one, null_mut(), 0, &raw mut needed), MOORLINE_OK);
+        let mut bytes = vec![0; needed];
+        assert_eq!(
+            moorline_save(one, bytes.as_mut_ptr(), needed - 1, null_mut()),
+            MOORLINE_INVALID_ARGUMENT
+        );
+        assert_eq!(
+            moorline_save(one, bytes.as_mut_ptr(), needed, null_mut()),
+            MOORLINE_OK
+        );
+        let rest = sway(one, 5, 5);
+        for simulation in [one, other] {
+            assert_eq!(
+                moorline_restore(simulation, bytes.as_ptr(), needed),
+                MOORLINE_OK,
+                "{}",
+                message()
+            );
+            assert!(sway(simulation, 5, 5) == rest);
+        }
+        bytes[40] ^= 1;
+        assert_eq!(
+            moorline_restore(one, bytes.as_ptr(), needed),
+            MOORLINE_INVALID_ARGUMENT
+        );
+        assert!(message().contains("damaged"), "{}", message());
+        moorline_close(one);
+        moorline_close(other);
+    }
+}
+
+#[test]
+fn what_cannot_be_used_has_its_code_and_a_sentence() {
+    let mut handle = null_mut();
+    let refused = |code: c_int, expected: c_int, words: &str| {
+        assert_eq!(code, expected, "{}", message());
+        assert!(message().contains(words), "{}", message());
+    };
+    // SAFETY: texts, numbers, null pointers that are refused, and handles that may be anything.
+    unsafe {
+        assert_eq!(moorline_abi_version(), MOORLINE_ABI_VERSION);
+        let scene = CString::new(SCENE).unwrap();
+        refused(
+            moorline_read(7, scene.as_ptr(), &raw mut handle),
+            MOORLINE_WRONG_VERSION,
+            "version 7",
+        );
+        refused(
+            moorline_read(1, null(), &raw mut handle),
+            MOORLINE_INVALID_ARGUMENT,
+            "null",
+        );
+        refused(
+            moorline_read(1, scene.as_ptr(), null_mut()),
+            MOORLINE_INVALID_ARGUMENT,
+            "null",
+        );
+        refused(
+            moorline_read(1, c"line = 3".as_ptr(), &raw mut handle),
+            MOORLINE_SCENE_ERROR,
+            "line",
+        );
+        refused(
+            moorline_load(1, c"no/such/scene".as_ptr(), &raw mut handle),
+            MOORLINE_SCENE_ERROR,
+            "no/such",
+        );
+        assert!(handle.is_null());
+        let one = read(SCENE);
+        refused(moorline_step(one, 0.1), MOORLINE_WRONG_PHASE, "start first");
+        assert_eq!(moorline_start(one, 0.0), MOORLINE_OK);
+        refused(moorline_step(one, f64::NAN), MOORLINE_INVALID_ARGUMENT, "NaN");
+        let (density, value) = (find(one, "water.density"), 1000.0);
+        refused(
+            moorline_set(one, &raw const density, &raw const value, 1),
+            MOORLINE_WRONG_PHASE,
+            "reset",
+        );
+        refused(
+            moorline_force(one, 9, null_mut(), 3),
+            MOORLINE_INVALID_ARGUMENT,
+            "no body 9",
+        );
+        let mut force = [0.0; 6];
+        refused(
+            moorline_force(one, 1, force.as_mut_ptr(), 3),
+            MOORLINE_INVALID_ARGUMENT,
+            "room for 3",
+        );
+        refused(
+            moorline_stiffness(one, 0, force.as_mut_ptr(), 36),
+            MOORLINE_NOT_AVAILABLE,
+            "buoy",
+        );
+        assert_eq!(moorline_close(one), MOORLINE_OK);
+        refused(moorline_step(one, 0.1), MOORLINE_INVALID_HANDLE, "closed");
+        refused(moorline_close(one), MOORLINE_INVALID_HANDLE, "closed");
+        assert_eq!(moorline_close(null_mut()), MOORLINE_OK);
+    }
+}
+
+#[test]
+fn the_equilibrium_is_written_as_json() {
+    let simulation = read(SCENE);
+    let mut needed = 0;
+    // SAFETY: room for the text.
+    unsafe {
+        assert_eq!(
+            moorline_statics(simulation, null_mut(), 0, &raw mut needed),
+            MOORLINE_OK
+        );
+        let mut text = vec![0 as c_char; needed];
+        assert_eq!(
+            moorline_statics(simulation, text.as_mut_ptr(), needed, null_mut()),
+            MOORLINE_OK
+        );
+        let text: String = text.iter().map(|c| char::from(*c as u8)).collect();
+        assert!(text.starts_with('{') && text.contains("\"stiffness\""), "{text}");
+        moorline_close(simulation);
+    }
+}
+
+/// Calls in any order on handles that are open, closed or null, with arrays of any length up to their own.
+fn assert_calm(sequences: usize, seed: u64) {
+    let mut random = Random::new(seed);
+    let mut below = move |count: usize| (random.unit() * count as f64) as usize;
+    let mut handles = vec![null_mut(), without_provenance_mut(7)];
+    for _ in 0..sequences {
+        handles.push(read(SCENE));
+        for _ in 0..12 {
+            let (handle, count, room) = (handles[below(handles.len())], below(8), below(64));
+            let mut values = [0.01 * below(9) as f64; 64];
+            values[below(64)] = [f64::NAN, 1e300, -1.0, 0.5][below(4)];
+            let references: [u32; 64] = std::array::from_fn(|_| below(60) as u32);
+            let (mut bytes, mut needed, mut text) = ([0_u8; 64], 0_usize, [0 as c_char; 64]);
+            let out = if below(10) == 0 {
+                null_mut()
+            } else {
+                values.as_mut_ptr()
+            };
+            // SAFETY: arrays have at least as many values as are said, or are null; handles may be anything.
+            let code = unsafe {
+                match below(16) {
+                    0..=2 => moorline_start(handle, values[0]),
+                    3 | 4 => moorline_step(handle, values[1]),
+                    5 => moorline_set(handle, references.as_ptr(), out, count),
+                    6 => moorline_get(handle, references.as_ptr(), out, count),
+                    7 => moorline_set_inputs(handle, out, room),
+                    8 => moorline_get_outputs(handle, out, room),
+                    9 => moorline_move(handle, below(3), out, null(), count),
+                    10 => moorline_force(handle, below(3), out, count),
+                    11 => moorline_node_positions(handle, below(3), out, room),
+                    12 => moorline_save(handle, bytes.as_mut_ptr(), below(64), &raw mut needed),
+                    13 => moorline_restore(handle, bytes.as_ptr(), 64),
+                    14 => moorline_variable_name(
+                        handle,
+                        references[0],
+                        text.as_mut_ptr(),
+                        room,
+                        &raw mut needed,
+                    ),
+                    _ => match below(4) {
+                        0 => moorline_reset(handle),
+                        1 => moorline_time(handle, out),
+                        2 => moorline_variable_count(handle, &raw mut needed),
+                        _ => moorline_close(handle),
+                    },
+                }
+            };
+            assert!(
+                (MOORLINE_OK..MOORLINE_INTERNAL_ERROR).contains(&code),
+                "{code}: {}",
+                message()
+            );
+        }
+        if handles.len() > 6 {
+            // SAFETY: handles may be anything.
+            unsafe { moorline_close(handles.remove(2)) };
+        }
+    }
+}
+
+#[test]
+fn random_sequences_of_calls_neither_panic_nor_crash() {
+    assert_calm(200, 3);
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn ten_thousand_random_sequences_of_calls_neither_panic_nor_crash() {
+    assert_calm(10_000, 5);
+}
