@@ -29,7 +29,7 @@ REQUIREMENTS = ROOT / "python_tests" / "requirements.txt"
 CONFORMANCE = ROOT / "fmu" / "conformance" / "run.sh"
 PYTHON_MIN = (3, 11)
 # Does not change the program: it is built with the feature so that the library is built once.
-SLOW_TESTS = "--features", "moorline/slow-tests,moorline-accuracy/slow-tests,moorline-fmu/slow-tests"
+SLOW_TESTS = "--features", "moorline/slow-tests,moorline-accuracy/slow-tests,moorline-c/slow-tests,moorline-fmu/slow-tests,moorline-moordyn/slow-tests"
 # Needs libclang from .venv: has a script of its own.
 LEFT_OUT = "--exclude", "moorline-conformance"
 

@@ -28,9 +28,16 @@ const LAYERS: [&str; 11] = [
 
 /// Packages of the workspace, each with those it may use: the library uses none; the program and the code of an FMU
 /// are on top.
-const PACKAGES: [(&str, &[&str]); 7] = [
+const PACKAGES: [(&str, &[&str]); 11] = [
     (".", &[]),
     ("accuracy", &["moorline"]),
+    ("capi", &["moorline", "moorline-boundary", "moorline-decks"]),
+    ("capi/boundary", &["moorline"]),
+    (
+        "capi/moordyn",
+        &["moorline", "moorline-boundary", "moorline-system"],
+    ),
+    ("capi/system", &["moorline", "moorline-decks"]),
     (
         "cli",
         &[
@@ -368,7 +375,13 @@ fn says_a_unit(doc: &str) -> bool {
 
 #[test]
 fn every_public_number_says_its_unit() {
-    let layers = ["src/physics", "src/model", "src/scene", "decks/src"];
+    let layers = [
+        "src/physics",
+        "src/model",
+        "src/scene",
+        "capi/system/src",
+        "decks/src",
+    ];
     assert_kept(
         "the docs of a public f64 name its unit, as in [m] or [-]",
         |source| {
@@ -385,9 +398,10 @@ fn every_public_number_says_its_unit() {
 }
 
 #[test]
-fn only_the_fmu_is_unsafe() {
-    assert_kept("`unsafe` stands in fmu/ only", |source| {
-        let places = source.places("unsafe").filter(|_| !source.is_under("fmu"));
+fn only_the_fmu_and_the_c_libraries_are_unsafe() {
+    assert_kept("`unsafe` stands in fmu/ and capi/ only", |source| {
+        let is_safe = !source.is_under("fmu") && !source.is_under("capi") || source.is_under("capi/system");
+        let places = source.places("unsafe").filter(|_| is_safe);
         places
             .map(|i| (source.tokens[i].line, "unsafe".to_string()))
             .collect()
@@ -396,7 +410,16 @@ fn only_the_fmu_is_unsafe() {
 
 #[test]
 fn only_the_command_line_prints() {
-    let libraries = ["src", "accuracy/src", "decks/src", "fmu/src"];
+    let libraries = [
+        "src",
+        "accuracy/src",
+        "capi/src",
+        "capi/boundary/src",
+        "capi/moordyn/src",
+        "capi/system/src",
+        "decks/src",
+        "fmu/src",
+    ];
     assert_kept("the library does not print", |source| {
         let printing = ["print", "println", "eprint", "eprintln", "dbg"];
         let calls = printing.iter().flat_map(|name| source.calls(name));
