@@ -217,17 +217,22 @@ impl Host {
 
     /// One call; all arrays are as long as the interface wants them.
     fn call(&mut self) -> c_int {
-        let (handle, other) = (self.handle(), self.handle());
-        let (number, count) = (self.number(), self.count());
+        match self.below(2) {
+            0 => self.call_of_system(),
+            _ => self.call_of_part(),
+        }
+    }
+
+    fn call_of_system(&mut self) -> c_int {
+        let (handle, other, number) = (self.handle(), self.handle(), self.number());
         let (mut place, mut rate, mut force) = (self.places(), self.rates(), [0.0; 36]);
         let (x, xd) = (self.or_null(place.as_mut_ptr()), self.or_null(rate.as_mut_ptr()));
         let out = self.or_null(force.as_mut_ptr());
-        let (mut t, mut dt) = (0.0, number);
-        let (mut integer, mut natural, mut end) = (0, 0, null_mut());
+        let (mut t, mut dt, mut natural) = (0.0, number, 0);
         let deck = self.deck.clone();
         // SAFETY: pointers are null or those of arrays of the right length, texts end with a zero byte; handles may be anything.
         unsafe {
-            match self.below(42) {
+            match self.below(22) {
                 0 | 1 => {
                     let system = MoorDyn_Create(deck.as_ptr());
                     MoorDyn_SetVerbosity(system, MOORDYN_NO_OUTPUT);
@@ -243,57 +248,72 @@ impl Host {
                     self.or_null(&raw mut dt),
                 ),
                 10 => MoorDyn_Close(handle),
-                11 => self.keep(MoorDyn_GetLine(handle, count)),
-                12 => self.keep(MoorDyn_GetPoint(handle, count)),
-                13 => self.keep(MoorDyn_GetBody(handle, count)),
-                14 => self.keep(MoorDyn_GetRod(handle, count)),
-                15 => self.keep(MoorDyn_GetSeafloor(handle)),
-                16 => self.keep(MoorDyn_GetWaves(handle)),
-                17 => MoorDyn_GetLineNodePos(handle, count, out),
-                18 => MoorDyn_GetLineNodeForce(handle, count, out),
-                19 => MoorDyn_GetLineNodeM(handle, count, out.cast()),
-                20 => MoorDyn_GetLineMaxTen(handle, out),
-                21 => MoorDyn_SetLineUnstretchedLength(handle, 115.0 + number),
-                22 => MoorDyn_SetLineConstantEA(handle, 1e8 + number),
-                23 => MoorDyn_GetPointAttached(handle, count, &raw mut end, &raw mut integer),
-                24 => MoorDyn_GetPointForce(handle, out),
-                25 => MoorDyn_GetPointM(handle, out.cast()),
-                26 => MoorDyn_GetBodyState(handle, out, self.or_null(rate.as_mut_ptr())),
-                27 => MoorDyn_GetBodyM(handle, out.cast()),
-                28 => MoorDyn_GetBodyForce(handle, out),
-                29 => MoorDyn_GetRodNodePos(handle, count, out),
-                30 => MoorDyn_GetDepthAt(handle, number, number, out),
-                31 => MoorDyn_GetWavesKin(
-                    handle,
-                    number,
-                    0.0,
-                    -1.0,
-                    out,
-                    null_mut(),
-                    &raw mut t,
-                    &raw mut dt,
-                    other,
-                ),
-                32 => self.serialize(handle),
-                33 => self.deserialize(handle),
-                34 => MoorDyn_BreakLine(handle, other, self.handle()),
-                35 => MoorDyn_SetDt(handle, number),
-                36 => self.schemes(handle),
-                37 => MoorDyn_Save(handle, self.saved.as_ptr()),
-                38 => MoorDyn_Load(handle, self.saved.as_ptr()),
-                39 => self.tensions(handle),
-                40 => self.first(x, xd, out),
-                _ => match self.below(3) {
-                    0 => MoorDyn_Init_NoIC(handle, x, xd),
-                    1 => MoorDyn_ExternalWaveKinInit(handle, self.or_null(&raw mut natural)),
+                11 => self.serialize(handle),
+                12 => self.deserialize(handle),
+                13 => MoorDyn_BreakLine(handle, other, self.handle()),
+                14 => MoorDyn_SetDt(handle, number),
+                15 => self.schemes(handle),
+                16 => MoorDyn_Save(handle, self.saved.as_ptr()),
+                17 => MoorDyn_Load(handle, self.saved.as_ptr()),
+                18 => self.tensions(handle),
+                19 => self.first(x, xd, out),
+                20 => MoorDyn_Init_NoIC(handle, x, xd),
+                _ => match self.below(2) {
+                    0 => MoorDyn_ExternalWaveKinInit(handle, self.or_null(&raw mut natural)),
                     _ => MoorDyn_NCoupledDOF(handle, self.or_null(&raw mut natural)),
                 },
             }
         }
     }
 
+    fn call_of_part(&mut self) -> c_int {
+        let (handle, other) = (self.handle(), self.handle());
+        let (number, count) = (self.number(), self.count());
+        let (mut rate, mut force) = (self.rates(), [0.0; 36]);
+        let out = self.or_null(force.as_mut_ptr());
+        let (mut t, mut dt, mut integer, mut end) = (0.0, number, 0, null_mut());
+        // SAFETY: as above.
+        unsafe {
+            match self.below(20) {
+                0 => self.keep(MoorDyn_GetLine(handle, count)),
+                1 => self.keep(MoorDyn_GetPoint(handle, count)),
+                2 => self.keep(MoorDyn_GetBody(handle, count)),
+                3 => self.keep(MoorDyn_GetRod(handle, count)),
+                4 => self.keep(MoorDyn_GetSeafloor(handle)),
+                5 => self.keep(MoorDyn_GetWaves(handle)),
+                6 => MoorDyn_GetLineNodePos(handle, count, out),
+                7 => MoorDyn_GetLineNodeForce(handle, count, out),
+                8 => MoorDyn_GetLineNodeM(handle, count, out.cast()),
+                9 => MoorDyn_GetLineMaxTen(handle, out),
+                10 => MoorDyn_SetLineUnstretchedLength(handle, 115.0 + number),
+                11 => MoorDyn_SetLineConstantEA(handle, 1e8 + number),
+                12 => MoorDyn_GetPointAttached(handle, count, &raw mut end, &raw mut integer),
+                13 => MoorDyn_GetPointForce(handle, out),
+                14 => MoorDyn_GetPointM(handle, out.cast()),
+                15 => MoorDyn_GetBodyState(handle, out, self.or_null(rate.as_mut_ptr())),
+                16 => MoorDyn_GetBodyM(handle, out.cast()),
+                17 => MoorDyn_GetBodyForce(handle, out),
+                18 => MoorDyn_GetRodNodePos(handle, count, out),
+                _ => match self.below(2) {
+                    0 => MoorDyn_GetDepthAt(handle, number, number, out),
+                    _ => MoorDyn_GetWavesKin(
+                        handle,
+                        number,
+                        0.0,
+                        -1.0,
+                        out,
+                        null_mut(),
+                        &raw mut t,
+                        &raw mut dt,
+                        other,
+                    ),
+                },
+            }
+        }
+    }
+
     /// # Safety
-    /// None: a handle may be anything.
+    /// A handle may be anything, so that there is nothing to promise.
     unsafe fn serialize(&mut self, handle: Handle) -> c_int {
         let mut size = 0;
         // SAFETY: room for the number and then for the words.
@@ -310,7 +330,7 @@ impl Host {
     /// Words of a state, with a wrong one now and then.
     ///
     /// # Safety
-    /// None: a handle may be anything.
+    /// A handle may be anything, so that there is nothing to promise.
     unsafe fn deserialize(&mut self, handle: Handle) -> c_int {
         let mut words = self.state.clone();
         words.resize(words.len().max(3), 0);
@@ -325,7 +345,7 @@ impl Host {
     }
 
     /// # Safety
-    /// None: a handle may be anything.
+    /// A handle may be anything, so that there is nothing to promise.
     unsafe fn schemes(&mut self, handle: Handle) -> c_int {
         let mut name = [0 as c_char; 64];
         let mut room = self.below(name.len());
@@ -337,7 +357,7 @@ impl Host {
     }
 
     /// # Safety
-    /// None: a handle may be anything.
+    /// A handle may be anything, so that there is nothing to promise.
     unsafe fn tensions(&mut self, handle: Handle) -> c_int {
         let count = self.below(4) as c_int - 1;
         let mut values = [[0.0_f32; 4]; 4];

@@ -166,7 +166,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// Quantity of a node of a line of a simulation, in the unit of the quantity.
+/// Quantity of a node of a line of a simulation [m, m/s, N].
 pub fn vector(simulation: &Simulation, line: usize, node: usize, quantity: Quantity) -> [f64; 3] {
     View::new(simulation, line).vector(node, quantity).into()
 }
@@ -226,7 +226,7 @@ impl System {
         })
     }
 
-    /// Quantity of a node of a line, in the unit of the quantity.
+    /// Quantity of a node of a line [m, m/s, N].
     ///
     /// # Errors
     /// No such line or node, or a system that was not started.
