@@ -11,13 +11,16 @@ use moorline_decks::load_with;
 
 use crate::arguments::Input;
 use crate::failure::Failure;
-use crate::hold::hold;
+use crate::hold;
 use crate::terminal::{noted, print};
 
 /// Reads a scene, discretises it, and prints a description of its model, notes on it, and the variables of its FMU.
 /// Where `write` is set, also writes the discretisation into the scene's file.
 pub(crate) fn check(input: &Input, write: bool) -> Result<(), Failure> {
     let loaded = load_with(&input.scene, &input.host.supplement())?;
+    if write {
+        hold::check_format(&loaded)?;
+    }
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let settled = discretisation::select(&loaded.scene);
     let scene = settled.as_ref().map_or(&loaded.scene, |found| &found.scene);
@@ -74,7 +77,7 @@ pub(crate) fn check(input: &Input, write: bool) -> Result<(), Failure> {
         Some(found) => Some(found.scene),
         None => discretisation::by_rule(&loaded.scene),
     };
-    print(&format!("\n{}\n", hold(&loaded, held.as_ref())?))
+    print(&format!("\n{}\n", hold::hold(&loaded, held.as_ref())?))
 }
 
 /// Integrator and step of every network, each in a sentence once.

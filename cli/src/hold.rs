@@ -11,17 +11,22 @@ use crate::failure::Failure;
 /// Keys of `[solver]` that a discretisation sets.
 const SOLVER: [&str; 3] = ["elements", "integrator", "time_step_max"];
 
+/// Refuses the file of another program, which has no place for a discretisation.
+pub(crate) fn check_format(loaded: &LoadedScene) -> Result<(), Failure> {
+    if loaded.format == TOML {
+        return Ok(());
+    }
+    Err(Failure::Argument(format!(
+        "--write: {} is a {} file, which has no place for elements, integrator and step of moorline; `moorline convert` makes a scene of it",
+        loaded.path.display(),
+        loaded.format
+    )))
+}
+
 /// Writes the elements, integrator and step of a discretised scene, where there is one, into the file of the scene, and keeps the rest of the
 /// file as it is. Returns a sentence.
 pub(crate) fn hold(loaded: &LoadedScene, held: Option<&Scene>) -> Result<String, Failure> {
     let path = loaded.path.display();
-    if loaded.format != TOML {
-        return Err(Failure::Argument(format!(
-            "--write: {path} is a {} file, which has no place for elements, integrator and step of moorline; `moorline convert` makes a scene \
-             of it",
-            loaded.format
-        )));
-    }
     let Some(held) = held else {
         return Ok(format!(
             "{path} is unchanged: the elements of all lines are given"

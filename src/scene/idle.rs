@@ -143,7 +143,7 @@ impl Scene {
                 "all lines or their sections have `elements`, and here `elements` changes nothing";
             "" if meshed && chosen && solver.tolerance != usual.tolerance =>
                 "elements and integrator are given, so that `tolerance` changes nothing";
-            "" if (meshed || solver.elements.is_some() || still) && solver.tolerance_of != usual.tolerance_of =>
+            "" if (rests || meshed || solver.elements.is_some() || still) && solver.tolerance_of != usual.tolerance_of =>
                 "no trials with the motion of the scene select elements: `tolerance_of` changes nothing";
         }
     }

@@ -7,7 +7,9 @@ fn known(folder: &Folder) -> Vec<(String, Vec<String>)> {
     let help = folder.done("--help");
     let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let commands = commands.take_while(|line| !line.trim().is_empty());
-    let names = commands.filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next());
+    // descriptions of several lines are indented further
+    let commands = commands.filter_map(|line| line.strip_prefix("  ").filter(|line| !line.starts_with(' ')));
+    let names = commands.filter_map(|line| line.split_whitespace().next());
     let names: Vec<&str> = names.filter(|name| *name != "help").collect();
     assert!(names.contains(&"sweep") && names.contains(&"run"), "{names:?}");
     let options = |name: &str| {
