@@ -53,7 +53,10 @@ const PACKAGES: [(&str, &[&str]); 13] = [
     ("fmu", &["moorline", "moorline-host"]),
     ("fmu/conformance", &["moorline-host"]),
     ("fmu/host", &["moorline"]),
-    ("python", &["moorline", "moorline-cli", "moorline-decks"]),
+    (
+        "python",
+        &["moorline", "moorline-cli", "moorline-decks", "moorline-system"],
+    ),
     ("sweep", &["moorline", "moorline-decks"]),
 ];
 

@@ -6,6 +6,8 @@ use moorline::scene::{LoadError, LoadedScene, SceneError};
 use moorline::simulation;
 use moorline::statics::StaticsError;
 use moorline::statics::modes::ModesError;
+use moorline_system::Code;
+use pyo3::exceptions::PyNotImplementedError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -28,6 +30,8 @@ pub(crate) enum Failure {
     Input(String, String),
     /// A file cannot be written: its name, and the sentence.
     Output(String, String),
+    /// A call by MoorDyn's interface failed.
+    MoorDyn(moorline_system::Failure),
     /// The work was given up.
     Interrupted,
 }
@@ -87,6 +91,7 @@ impl Failure {
             Failure::Result(_, problem) => ("StepError", problem.clone()),
             Failure::Input(name, problem) => ("InputError", format!("{name}: {problem}")),
             Failure::Output(_, problem) => ("OutputError", problem.clone()),
+            Failure::MoorDyn(failure) => (class_of(failure.code), failure.message.clone()),
             Failure::Interrupted => ("Error", "the work was given up".to_string()),
         }
     }
@@ -113,12 +118,17 @@ impl Failure {
                 facts.set_item("place", name)?;
                 facts.set_item("problem", problem)
             }
-            Failure::Interrupted => Ok(()),
+            Failure::MoorDyn(_) | Failure::Interrupted => Ok(()),
         }
     }
 
     /// The exception, to be raised or returned.
     pub(crate) fn raised(&self, py: Python<'_>) -> PyErr {
+        if let Failure::MoorDyn(failure) = self
+            && failure.code == Code::NotImplemented
+        {
+            return PyNotImplementedError::new_err(failure.message.clone());
+        }
         let (class, message) = self.class_and_message();
         let make = || {
             let facts = PyDict::new(py);
@@ -127,6 +137,17 @@ impl Failure {
             class.call((message,), Some(&facts))
         };
         make().map_or_else(|error| error, PyErr::from_value)
+    }
+}
+
+/// Class of the exception for a code of MoorDyn's interface.
+fn class_of(code: Code) -> &'static str {
+    match code {
+        Code::InvalidInputFile => "SceneError",
+        Code::InvalidOutputFile => "OutputError",
+        Code::InvalidInput | Code::InvalidValue | Code::NotImplemented => "InputError",
+        Code::NotFinite => "StepError",
+        Code::Success | Code::Memory | Code::Unhandled => "Error",
     }
 }
 

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`scene`] | scenes and decks, statics, modes, FMUs |
 //! | [`simulation`] | a simulation that Python steps, and its saved state |
+//! | [`moordyn`] | a mooring by MoorDyn's interface |
 //! | [`runs`] | runs of a scene's own motion, one or many |
 //! | [`motion`], [`parameters`] | columns of a motion, values of parameters |
 //! | [`aside`] | work on another thread while this one listens for Ctrl-C |
@@ -16,6 +17,7 @@
 mod aside;
 mod convert;
 mod errors;
+mod moordyn;
 mod motion;
 mod parameters;
 mod runs;
@@ -48,6 +50,8 @@ fn main(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
 mod _moorline {
     #[pymodule_export]
     use super::main;
+    #[pymodule_export]
+    use super::moordyn::MoorDyn;
     #[pymodule_export]
     use super::runs::{batch, run};
     #[pymodule_export]

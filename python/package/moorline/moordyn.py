@@ -6,409 +6,390 @@
     moordyn.Close(system)
 
 Positions and velocities are those of the coupled bodies (six numbers each) and then of the coupled points (three each), in the order of the
-deck; angles are MoorDyn's, R = Rx·Ry·Rz. Positions hold for the start of a step and velocities over all of it; forces are those at its end,
-where the points have moved on by velocity times step. Points move smoothly from one such place to the next. Contact and the law of slack
-lines are MoorDyn's too. Forces are the reaction at the coupled points: with the inertia of the half segments there, which MoorDyn leaves
-out. Functions for things that moorline does not model raise NotImplementedError. Messages go to the logger `moorline.moordyn`.
+deck; angles are MoorDyn's, R = Rx·Ry·Rz. Positions hold for the start of a step and velocities over all of it; forces are those at its end.
+Laws and forces are MoorDyn's too, unless the environment variables of docs/moordyn.md choose others. Objects count from 1, nodes from 0 at
+end A. Functions for things that moorline does not model raise NotImplementedError; other mistakes raise the errors of moorline.
 """
 
-import logging
-import math
-import pathlib
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from moorline._moorline import Scene, Simulation, State
+from moorline._moorline import MoorDyn
 from moorline.errors import InputError
 
-Array = NDArray[np.float64]
-Vector = tuple[float, float, float]
+Vector = tuple[float, ...]
+Matrix = list[list[float]]
 
 SUCCESS = 0
-LOG = logging.getLogger("moorline.moordyn")
+BODY, ROD, POINT, LINE = range(4)
+KINDS = ("body", "rod", "point", "line")
 
 
-class System:
-    """A mooring by MoorDyn's interface."""
-
-    def __init__(self, path: str) -> None:
-        read = Scene.load(path)
-        described = with_laws(read.to_dict())
-        self.scene: Scene = Scene.from_dict(described)
-        self.vessels: list[dict[str, Any]] = described.get("vessels", [])
-        self.points: list[dict[str, Any]] = described["points"]
-        self.lines: list[dict[str, Any]] = described["lines"]
-        self.coupled = [point for point in self.points if point["kind"] == "coupled" and "on" not in point]
-        self.simulation: Simulation | None = None
-        for note in read.notes:
-            if "negative_tension" not in note:  # the law is MoorDyn's here
-                LOG.warning("%s", note)
-
-    @property
-    def freedom(self) -> int:
-        """Number of coupled degrees of freedom."""
-        return 6 * len(self.vessels) + 3 * len(self.coupled)
-
-    def inputs(self, x: Sequence[float], v: Sequence[float], dt: float) -> dict[str, float | None]:
-        """Inputs of moorline at the end of a step [s] of constant velocities: displacements from the reference, angles Z-Y-X."""
-        for name, given in (("x", x), ("v", v)):
-            if len(given) != self.freedom:
-                raise InputError(f"{name}: {len(given)} numbers, but there are {self.freedom} coupled degrees of freedom", place=name)
-        inputs: dict[str, float | None] = {}
-        place, way = np.array(x, dtype=float), dt * np.array(v, dtype=float)
-        at = 0
-        for vessel in self.vessels:
-            origin = place[at : at + 3] + way[at : at + 3] - vessel.get("position", [0.0] * 3)
-            turned = np.asarray(turn(way[at + 3 : at + 6]) @ rotation(place[at + 3 : at + 6]))
-            angles = tait_bryan(turned) - vessel.get("attitude", [0.0] * 3)
-            names = [f"{vessel['name']}.{axis}" for axis in ("x", "y", "z", "roll", "pitch", "yaw")]
-            inputs.update(zip(names, map(float, [*origin, *angles])))
-            at += 6
-        for point in self.coupled:
-            names = [f"{point['name']}.{axis}" for axis in ("x", "y", "z")]
-            inputs.update(zip(names, map(float, place[at : at + 3] + way[at : at + 3] - point["position"])))
-            at += 3
-        return inputs
-
-    @property
-    def started(self) -> Simulation:
-        """The simulation of an initialised system."""
-        if self.simulation is None:
-            raise InputError("the system is not initialised, or it is closed: call Init first", place="system")
-        return self.simulation
-
-    def forces(self) -> list[float]:
-        """Forces and moments on the coupled bodies and points [N, N m]."""
-        on_bodies = [f"{vessel['name']}.{axis}" for vessel in self.vessels for axis in ("fx", "fy", "fz", "mx", "my", "mz")]
-        on_points = [f"{point['name']}.{axis}" for point in self.coupled for axis in ("fx", "fy", "fz")]
-        return [self.started[name] for name in on_bodies + on_points]
+class _Object(NamedTuple):
+    system: MoorDyn
+    index: int
 
 
-class Body(NamedTuple):
-    """A coupled body."""
-
-    system: System
-    """The system."""
-    place: int
-    """Place in the order of the deck, from 0."""
+class Body(_Object):
+    """A body."""
 
 
-class Point(NamedTuple):
+class Rod(_Object):
+    """A rod."""
+
+
+class Point(_Object):
     """A point."""
 
-    system: System
-    """The system."""
-    place: int
-    """Place in the order of the deck, from 0."""
 
-
-class Line(NamedTuple):
+class Line(_Object):
     """A line."""
 
-    system: System
-    """The system."""
-    place: int
-    """Place in the order of the deck, from 0."""
 
-    @property
-    def name(self) -> str:
-        """Name of the line."""
-        return str(self.system.lines[self.place]["name"])
+def _place(system: MoorDyn, kind: int, number: int) -> int:
+    count = system.counts()[kind]
+    if not 1 <= number <= count:
+        raise InputError(f"{KINDS[kind]} {number}: there are {count}, counted from 1", place=KINDS[kind])
+    return number - 1
 
 
-def with_laws(scene: dict[str, Any]) -> dict[str, Any]:
-    """The scene with MoorDyn's contact, its law of slack lines and its meaning of inputs, which lead to the end of a step."""
-    if "seabed" in scene:
-        scene["seabed"]["contact"] = "as_given"
-    scene.setdefault("solver", {}).update(negative_tension=True, input_reconstruction="interpolate")
-    return scene
-
-
-def rotation(angles: Sequence[float] | Array) -> Array:
-    """Rotation matrix of MoorDyn's angles [rad]."""
-    (cx, cy, cz), (sx, sy, sz) = np.cos(angles), np.sin(angles)
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
-    about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
-    about_z = np.array([[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]])
-    return np.asarray(about_x @ about_y @ about_z)
-
-
-def turn(way: Array) -> Array:
-    """Rotation matrix of a turn about an axis, as a vector [rad]."""
-    angle = float(np.linalg.norm(way))
-    if angle == 0.0:
-        return np.eye(3)
-    x, y, z = way / angle
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * np.asarray(cross @ cross)
-
-
-def tait_bryan(matrix: Array) -> Array:
-    """Roll, pitch and yaw of a rotation matrix, R = Rz·Ry·Rx [rad]."""
-    roll = np.arctan2(matrix[2, 1], matrix[2, 2])
-    pitch = np.arcsin(np.clip(-matrix[2, 0], -1.0, 1.0))
-    yaw = np.arctan2(matrix[1, 0], matrix[0, 0])
-    return np.array([roll, pitch, yaw])
-
-
-def Create(filepath: str = "") -> System:
+def Create(filepath: str = "") -> MoorDyn:
     """Reads a deck, by default Mooring/lines.txt."""
-    return System(filepath or "Mooring/lines.txt")
+    return MoorDyn(filepath or "Mooring/lines.txt")
 
 
-def NCoupledDOF(instance: System) -> int:
+def NCoupledDOF(instance: MoorDyn) -> int:
     """Number of coupled degrees of freedom."""
-    return instance.freedom
+    return instance.degrees_of_freedom()
 
 
-def SetVerbosity(instance: System, verbosity: int) -> int:
-    """Accepted: the level of the logger `moorline.moordyn` decides."""
+def SetVerbosity(instance: MoorDyn, verbosity: int) -> int:
+    """Sets the least level of the messages on the console."""
+    instance.set_levels(console=verbosity)
     return SUCCESS
 
 
-SetLogLevel = SetVerbosity
+def SetLogLevel(instance: MoorDyn, verbosity: int) -> int:
+    """Sets the least level of the messages in the file."""
+    instance.set_levels(file=verbosity)
+    return SUCCESS
 
 
-def SetLogFile(instance: System, filepath: str) -> int:
+def SetLogFile(instance: MoorDyn, filepath: str) -> int:
     """Writes the messages to a file too."""
-    LOG.addHandler(logging.FileHandler(filepath))
+    instance.set_log_file(filepath)
     return SUCCESS
 
 
-def Log(instance: System, level: int, msg: str) -> int:
+def Log(instance: MoorDyn, level: int, msg: str) -> int:
     """Writes a message to the log."""
-    LOG.log(logging.INFO, "%s", msg)
+    instance.write_log(level, msg)
     return SUCCESS
 
 
-def Init(instance: System, x: Sequence[float], v: Sequence[float]) -> int:
+def Init(instance: MoorDyn, x: Sequence[float], v: Sequence[float]) -> int:
     """Solves the static equilibrium at the positions given."""
-    instance.simulation = Simulation(instance.scene, inputs=instance.inputs(x, v, 0.0))
+    instance.start(list(x), list(v))
     return SUCCESS
 
 
-Init_NoIC = Init
+def Init_NoIC(instance: MoorDyn, x: Sequence[float], v: Sequence[float]) -> int:
+    """Starts on catenaries, without an equilibrium."""
+    instance.start(list(x), list(v), True)
+    return SUCCESS
 
 
-def Step(instance: System, x: Sequence[float], v: Sequence[float], t: float, dt: float) -> list[float]:
+def Step(instance: MoorDyn, x: Sequence[float], v: Sequence[float], t: float, dt: float) -> Vector:
     """Steps by dt [s] and returns the forces at the end; positions are those of the start, velocities those of the whole step."""
-    instance.started.advance(instance.inputs(x, v, dt), dt)
-    return instance.forces()
+    return tuple(instance.step(list(x), list(v), t, dt))
 
 
-def Close(instance: System) -> int:
+def Close(instance: MoorDyn) -> int:
     """Ends the use of a system."""
-    instance.simulation = None
+    instance.close()
     return SUCCESS
 
 
-def Serialize(instance: System) -> bytes:
+def GetDt(instance: MoorDyn) -> float:
+    """Internal step of the deck or the script [s]."""
+    return instance.scheme()[0]
+
+
+def SetDt(instance: MoorDyn, dt: float) -> int:
+    """Sets the upper limit of the internal step [s]."""
+    instance.set_scheme(dt=dt)
+    return SUCCESS
+
+
+def GetCFL(instance: MoorDyn) -> float:
+    """Courant number of the deck or the script [-]; nothing follows from it."""
+    return instance.scheme()[1]
+
+
+def SetCFL(instance: MoorDyn, cfl: float) -> int:
+    """Keeps a Courant number [-]."""
+    instance.set_scheme(cfl=cfl)
+    return SUCCESS
+
+
+def GetTimeScheme(instance: MoorDyn) -> str:
+    """Name of the time scheme of the deck or the script; nothing follows from it."""
+    return instance.scheme()[2]
+
+
+def SetTimeScheme(instance: MoorDyn, name: str) -> int:
+    """Keeps the name of a time scheme."""
+    instance.set_scheme(name=name)
+    return SUCCESS
+
+
+def Serialize(instance: MoorDyn) -> bytes:
     """The state as bytes."""
-    return instance.started.save().to_bytes()
+    return instance.to_bytes()
 
 
-def Deserialize(instance: System, data: bytes) -> None:
+def Deserialize(instance: MoorDyn, data: bytes) -> None:
     """Goes back to a state of `Serialize`."""
-    instance.started.restore(State.from_bytes(bytes(data)))
+    instance.restore(bytes(data))
 
 
-def Save(instance: System, filepath: str) -> None:
+def Save(instance: MoorDyn, filepath: str) -> None:
     """Writes the state to a file."""
-    pathlib.Path(filepath).write_bytes(Serialize(instance))
+    instance.save(filepath)
 
 
-def Load(instance: System, filepath: str) -> None:
+def Load(instance: MoorDyn, filepath: str) -> None:
     """Goes back to the state of a file of `Save`."""
-    Deserialize(instance, pathlib.Path(filepath).read_bytes())
+    instance.load(filepath)
 
 
 SaveState, LoadState = Save, Load
 
 
-def _numbered(found: list[Any], number: int, kind: str) -> int:
-    if not 1 <= number <= len(found):
-        raise InputError(f"{kind} {number}: there are {len(found)}, counted from 1", place=kind)
-    return number - 1
+def SaveVTK(instance: MoorDyn, filename: str) -> int:
+    """Writes the shapes of all lines for ParaView."""
+    instance.save_vtk(filename)
+    return SUCCESS
 
 
-def GetNumberBodies(instance: System) -> int:
+def BreakLine(instance: MoorDyn, point: int, line: int) -> int:
+    """Breaks a line off a point, from the next step on."""
+    instance.break_line(_place(instance, POINT, point), _place(instance, LINE, line))
+    return SUCCESS
+
+
+def GetFASTtens(instance: MoorDyn, n_lines: int) -> tuple[Vector, Vector, Vector, Vector]:
+    """Horizontal and vertical forces at the fairleads, and at the anchors, of the first lines [N]."""
+    places = [_place(instance, LINE, number) for number in range(1, n_lines + 1)]
+    forces = [instance.line(place, "end_tensions") for place in places]
+    fair_h, fair_v, anchor_h, anchor_v = (tuple(force[i] for force in forces) for i in range(4))
+    return fair_h, fair_v, anchor_h, anchor_v
+
+
+def GetWaves(instance: MoorDyn) -> MoorDyn:
+    """The water, for `GetWavesKin`."""
+    return instance
+
+
+def GetWavesKin(instance: MoorDyn, x: float, y: float, z: float, seafloor: Any = None) -> tuple[Vector, Vector, float]:
+    """Velocity [m/s] and acceleration [m/s²] of the water at a place, and elevation of the surface there [m]."""
+    velocity, acceleration, elevation = instance.flow((x, y, z))
+    return tuple(velocity), tuple(acceleration), elevation
+
+
+def GetSeafloor(instance: MoorDyn) -> MoorDyn:
+    """The seabed, for `GetDepthAt` and its like."""
+    return instance
+
+
+def GetDepthAt(instance: MoorDyn, x: float, y: float) -> float:
+    """Depth of the seabed at a place [m]."""
+    return instance.depth_at(x, y)
+
+
+def GetAverageDepth(instance: MoorDyn) -> float:
+    """Mean depth of the seabed [m]."""
+    return instance.depths()[0]
+
+
+def GetMinDepth(instance: MoorDyn) -> float:
+    """Least depth of the seabed [m]."""
+    return instance.depths()[1]
+
+
+def GetNumberBodies(instance: MoorDyn) -> int:
     """Number of bodies."""
-    return len(instance.vessels)
+    return instance.counts()[BODY]
 
 
-def GetBody(instance: System, body: int) -> Body:
-    """A body, counted from 1."""
-    return Body(instance, _numbered(instance.vessels, body, "body"))
+def GetNumberRods(instance: MoorDyn) -> int:
+    """Number of rods."""
+    return instance.counts()[ROD]
 
 
-def GetNumberRods(instance: System) -> int:
-    """Number of rods: moorline has none."""
-    return 0
-
-
-def GetNumberPoints(instance: System) -> int:
+def GetNumberPoints(instance: MoorDyn) -> int:
     """Number of points."""
-    return len(instance.points)
+    return instance.counts()[POINT]
 
 
-def GetPoint(instance: System, point: int) -> Point:
-    """A point, counted from 1."""
-    return Point(instance, _numbered(instance.points, point, "point"))
-
-
-def GetNumberLines(instance: System) -> int:
+def GetNumberLines(instance: MoorDyn) -> int:
     """Number of lines."""
-    return len(instance.lines)
+    return instance.counts()[LINE]
 
 
-def GetLine(instance: System, line: int) -> Line:
+def GetBody(instance: MoorDyn, body: int) -> Body:
+    """A body, counted from 1."""
+    return Body(instance, _place(instance, BODY, body))
+
+
+def GetRod(instance: MoorDyn, rod: int) -> Rod:
+    """A rod, counted from 1."""
+    return Rod(instance, _place(instance, ROD, rod))
+
+
+def GetPoint(instance: MoorDyn, point: int) -> Point:
+    """A point, counted from 1."""
+    return Point(instance, _place(instance, POINT, point))
+
+
+def GetLine(instance: MoorDyn, line: int) -> Line:
     """A line, counted from 1."""
-    return Line(instance, _numbered(instance.lines, line, "line"))
-
-
-def GetFASTtens(instance: System, n_lines: int) -> tuple[list[float], list[float], list[float], list[float]]:
-    """Horizontal and vertical tensions at the fairleads, and at the anchors, of the first lines [N]."""
-    lines = [instance.lines[_numbered(instance.lines, number, "line")]["name"] for number in range(1, n_lines + 1)]
-    forces = np.array([instance.started.end_forces(name) for name in lines]).reshape(-1, 2, 3)
-    horizontal, vertical = np.hypot(forces[..., 0], forces[..., 1]), np.abs(forces[..., 2])
-    return horizontal[:, 1].tolist(), vertical[:, 1].tolist(), horizontal[:, 0].tolist(), vertical[:, 0].tolist()
-
-
-def GetBodyID(instance: Body) -> int:
-    """Number of a body, from 1."""
-    return instance.place + 1
-
-
-def GetBodyForce(instance: Body) -> tuple[float, ...]:
-    """Force and moment of the mooring on a body [N, N m]."""
-    at = 6 * instance.place
-    return tuple(instance.system.forces()[at : at + 6])
-
-
-def GetPointID(instance: Point) -> int:
-    """Number of a point, from 1."""
-    return instance.place + 1
-
-
-def _state(instance: Point) -> Any:
-    return instance.system.started.point(instance.system.points[instance.place]["name"])
-
-
-def _vector(numbers: Array) -> Vector:
-    x, y, z = map(float, numbers)
-    return x, y, z
-
-
-def GetPointPos(instance: Point) -> Vector:
-    """Position of a point [m]."""
-    return _vector(_state(instance).position)
-
-
-def GetPointVel(instance: Point) -> Vector:
-    """Velocity of a point [m/s]."""
-    return _vector(_state(instance).velocity)
-
-
-def GetPointForce(instance: Point) -> Vector:
-    """Force of the lines on a point [N]."""
-    return _vector(_state(instance).force)
-
-
-def _attached(instance: Point) -> list[tuple[int, int]]:
-    name, lines = instance.system.points[instance.place]["name"], instance.system.lines
-    return [(line, end) for line, of in enumerate(lines) for end, key in enumerate(("from", "to")) if of[key] == name]
+    return Line(instance, _place(instance, LINE, line))
 
 
 def GetPointNAttached(instance: Point) -> int:
     """Number of line ends at a point."""
-    return len(_attached(instance))
+    return len(instance.system.point(instance.index, "ends"))
 
 
 def GetPointAttached(instance: Point, i: int) -> tuple[Line, int]:
     """A line at a point, and its end there: 0 is A, 1 is B."""
-    line, end = _attached(instance)[i]
+    line, end = instance.system.point(instance.index, "ends")[i]
     return Line(instance.system, line), end
 
 
-def GetLineID(instance: Line) -> int:
-    """Number of a line, from 1."""
-    return instance.place + 1
+def SetLineUnstretchedLength(instance: Line, l: float) -> int:
+    """Sets the unstretched length of a line [m], before `Init` only."""
+    instance.system.set_line(instance.index, unstretched_length=l)
+    return SUCCESS
 
 
-def GetLineN(instance: Line) -> int:
-    """Number of segments of a line: that of moorline's mesh."""
-    return GetLineNumberNodes(instance) - 1
+def SetLineConstantEA(instance: Line, ea: float) -> int:
+    """Sets the axial stiffness of a line [N], before `Init` only."""
+    instance.system.set_line(instance.index, constant_stiffness=ea)
+    return SUCCESS
+
+
+def SaveLineVTK(instance: Line, filename: str) -> int:
+    """Writes the shape of a line for ParaView."""
+    instance.system.save_vtk(filename, instance.index)
+    return SUCCESS
+
+
+def GetRodNumberNodes(instance: Rod) -> int:
+    """Number of nodes of a rod."""
+    return int(instance.system.rod(instance.index, "segments")) + 1
 
 
 def GetLineNumberNodes(instance: Line) -> int:
     """Number of nodes of a line."""
-    return len(instance.system.started.tensions(instance.name))
+    return int(instance.system.line(instance.index, "segments")) + 1
 
 
-def GetLineUnstretchedLength(instance: Line) -> float:
-    """Unstretched length of a line [m]."""
-    return float(sum(section["length"] for section in instance.system.lines[instance.place]["sections"]))
+# Functions that read one value of an object: kind, value, part of it, description.
+_READ: dict[str, tuple[str, str, slice | None, str]] = {
+    "GetBodyID": ("body", "number", None, "Number of a body in the deck."),
+    "GetBodyType": ("body", "type", None, "Kind of a body: -1 coupled, 0 free, 1 fixed."),
+    "GetBodyPos": ("body", "place", slice(0, 3), "Position of a body [m]."),
+    "GetBodyAngle": ("body", "place", slice(3, 6), "Angles of a body [rad]."),
+    "GetBodyVel": ("body", "rate", slice(0, 3), "Velocity of a body [m/s]."),
+    "GetBodyAngVel": ("body", "rate", slice(3, 6), "Angular velocity of a body [rad/s]."),
+    "GetBodyForce": ("body", "force", None, "Force [N] and moment [N m] on a coupled body."),
+    "GetBodyM": ("body", "mass", None, "Mass matrix of the end nodes that a coupled body carries [kg, kg m, kg m²]."),
+    "GetRodID": ("rod", "number", None, "Number of a rod in the deck."),
+    "GetRodN": ("rod", "segments", None, "Number of segments of a rod."),
+    "GetPointID": ("point", "number", None, "Number of a point in the deck."),
+    "GetPointType": ("point", "type", None, "Kind of a point: -1 coupled, 0 free, 1 fixed."),
+    "GetPointPos": ("point", "position", None, "Position of a point [m]."),
+    "GetPointVel": ("point", "velocity", None, "Velocity of a point [m/s]."),
+    "GetPointForce": ("point", "force", None, "Force on a point [N]."),
+    "GetPointM": ("point", "mass", None, "Mass matrix of a point with its end nodes [kg]."),
+    "GetLineID": ("line", "number", None, "Number of a line in the deck."),
+    "GetLineN": ("line", "segments", None, "Number of segments of a line."),
+    "GetLineUnstretchedLength": ("line", "unstretched_length", None, "Unstretched length of a line [m]."),
+    "IsLineConstantEA": ("line", "has_constant_stiffness", None, "True if a line has one constant axial stiffness."),
+    "GetLineConstantEA": ("line", "constant_stiffness", None, "Axial stiffness of a line [N]."),
+    "GetLineFairTen": ("line", "fairlead_tension", None, "Tension of a line at end B [N]."),
+    "GetLineMaxTen": ("line", "greatest_tension", None, "Greatest tension along a line [N]."),
+}
+# Functions that read a value of a node: kind, value, description.
+_READ_NODE: dict[str, tuple[str, str, str]] = {
+    "GetRodNodePos": ("rod", "position", "Position of a node of a rod [m]."),
+    "GetRodNodeVel": ("rod", "velocity", "Velocity of a node of a rod [m/s]."),
+    "GetLineNodePos": ("line", "position", "Position of a node [m]."),
+    "GetLineNodeVel": ("line", "velocity", "Velocity of a node [m/s]."),
+    "GetLineNodeForce": ("line", "force", "Sum of all forces on a node but inertia [N]."),
+    "GetLineNodeTen": ("line", "tension", "Tension at a node, towards end B [N]."),
+    "GetLineNodeBendStiff": ("line", "bending", "Force of bending stiffness on a node [N]."),
+    "GetLineNodeWeight": ("line", "weight", "Weight less buoyancy of a node [N]."),
+    "GetLineNodeDrag": ("line", "drag", "Drag on a node [N]."),
+    "GetLineNodeFroudeKrilov": ("line", "froude_krylov", "Force of the accelerated water on a node [N]."),
+    "GetLineNodeSeabedForce": ("line", "seabed", "Force of the seabed on a node [N]."),
+    "GetLineNodeCurv": ("line", "curvature", "Curvature at a node [1/m]."),
+    "GetLineNodeM": ("line", "mass", "Mass matrix of a node with its added mass [kg]."),
+}
+_WATER = "water that a host gives is not modelled; waves and currents belong to the deck"
+_RODS = "rods are not modelled"
+_PRESSURE = "bending by the pressure inside a line is not modelled"
+REFUSED = {
+    **dict.fromkeys(["ExternalWaveKinInit", "ExternalWaveKinGetN", "ExternalWaveKinGetCoordinates", "GetWaveKinCoordinates",
+                     "ExternalWaveKinSet", "SetWaveKin"], _WATER),
+    **dict.fromkeys(["GetRodType", "GetRodForce", "GetRodM"], _RODS),
+    **dict.fromkeys(["IsLinePressBend", "SetLinePressBend", "SetLinePressInt"], _PRESSURE),
+    **dict.fromkeys(["SaveBodyVTK", "UseBodyVTK", "SaveRodVTK", "SavePointVTK"], "bodies, rods and points have no shape"),
+    "SetLineUnstretchedLengthVel": "lines that are paid out or hauled in are not driven through this interface: a scene has winches",
+}
 
 
-def GetLineNodePos(instance: Line, i: int) -> Vector:
-    """Position of a node [m]."""
-    return _vector(instance.system.started.positions(instance.name)[i])
+def _tidy(value: Any, part: slice | None = None) -> Any:
+    """Vectors are tuples; matrices and numbers stay what they are."""
+    is_vector = isinstance(value, list) and not isinstance(value[0], list)
+    return tuple(value[part] if part else value) if is_vector else value
 
 
-def GetLineNodeVel(instance: Line, i: int) -> Vector:
-    """Velocity of a node [m/s]."""
-    return _vector(instance.system.started.velocities(instance.name)[i])
+def _named(function: Callable[..., Any], name: str, description: str) -> Callable[..., Any]:
+    function.__name__ = function.__qualname__ = name
+    function.__doc__ = description
+    return function
 
 
-def GetLineNodeTen(instance: Line, i: int) -> Vector:
-    """Tension at a node, of the segments beside it, along the line there towards end B [N]."""
-    nodes = instance.system.started.positions(instance.name)
-    along = nodes[min(i + 1, len(nodes) - 1)] - nodes[max(i - 1, 0)]
-    return _vector(instance.system.started.segment_tensions(instance.name)[i] * along / np.linalg.norm(along))
+def _reader(kind: str, what: str, part: slice | None) -> Callable[..., Any]:
+    return lambda instance: _tidy(getattr(instance.system, kind)(instance.index, what), part)
 
 
-def GetLineFairTen(instance: Line) -> float:
-    """Tension of the last segment of a line, at end B [N]."""
-    return float(instance.system.started.segment_tensions(instance.name)[-1])
+def _node_reader(kind: str, what: str) -> Callable[..., Any]:
+    return lambda instance, i: _tidy(getattr(instance.system, kind)(instance.index, what, i))
 
 
-def GetLineMaxTen(instance: Line) -> float:
-    """Greatest tension along a line [N]."""
-    return float(instance.system.started[f"{instance.name}.tension_max"])
-
-
-def _refusal(name: str) -> Callable[..., Any]:
+def _refusal(name: str, reason: str) -> Callable[..., Any]:
     def refuse(*_: Any) -> Any:
-        raise NotImplementedError(f"moorline.moordyn has no {name}: {REFUSED[name]}")
+        raise NotImplementedError(f"moorline.moordyn has no {name}: {reason}")
 
-    refuse.__name__ = refuse.__qualname__ = name
-    refuse.__doc__ = f"Not in moorline: {REFUSED[name]}."
     return refuse
 
 
-_WAVES = "water that a host gives is not modelled; waves and currents belong to the deck or the scene"
-_STEPS = "solver.tolerance and solver.time_step_max of a scene set the steps"
-_RODS = "rods are not modelled"
-_PARTS = "moorline does not hold the parts of a node's force"
-_VTK = "`moorline run` writes shapes for ParaView"
-_LINES = "properties of a line belong to the scene: Scene.with_parameters gives another one"
-REFUSED = {
-    **dict.fromkeys(["GetWaves", "GetWavesKin", "ExternalWaveKinInit", "ExternalWaveKinGetN", "ExternalWaveKinGetCoordinates",
-                     "GetWaveKinCoordinates", "ExternalWaveKinSet", "SetWaveKin"], _WAVES),
-    **dict.fromkeys(["GetDt", "SetDt", "GetCFL", "SetCFL", "GetTimeScheme", "SetTimeScheme"], _STEPS),
-    **dict.fromkeys(["GetRod", "GetRodID", "GetRodType", "GetRodForce", "GetRodM", "GetRodN", "GetRodNumberNodes", "GetRodNodePos",
-                     "GetRodNodeVel"], _RODS),
-    **dict.fromkeys(["GetLineNodeForce", "GetLineNodeBendStiff", "GetLineNodeWeight", "GetLineNodeDrag", "GetLineNodeFroudeKrilov",
-                     "GetLineNodeSeabedForce", "GetLineNodeCurv", "GetLineNodeM", "GetPointM", "GetBodyM"], _PARTS),
-    **dict.fromkeys(["SaveVTK", "SaveBodyVTK", "UseBodyVTK", "SaveRodVTK", "SavePointVTK", "SaveLineVTK"], _VTK),
-    **dict.fromkeys(["SetLineUnstretchedLength", "SetLineUnstretchedLengthVel", "IsLineConstantEA", "GetLineConstantEA",
-                     "SetLineConstantEA", "IsLinePressBend", "SetLinePressBend", "SetLinePressInt"], _LINES),
-    **dict.fromkeys(["GetSeafloor", "GetDepthAt", "GetAverageDepth", "GetMinDepth"], "the seabed is that of the scene"),
-    **dict.fromkeys(["GetBodyType", "GetPointType"], "types are words in moorline: see the scene's points and vessels"),
-    **dict.fromkeys(["GetBodyState", "GetBodyPos", "GetBodyAngle", "GetBodyVel", "GetBodyAngVel"], "the motion of a body is an input"),
-    "BreakLine": "`release` in the scene declares a line that may be released, and is then an input of Simulation",
-}
-globals().update({name: _refusal(name) for name in REFUSED})
+def GetBodyState(instance: Body) -> tuple[Vector, Vector]:
+    """Position [m] and angles [rad] of a body, and their rates [m/s, rad/s]."""
+    return _tidy(instance.system.body(instance.index, "place")), _tidy(instance.system.body(instance.index, "rate"))
+
+
+for _name, (_kind, _what, _part, _text) in _READ.items():
+    globals()[_name] = _named(_reader(_kind, _what, _part), _name, _text)
+for _name, (_kind, _what, _text) in _READ_NODE.items():
+    globals()[_name] = _named(_node_reader(_kind, _what), _name, _text)
+for _name, _text in REFUSED.items():
+    globals()[_name] = _named(_refusal(_name, _text), _name, f"Not in moorline: {_text}.")
+
+if TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Callable[..., Any]: ...
