@@ -56,7 +56,8 @@ def test_an_interrupted_run_of_the_program_keeps_its_rows(tmp_path):
     (tmp_path / "chain.toml").write_text(CHAIN.replace("duration = 10.0", "duration = 4e5"))
     command = [sys.executable, "-m", "moorline", "run", "chain.toml", "-o", "out"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
-    while not (tmp_path / "out" / "results.csv").exists():
+    results = tmp_path / "out" / "results.csv"
+    while not (results.exists() and results.stat().st_size > 100_000):  # it steps, and listens
         assert process.poll() is None
     process.send_signal(2)
     _, errors = process.communicate(timeout=20)

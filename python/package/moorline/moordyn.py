@@ -27,7 +27,7 @@ KINDS = ("body", "rod", "point", "line")
 
 class _Object(NamedTuple):
     system: MoorDyn
-    index: int
+    place: int
 
 
 class Body(_Object):
@@ -259,41 +259,41 @@ def GetLine(instance: MoorDyn, line: int) -> Line:
 
 def GetPointNAttached(instance: Point) -> int:
     """Number of line ends at a point."""
-    return len(instance.system.point(instance.index, "ends"))
+    return len(instance.system.point(instance.place, "ends"))
 
 
 def GetPointAttached(instance: Point, i: int) -> tuple[Line, int]:
     """A line at a point, and its end there: 0 is A, 1 is B."""
-    line, end = instance.system.point(instance.index, "ends")[i]
+    line, end = instance.system.point(instance.place, "ends")[i]
     return Line(instance.system, line), end
 
 
 def SetLineUnstretchedLength(instance: Line, l: float) -> int:
     """Sets the unstretched length of a line [m], before `Init` only."""
-    instance.system.set_line(instance.index, unstretched_length=l)
+    instance.system.set_line(instance.place, unstretched_length=l)
     return SUCCESS
 
 
 def SetLineConstantEA(instance: Line, ea: float) -> int:
     """Sets the axial stiffness of a line [N], before `Init` only."""
-    instance.system.set_line(instance.index, constant_stiffness=ea)
+    instance.system.set_line(instance.place, constant_stiffness=ea)
     return SUCCESS
 
 
 def SaveLineVTK(instance: Line, filename: str) -> int:
     """Writes the shape of a line for ParaView."""
-    instance.system.save_vtk(filename, instance.index)
+    instance.system.save_vtk(filename, instance.place)
     return SUCCESS
 
 
 def GetRodNumberNodes(instance: Rod) -> int:
     """Number of nodes of a rod."""
-    return int(instance.system.rod(instance.index, "segments")) + 1
+    return int(instance.system.rod(instance.place, "segments")) + 1
 
 
 def GetLineNumberNodes(instance: Line) -> int:
     """Number of nodes of a line."""
-    return int(instance.system.line(instance.index, "segments")) + 1
+    return int(instance.system.line(instance.place, "segments")) + 1
 
 
 # Functions that read one value of an object: kind, value, part of it, description.
@@ -364,11 +364,11 @@ def _named(function: Callable[..., Any], name: str, description: str) -> Callabl
 
 
 def _reader(kind: str, what: str, part: slice | None) -> Callable[..., Any]:
-    return lambda instance: _tidy(getattr(instance.system, kind)(instance.index, what), part)
+    return lambda instance: _tidy(getattr(instance.system, kind)(instance.place, what), part)
 
 
 def _node_reader(kind: str, what: str) -> Callable[..., Any]:
-    return lambda instance, i: _tidy(getattr(instance.system, kind)(instance.index, what, i))
+    return lambda instance, i: _tidy(getattr(instance.system, kind)(instance.place, what, i))
 
 
 def _refusal(name: str, reason: str) -> Callable[..., Any]:
@@ -380,7 +380,7 @@ def _refusal(name: str, reason: str) -> Callable[..., Any]:
 
 def GetBodyState(instance: Body) -> tuple[Vector, Vector]:
     """Position [m] and angles [rad] of a body, and their rates [m/s, rad/s]."""
-    return _tidy(instance.system.body(instance.index, "place")), _tidy(instance.system.body(instance.index, "rate"))
+    return _tidy(instance.system.body(instance.place, "place")), _tidy(instance.system.body(instance.place, "rate"))
 
 
 for _name, (_kind, _what, _part, _text) in _READ.items():
