@@ -74,7 +74,7 @@ impl Row {
 pub struct Table {
     /// The columns: number of the case, keys, reason of a failure, remarks, figures.
     pub columns: Vec<Column>,
-    /// A value for every column, in its form and unit [m, N, …]: not a number where there is none.
+    /// A value for every column, in its form and unit [N, m, …]: not a number where there is none.
     pub rows: Vec<Vec<f64>>,
 }
 
