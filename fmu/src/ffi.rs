@@ -1,23 +1,18 @@
-//! Handles, slices, texts, callbacks and the panic guard: all unsafe code, with its reasons.
+//! Handles, texts, states and callbacks: all unsafe code of the FMU library but that of [`moorline_boundary`], with its reasons.
 //!
 //! Guarantees of the host (FMI 2.0.4 section 2.1, FMI 3.0.2 section 2.2): a handle is what instantiate returned and is
 //! not used after free; no two calls use one handle at once; a pointer with a length points to that many values that
 //! stay valid during the call; a text ends with a zero byte. Everything else is checked here.
 
-use std::any::Any;
-use std::cell::Cell;
-use std::collections::BTreeMap;
 use std::ffi::{CStr, CString, c_char, c_void};
-use std::panic::{self, AssertUnwindSafe};
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
-use moorline::dynamics::is_worker;
+use moorline_boundary::guard::guard;
+use moorline_boundary::pointers;
+pub(crate) use moorline_boundary::pointers::{slice, slice_mut};
 use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
 use moorline_host::fmi3::fmi3LogMessageCallback;
 use moorline_host::{FmiVersion, Status};
 
-#[cfg(unix)]
-use crate::aside;
 use crate::instance::{Instance, Refusal};
 use crate::log::Topic;
 use crate::saved::Snapshot;
@@ -103,74 +98,6 @@ fn c_text(text: &str) -> CString {
     CString::new(text.replace('\0', " ")).unwrap_or_default()
 }
 
-thread_local! {
-    /// True while this thread is inside the guard. Without a destructor, so that the library can be unloaded.
-    static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Key of all worker threads of an instance, whose panics a guard passes on.
-const HELPER: usize = 0;
-
-/// Places of guarded panics, by thread, until their guards have reported them.
-static PANIC_PLACES: Mutex<BTreeMap<usize, String>> = Mutex::new(BTreeMap::new());
-
-fn panic_places() -> MutexGuard<'static, BTreeMap<usize, String>> {
-    PANIC_PLACES.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A number that no other living thread has: where its flag is.
-fn thread_number() -> usize {
-    IS_GUARDED.with(|flag| std::ptr::from_ref(flag).addr())
-}
-
-/// Keeps guarded panics off the console; others go where they went before.
-fn silence_guarded_panics() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let before = panic::take_hook();
-        panic::set_hook(Box::new(move |info| {
-            let is_worker = is_worker();
-            if is_worker || IS_GUARDED.get() {
-                if let Some(place) = info.location() {
-                    let thread = if is_worker { HELPER } else { thread_number() };
-                    panic_places().insert(thread, place.to_string());
-                }
-            } else {
-                before(info);
-            }
-        }));
-    });
-}
-
-/// Runs `body`; a panic becomes its message.
-pub(crate) fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
-    silence_guarded_panics();
-    let outer = IS_GUARDED.replace(true);
-    let result = panic::catch_unwind(AssertUnwindSafe(body));
-    IS_GUARDED.set(outer);
-    result.map_err(|payload| {
-        let mut places = panic_places();
-        let place = places.remove(&thread_number());
-        let place = place.or_else(|| places.remove(&HELPER));
-        drop(places);
-        let said = panic_text(payload.as_ref());
-        // A payload with a destructor that panics must not do so here.
-        std::mem::forget(payload);
-        format!(
-            "internal fault at {}: {said}; free this instance and please report it",
-            place.as_deref().unwrap_or("an unknown place")
-        )
-    })
-}
-
-fn panic_text(payload: &(dyn Any + Send)) -> String {
-    payload
-        .downcast_ref::<&str>()
-        .map(ToString::to_string)
-        .or_else(|| payload.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "no message".to_string())
-}
-
 /// Makes an instance and returns its handle; null and a message where it is refused. The message is sent even while
 /// logging is off: without an instance there is no other way to report the reason.
 pub(crate) fn instantiate(
@@ -178,8 +105,6 @@ pub(crate) fn instantiate(
     sink: Sink,
     make: impl FnOnce() -> Result<Instance, Refusal>,
 ) -> *mut c_void {
-    #[cfg(unix)]
-    moorline::dynamics::make_threads_aside(aside::run);
     match guard(make) {
         Ok(Ok(instance)) => Box::into_raw(Box::new(Handle {
             instance,
@@ -286,56 +211,13 @@ pub(crate) unsafe fn keep_text(handle: *mut c_void, text: &str) -> *const c_char
     handle.text.as_ptr()
 }
 
-/// Returns whether `count` values of type T can be at `pointer`.
-fn check_pointer<T>(pointer: *const T, count: usize) -> Result<(), Refusal> {
-    if pointer.is_null() {
-        return Err("a pointer is null".into());
-    }
-    if !pointer.is_aligned() {
-        return Err("a pointer is not aligned".into());
-    }
-    let bytes = count.checked_mul(size_of::<T>());
-    if bytes.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
-        return Err(Refusal(format!("{count} values are more than memory holds")));
-    }
-    Ok(())
-}
-
-/// The host's values.
-///
-/// # Safety
-/// A pointer that is not null points to `count` values that nothing changes during `'a`.
-pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> Result<&'a [T], Refusal> {
-    if count == 0 {
-        return Ok(&[]);
-    }
-    check_pointer(pointer, count)?;
-    // SAFETY: not null, aligned, of a possible length; the caller promises the rest.
-    Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
-}
-
-/// Room for the host's values.
-///
-/// # Safety
-/// A pointer that is not null points to `count` initialised values that nothing else uses during `'a`.
-pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
-    if count == 0 {
-        return Ok(&mut []);
-    }
-    check_pointer(pointer, count)?;
-    // SAFETY: not null, aligned, of a possible length; the caller promises the rest.
-    Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
-}
-
 /// Writes one result to the host's pointer.
 ///
 /// # Safety
 /// A pointer that is not null may be written to.
 pub(crate) unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), Refusal> {
-    check_pointer(pointer, 1)?;
-    // SAFETY: not null and aligned; the caller promises the rest. No destructor runs on what was there.
-    unsafe { pointer.write(value) };
-    Ok(())
+    // SAFETY: by the caller's promise.
+    Ok(unsafe { pointers::write(pointer, value) }?)
 }
 
 /// A text of the host; `None` if it is null or not UTF-8.
@@ -343,11 +225,8 @@ pub(crate) unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), Refusal> 
 /// # Safety
 /// A pointer that is not null points to a text that ends with a zero byte and lives during `'a`.
 pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a str> {
-    if pointer.is_null() {
-        return None;
-    }
-    // SAFETY: not null; the caller promises the rest.
-    unsafe { CStr::from_ptr(pointer) }.to_str().ok()
+    // SAFETY: by the caller's promise.
+    unsafe { pointers::text(pointer) }.ok()
 }
 
 /// Path or URI of the host, in any encoding; `None` if it is null.
@@ -383,7 +262,7 @@ pub(crate) unsafe fn texts<'a>(pointer: *const *const c_char, count: usize) -> R
 /// # Safety
 /// A `target` that is not null points to null or to a state of [`store_state`] that was not freed.
 pub(crate) unsafe fn store_state(target: *mut *mut c_void, snapshot: Snapshot) -> Result<(), Refusal> {
-    check_pointer(target, 1)?;
+    pointers::check(target, 1)?;
     // SAFETY: not null and aligned; the caller promises that it may be read and what it points to.
     unsafe {
         match (*target).cast::<Snapshot>().as_mut() {
@@ -411,7 +290,7 @@ pub(crate) unsafe fn free_state(target: *mut *mut c_void) -> Result<(), Refusal>
     if target.is_null() {
         return Ok(());
     }
-    check_pointer(target, 1)?;
+    pointers::check(target, 1)?;
     // SAFETY: not null and aligned; the caller promises where it comes from, and null keeps it from being freed again.
     unsafe {
         if !(*target).is_null() {
@@ -438,60 +317,6 @@ pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use moorline::dynamics::as_worker;
-
-    #[test]
-    fn a_guarded_panic_becomes_its_message_and_place() {
-        let message = guard(|| -> u32 { panic!("node {} lost", 7) }).unwrap_err();
-        assert!(message.contains("node 7 lost"), "{message}");
-        assert!(message.contains("ffi.rs"), "{message}");
-        assert_eq!(guard(|| 42), Ok(42));
-    }
-
-    #[test]
-    fn a_panic_of_a_helping_thread_becomes_its_message_and_place() {
-        let message = guard(|| {
-            std::thread::spawn(|| as_worker(|| panic!("line {} lost", 3)))
-                .join()
-                .unwrap_or_else(|payload| panic::resume_unwind(payload))
-        });
-        let message = message.unwrap_err();
-        assert!(message.contains("line 3 lost"), "{message}");
-        assert!(message.contains("ffi.rs"), "{message}");
-    }
-
-    #[test]
-    fn panics_in_many_threads_keep_their_own_messages_and_places() {
-        let here = |k: u32| {
-            let message = guard(|| -> u32 { panic!("number {k}") }).unwrap_err();
-            assert!(message.contains(&format!("number {k}")), "{message}");
-            assert!(message.contains("ffi.rs"), "{message}");
-        };
-        std::thread::scope(|scope| {
-            for k in 0..8 {
-                scope.spawn(move || (0..200).for_each(|_| here(k)));
-            }
-        });
-    }
-
-    #[test]
-    fn a_panic_with_any_payload_is_caught() {
-        let message = guard(|| std::panic::panic_any(42_u8)).unwrap_err();
-        assert!(message.contains("no message"), "{message}");
-    }
-
-    #[test]
-    fn pointers_that_cannot_be_slices_are_refused() {
-        let values = [1.0_f64, 2.0];
-        // SAFETY: null, misaligned and over-long pointers are refused before they are used.
-        unsafe {
-            assert!(slice(std::ptr::null::<f64>(), 1).is_err());
-            assert!(slice(values.as_ptr().byte_add(1), 1).is_err());
-            assert!(slice(values.as_ptr(), usize::MAX / 4).is_err());
-            assert_eq!(slice(std::ptr::null::<f64>(), 0).unwrap().len(), 0);
-            assert_eq!(slice(values.as_ptr(), 2).unwrap(), values);
-        }
-    }
 
     #[test]
     fn a_text_with_a_zero_byte_is_carried_with_a_space() {

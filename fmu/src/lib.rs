@@ -1,8 +1,6 @@
 //! moorline as an FMI co-simulation FMU: all functions of FMI 2.0 and of FMI 3.0 in one library, over one safe
-//! instance. The only unsafe code of the solver is here, in [`ffi`], [`fmi2`] and [`fmi3`].
+//! instance. Unsafe code is in [`ffi`], [`fmi2`] and [`fmi3`], and in [`moorline_boundary`].
 
-#[cfg(unix)]
-mod aside;
 mod ffi;
 mod fmi2;
 mod fmi3;

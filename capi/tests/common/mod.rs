@@ -63,16 +63,8 @@ impl Header {
             ..cbindgen::Config::default()
         };
         let builder = cbindgen::Builder::new().with_config(config);
-        let mut builder = builder.with_src(Path::new(self.package).join("src/lib.rs"));
-        let entries = std::fs::read_dir(Path::new(self.package).join("src")).unwrap();
-        let mut modules: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-        modules.retain(|path| {
-            path.extension().is_some_and(|ending| ending == "rs") && !path.ends_with("lib.rs")
-        });
-        modules.sort();
-        for module in modules {
-            builder = builder.with_src(module);
-        }
+        // the modules are found from here, each once
+        let builder = builder.with_src(Path::new(self.package).join("src/lib.rs"));
         let mut text = Vec::new();
         builder.generate().unwrap().write(&mut text);
         String::from_utf8(text).unwrap()
@@ -114,7 +106,7 @@ impl Header {
         run(&mut command);
     }
 
-    /// Claims that the library exports the functions of the header and no others.
+    /// Claims that the library exports the functions of the header, each declared once, and no others.
     pub fn assert_symbols(&self) {
         if !cfg!(target_os = "linux") || !has("nm") {
             return;
@@ -125,12 +117,14 @@ impl Header {
             .split("*/")
             .map(|part| part.split("/*").next().unwrap_or_default());
         let code: String = code.collect::<Vec<_>>().join("\n");
-        let declared: BTreeSet<String> = code
+        let declarations: Vec<String> = code
             .match_indices('(')
             .filter_map(|(at, _)| code[..at].rsplit(|c| !is_name(c)).next())
             .filter(|name| !name.is_empty() && !["defined"].contains(name))
             .map(ToString::to_string)
             .collect();
+        let declared: BTreeSet<String> = declarations.iter().cloned().collect();
+        assert_eq!(declarations.len(), declared.len());
         let listed = run(Command::new("nm")
             .args(["-D", "--defined-only"])
             .arg(library(self.library)));

@@ -28,10 +28,13 @@ fn thread_number() -> usize {
     IS_GUARDED.with(|flag| std::ptr::from_ref(flag).addr())
 }
 
-/// Keeps guarded panics off the console; others go where they went before.
-fn silence_guarded_panics() {
+/// Prepares the library at its first call: worker threads are made aside, and guarded panics are kept off the console; others go where they
+/// went before.
+fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
+        #[cfg(unix)]
+        moorline::dynamics::make_threads_aside(crate::aside::run);
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
             let is_worker = is_worker();
@@ -51,7 +54,7 @@ fn silence_guarded_panics() {
 /// # Errors
 /// The panic, with its place.
 pub fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
-    silence_guarded_panics();
+    prepare();
     let outer = IS_GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(body));
     IS_GUARDED.set(outer);
@@ -64,7 +67,7 @@ pub fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
         // A payload with a destructor that panics must not do so here.
         std::mem::forget(payload);
         format!(
-            "internal fault at {}: {text}; close this system and please report it",
+            "internal fault at {}: {text}; close this instance and please report it",
             place.as_deref().unwrap_or("an unknown place")
         )
     })
@@ -106,5 +109,19 @@ mod tests {
             message.contains("line 3 lost") && message.contains("guard.rs"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn panics_in_many_threads_keep_their_own_messages_and_places() {
+        let here = |k: u32| {
+            let message = guard(|| -> u32 { panic!("number {k}") }).unwrap_err();
+            assert!(message.contains(&format!("number {k}")), "{message}");
+            assert!(message.contains("guard.rs"), "{message}");
+        };
+        std::thread::scope(|scope| {
+            for k in 0..8 {
+                scope.spawn(move || (0..200).for_each(|_| here(k)));
+            }
+        });
     }
 }

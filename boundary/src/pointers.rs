@@ -8,8 +8,11 @@ use std::ffi::{CStr, c_char};
 /// Greatest length of a text of a host [bytes].
 pub const TEXT_MAX: usize = 1 << 24;
 
-/// Returns whether `count` values of type T can be at `pointer`.
-fn check<T>(pointer: *const T, count: usize) -> Result<(), String> {
+/// Checks that `count` values of type T can be at `pointer`.
+///
+/// # Errors
+/// The pointer is null, misaligned or over-long.
+pub fn check<T>(pointer: *const T, count: usize) -> Result<(), String> {
     if pointer.is_null() {
         return Err("a pointer is null".to_string());
     }
