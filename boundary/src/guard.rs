@@ -28,8 +28,8 @@ fn thread_number() -> usize {
     IS_GUARDED.with(|flag| std::ptr::from_ref(flag).addr())
 }
 
-/// Prepares the library at its first call: worker threads are made aside, and guarded panics are kept off the console; others go where they
-/// went before.
+/// Prepares the library at its first call: a separate thread creates worker threads, and guarded panics are kept off the console; others go
+/// where they went before.
 fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

@@ -200,7 +200,7 @@ impl<'a> Search<'a> {
         let mut scene = self.with(elements);
         if let Some(step) = self.step {
             let explicit = self.explicit_work(&scene);
-            if explicit.is_some_and(|explicit| explicit.of_axial_implicit(step) < explicit.work) {
+            if explicit.is_some_and(|explicit| explicit.axial_implicit_work(step) < explicit.work) {
                 return self.with_step(elements, step);
             }
         }
@@ -354,7 +354,7 @@ impl<'a> Search<'a> {
         let aim = AIM * self.scene.solver.tolerance;
         let mut step = self.longest_step();
         for _ in 0..=HALVINGS {
-            if explicit.of_axial_implicit(step) > WORTH * explicit.work {
+            if explicit.axial_implicit_work(step) > WORTH * explicit.work {
                 return None;
             }
             let record = self.run(&self.with_step(elements, step)).ok()??;
@@ -436,7 +436,7 @@ struct Explicit {
 
 impl Explicit {
     /// Cost of axial-implicit steps of a length [s], in explicit steps of an element [-].
-    fn of_axial_implicit(&self, step: f64) -> f64 {
+    fn axial_implicit_work(&self, step: f64) -> f64 {
         AXIAL_IMPLICIT_COST * self.element_time / step
     }
 }

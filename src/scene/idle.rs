@@ -144,7 +144,7 @@ impl Scene {
             "" if meshed && chosen && solver.tolerance != usual.tolerance =>
                 "elements and integrator are given, so that `tolerance` changes nothing";
             "" if (rests || meshed || solver.elements.is_some() || still) && solver.tolerance_of != usual.tolerance_of =>
-                "no trials with the motion of the scene select elements: `tolerance_of` changes nothing";
+                "elements are not selected by trials with the scene's motion: `tolerance_of` changes nothing";
         }
     }
 }
