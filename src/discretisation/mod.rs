@@ -18,7 +18,7 @@
 //!
 //! The runs of the ladder take axial-implicit steps where these cost less than explicit ones. Their length is the longest whose error, 4/3 of the
 //! distance to a run with half of it, is a quarter of the tolerance on a coarse mesh; the same is required on the mesh found, or else the
-//! ladder is run again with half the step. Of networks that are displaced copies of one another, moved alike, one is tried.
+//! ladder is run again with half the step, if the work allows. Of networks that are displaced copies of one another, moved alike, one is tried.
 //!
 //! The axial-implicit leapfrog costs about three times as much a step as the explicit one. On the mesh found it is tried with steps from the
 //! longest allowed down, as long as that is cheaper, and taken with the first step that keeps the error against the finest mesh; else

@@ -212,18 +212,15 @@ impl<'a> Search<'a> {
     pub(super) fn meshes(&mut self) -> Option<Vec<Mesh>> {
         let tolerance = self.scene.solver.tolerance;
         self.step = self.coarse_step();
-        self.climb(AIM * tolerance);
+        let mut spent = self.climb(AIM * tolerance);
         while let Some(step) = self.step
             && !self.is_accurate(step)
+            && self.work + 2.0 * spent <= WORK_MAX
         {
             self.step = Some(0.5 * step);
-            self.ladders = self
-                .networks
-                .lines
-                .iter()
-                .map(|lines| Ladder::new(lines))
-                .collect();
-            self.climb(AIM * tolerance);
+            let lines = self.networks.lines.iter();
+            self.ladders = lines.map(|lines| Ladder::new(lines)).collect();
+            spent = self.climb(AIM * tolerance);
         }
         let between = self.between(AIM * tolerance);
         let ladders = self.ladders.iter().zip(between);
@@ -286,8 +283,9 @@ impl<'a> Search<'a> {
         self.scene.solver.time_step_max.min(self.scene.output.interval)
     }
 
-    /// Runs the scene with more and more elements in those networks that need them.
-    fn climb(&mut self, aim: f64) {
+    /// Runs the scene with more and more elements in those networks that need them. Returns the cost in explicit steps of an element [-].
+    fn climb(&mut self, aim: f64) -> f64 {
+        let before = self.work;
         let mut last = 0.0;
         for rung in LADDER {
             let open = self.ladders.iter().any(|ladder| ladder.found.is_none());
@@ -309,6 +307,7 @@ impl<'a> Search<'a> {
                 }
             }
         }
+        self.work - before
     }
 
     /// Runs the scene once with elements between rungs where they are worth a trial; the trials that keep the error.
