@@ -40,8 +40,8 @@ pub(crate) fn package(
     version: FmiVersion,
     library: Library<'_>,
 ) -> Result<(), Failure> {
-    let library = library.find();
+    let binaries = library.find();
     let written =
-        library.and_then(|library| write_fmu(&loaded.scene, &loaded.text, version, &library, target));
+        binaries.and_then(|binaries| write_fmu(&loaded.scene, &loaded.text, version, &binaries, target));
     written.map_err(|error| Failure::of_package(error, loaded))
 }

@@ -22,10 +22,11 @@ mod terminal;
 
 use std::ffi::OsString;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Parser;
-use moorline::output::package::{PackageError, find_library};
+use moorline::output::binaries::Binaries;
+use moorline::output::package::PackageError;
 
 use arguments::{Arguments, Command};
 use failure::Failure;
@@ -34,20 +35,30 @@ use run::Pace;
 /// Exit code of a program that was called with wrong arguments.
 const USAGE: u8 = 2;
 
-/// Place of the FMU library that the program packages.
+/// FMU libraries of all platforms of a release, as `release/build` collects them, or the library for this platform.
+#[cfg(feature = "embedded-fmu")]
+const EMBEDDED: Option<&[u8]> = Some(include_bytes!(env!(
+    "MOORLINE_FMU_LIBRARIES",
+    "MOORLINE_FMU_LIBRARIES has to name the archive or the library that the feature embedded-fmu puts into the program"
+)));
+#[cfg(not(feature = "embedded-fmu"))]
+const EMBEDDED: Option<&[u8]> = None;
+
+/// Place of the FMU libraries that the program packages. Those inside the program come first.
 #[derive(Debug, Clone, Copy)]
 pub enum Library<'a> {
     /// In the folder of the program.
     BesideTheProgram,
-    /// A file.
-    At(&'a Path),
+    /// In another folder.
+    In(&'a Path),
 }
 
 impl Library<'_> {
-    fn find(self) -> Result<PathBuf, PackageError> {
-        match self {
-            Library::BesideTheProgram => find_library(),
-            Library::At(path) => Ok(path.to_path_buf()),
+    fn find(self) -> Result<Binaries, PackageError> {
+        match (EMBEDDED, self) {
+            (Some(embedded), _) => Binaries::of_bytes(embedded),
+            (None, Library::BesideTheProgram) => Binaries::beside_the_program(),
+            (None, Library::In(folder)) => Binaries::of_folder(folder),
         }
     }
 }

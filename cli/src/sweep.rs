@@ -96,7 +96,7 @@ fn summary(state: &Progress, ran: usize, wall: Duration) -> String {
 }
 
 /// The failed cases, with their reasons.
-fn failures(sweep: &Sweep<'_>, cases: &[Case], file: &Path) -> String {
+fn failures(sweep: &Sweep, cases: &[Case], file: &Path) -> String {
     let mut failed: Vec<(usize, &String)> = sweep
         .rows()
         .iter()

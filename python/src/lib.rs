@@ -6,6 +6,7 @@
 //! | [`simulation`] | a simulation that Python steps, and its saved state |
 //! | [`moordyn`] | a mooring by MoorDyn's interface |
 //! | [`runs`] | runs of a scene's own motion, one or many |
+//! | [`sweep`] | load cases |
 //! | [`motion`], [`parameters`] | columns of a motion, values of parameters |
 //! | [`aside`] | work on another thread while this one listens for Ctrl-C |
 //! | [`convert`] | values of Python from and to those of TOML and JSON |
@@ -23,26 +24,25 @@ mod parameters;
 mod runs;
 mod scene;
 mod simulation;
+mod sweep;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use moorline::output::fmi::library_name;
 use moorline_cli::Library;
 use pyo3::prelude::*;
 
-/// Place of the FMU library: in the folder of the package.
-fn fmu_library(py: Python<'_>) -> PyResult<PathBuf> {
-    let package: PathBuf = py.import("moorline")?.getattr("__file__")?.extract()?;
-    let name = format!("{}{}", std::env::consts::DLL_PREFIX, library_name("moorline_fmu"));
-    Ok(package.with_file_name(name))
+/// Folder of the package, which holds the FMU libraries.
+fn package_folder(py: Python<'_>) -> PyResult<PathBuf> {
+    let file: PathBuf = py.import("moorline")?.getattr("__file__")?.extract()?;
+    Ok(file.parent().unwrap_or(Path::new(".")).to_path_buf())
 }
 
 /// Runs the program `moorline` with its arguments, of which the first is its name, and returns the exit code.
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
-    let library = fmu_library(py)?;
-    Ok(py.detach(|| moorline_cli::main(arguments, Library::At(&library))))
+    let folder = package_folder(py)?;
+    Ok(py.detach(|| moorline_cli::main(arguments, Library::In(&folder))))
 }
 
 /// The extension module.
@@ -58,6 +58,8 @@ mod _moorline {
     use super::scene::{Scene, fmu};
     #[pymodule_export]
     use super::simulation::{Simulation, State};
+    #[pymodule_export]
+    use super::sweep::Sweep;
 
     /// Version of the package.
     #[pymodule_export]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use moorline::discretisation;
+use moorline::output::binaries::Binaries;
 use moorline::output::fmi::FmiVersion;
 use moorline::output::package::write_fmu;
 use moorline::output::{check_file, collect, modes};
@@ -18,7 +19,7 @@ use pyo3::types::PyDict;
 use crate::aside::aside;
 use crate::convert;
 use crate::errors::Failure;
-use crate::{fmu_library, motion, parameters};
+use crate::{motion, package_folder, parameters};
 
 /// Name of a text in messages.
 const TEXT: &str = "<text>";
@@ -318,18 +319,20 @@ pub(crate) fn fmu(py: Python<'_>, scene: &Scene, path: PathBuf, fmi: u8) -> PyRe
             return Err(Failure::of_argument("fmi", problem).into());
         }
     };
-    let library = fmu_library(py)?;
+    let folder = package_folder(py)?;
     let scene = scene.clone();
-    let packed = aside(py, None, move |_| package(&scene, &path, version, &library));
+    let packed = aside(py, None, move |_| package(&scene, &path, version, &folder));
     Ok(packed??)
 }
 
-fn package(scene: &Scene, target: &Path, version: FmiVersion, library: &Path) -> Result<(), Failure> {
+fn package(scene: &Scene, target: &Path, version: FmiVersion, folder: &Path) -> Result<(), Failure> {
     let name = target.display().to_string();
     check_file(target).map_err(|error| Failure::Output(name.clone(), error.to_string()))?;
     let loaded = scene.discretise();
     // A scene without an equilibrium would make an FMU that no host can start.
     Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?;
-    let written = write_fmu(&loaded.scene, &loaded.text, version, library, target);
+    let binaries = Binaries::of_folder(folder);
+    let written =
+        binaries.and_then(|binaries| write_fmu(&loaded.scene, &loaded.text, version, &binaries, target));
     written.map_err(|error| Failure::of_package(error, &loaded, name))
 }

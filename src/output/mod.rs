@@ -5,6 +5,7 @@
 //! whole ([`write_file`]).
 
 mod arrow_schema;
+pub mod binaries;
 pub mod channels;
 pub mod collect;
 pub mod csv;

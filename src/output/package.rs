@@ -1,17 +1,17 @@
-//! The .fmu container: description, scene and library in one zip file.
+//! The .fmu container: description, scene and libraries in one zip file.
 //!
-//! Deterministic: the same scene, library and version give the same bytes. Names have forward slashes, the library
+//! Deterministic: the same scene, libraries and version give the same bytes. Names have forward slashes, a library
 //! its run bit.
 
-use std::fs;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
+use super::binaries::Binaries;
 use super::description::{Description, MODEL_IDENTIFIER};
-use super::fmi::{FmiVersion, library_name, platform};
+use super::fmi::FmiVersion;
 use super::{OutputError, write_file};
 use crate::discretisation;
 use crate::scene::{Scene, SceneError};
@@ -27,15 +27,19 @@ pub enum PackageError {
     Scene(#[from] SceneError),
     /// The FMU library is missing.
     #[error(
-        "the FMU library {name} is not beside the program in {}: build it with `cargo build --release` in the workspace",
+        "the FMU library {name} is not in {}: build it with `cargo build --release -p moorline-fmu` in the workspace \
+         and copy it from target/release to there, or take a program of a release, which contains it",
         folder.display()
     )]
     NoLibrary {
         /// File name.
         name: String,
-        /// Folder of the program.
+        /// Folder that was searched.
         folder: PathBuf,
     },
+    /// An archive of libraries cannot be used.
+    #[error("the archive of FMU libraries: {0}")]
+    Archive(String),
     /// A file cannot be read.
     #[error("{}: {problem}", path.display())]
     File {
@@ -55,45 +59,19 @@ pub enum PackageError {
     Zip(#[from] zip::result::ZipError),
 }
 
-/// FMU library in the folder of the running program, or one folder up, the place for test programs.
-///
-/// # Errors
-/// Names the library and the folder where it was expected.
-pub fn find_library() -> Result<PathBuf, PackageError> {
-    let name = format!("{}{}", std::env::consts::DLL_PREFIX, library_name("moorline_fmu"));
-    let program = std::env::current_exe().map_err(|problem| PackageError::File {
-        path: PathBuf::from("the running program"),
-        problem,
-    })?;
-    let folder = program.parent().unwrap_or(Path::new("."));
-    [Some(folder), folder.parent()]
-        .into_iter()
-        .flatten()
-        .map(|folder| folder.join(&name))
-        .find(|path| path.is_file())
-        .ok_or_else(|| PackageError::NoLibrary {
-            name,
-            folder: folder.to_path_buf(),
-        })
-}
-
-/// Packages a scene with the FMU library into `target`, which gets its name when it is complete. `text` is the text
+/// Packages a scene with FMU libraries into `target`, which gets its name when it is complete. `text` is the text
 /// of the file that the scene was read from. The mesh is the present one of the scene, regardless of later inputs of
 /// a host.
 ///
 /// # Errors
-/// A scene that cannot be described, a library that cannot be read, a target that cannot be written.
+/// A scene that cannot be described, a target that cannot be written.
 pub fn write_fmu(
     scene: &Scene,
     text: &str,
     version: FmiVersion,
-    library: &Path,
+    binaries: &Binaries,
     target: &Path,
 ) -> Result<(), PackageError> {
-    let fail = |path: &Path| {
-        let path = path.to_path_buf();
-        move |problem| PackageError::File { path, problem }
-    };
     let frozen = discretisation::frozen(scene);
     let text = match &frozen {
         Some(frozen) => frozen.to_toml(),
@@ -101,8 +79,7 @@ pub fn write_fmu(
     };
     let scene = frozen.as_ref().unwrap_or(scene);
     let description = Description::new(&text, scene, version)?;
-    let binary = fs::read(library).map_err(fail(library))?;
-    let bytes = container(&description.xml, &text, version, &binary)?;
+    let bytes = container(&description.xml, &text, version, binaries)?;
     write_file(target, |out| out.write_all(&bytes))?;
     Ok(())
 }
@@ -120,22 +97,21 @@ fn container(
     description: &str,
     scene: &str,
     version: FmiVersion,
-    library: &[u8],
+    binaries: &Binaries,
 ) -> Result<Vec<u8>, PackageError> {
-    let platform = platform(version).ok_or(PackageError::Platform)?;
-    let library_path = format!("binaries/{platform}/{}", library_name(MODEL_IDENTIFIER));
-    let entries = [
-        ("modelDescription.xml", description.as_bytes(), 0o644),
-        (&library_path, library, 0o755),
-        (&format!("resources/{SCENE_FILE}"), scene.as_bytes(), 0o644),
-    ];
+    let scene_path = format!("resources/{SCENE_FILE}");
+    let mut entries = vec![("modelDescription.xml".to_string(), description.as_bytes(), 0o644)];
+    for (platform, library) in binaries.iter() {
+        entries.push((platform.path(version, MODEL_IDENTIFIER), library, 0o755));
+    }
+    entries.push((scene_path, scene.as_bytes(), 0o644));
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes, mode) in entries {
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
             .last_modified_time(DateTime::default())
             .unix_permissions(mode);
-        zip.start_file(name, options)?;
+        zip.start_file(&*name, options)?;
         zip.write_all(bytes).map_err(|problem| PackageError::File {
             path: PathBuf::from(name),
             problem,
@@ -150,7 +126,15 @@ mod tests {
 
     #[test]
     fn the_container_is_the_same_each_time_and_its_library_may_run() {
-        let make = || container("<xml/>", "title = \"\"", FmiVersion::Two, b"library").unwrap();
+        let make = || {
+            container(
+                "<xml/>",
+                "title = \"\"",
+                FmiVersion::Two,
+                &Binaries::of_bytes(b"library").unwrap(),
+            )
+            .unwrap()
+        };
         let bytes = make();
         assert_eq!(bytes, make());
         let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();

@@ -20,7 +20,7 @@ fn an_fmu_that_cannot_be_placed_is_refused() {
 fn place_library() {
     static PLACED: std::sync::Once = std::sync::Once::new();
     PLACED.call_once(|| {
-        let library = moorline::output::package::find_library().unwrap();
+        let library = moorline::output::binaries::find_library().unwrap();
         let beside = Path::new(env!("CARGO_BIN_EXE_moorline")).with_file_name(library.file_name().unwrap());
         if library != beside {
             let _ = fs::remove_file(&beside); // of an earlier build, or none

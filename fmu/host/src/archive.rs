@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use moorline::output::fmi::{FmiVersion, library_name, platform};
+use moorline::output::fmi::{FmiVersion, Platform};
 
 use crate::HostError;
 
@@ -31,11 +31,8 @@ pub(crate) fn library_path(
     version: FmiVersion,
     model_identifier: &str,
 ) -> Result<PathBuf, HostError> {
-    let platform = platform(version).ok_or(HostError::Platform)?;
-    Ok(folder
-        .join("binaries")
-        .join(platform)
-        .join(library_name(model_identifier)))
+    let platform = Platform::this().ok_or(HostError::Platform)?;
+    Ok(folder.join(platform.path(version, model_identifier)))
 }
 
 #[cfg(test)]

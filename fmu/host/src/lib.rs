@@ -67,6 +67,6 @@ mod status;
 pub use description::{Causality, Description, Variable, VariableType};
 pub use fmu::{Fmu, HostError};
 pub use log::LogMessage;
-pub use moorline::output::fmi::{FmiVersion, library_name, platform};
+pub use moorline::output::fmi::FmiVersion;
 pub use slave::{SavedState, Slave};
 pub use status::Status;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use moorline::output::binaries::{Binaries, find_library};
 use moorline::output::package;
 use moorline::scene::Scene;
 use moorline_host::{FmiVersion, Fmu};
@@ -19,7 +20,7 @@ fn copy_library(features: &[&str]) -> PathBuf {
     if !features.is_empty() {
         run_cargo(features);
     }
-    let built = package::find_library().unwrap();
+    let built = find_library().unwrap();
     let copy = folder.join(built.file_name().unwrap());
     std::fs::copy(&built, &copy).unwrap();
     if !features.is_empty() {
@@ -52,7 +53,8 @@ fn package(version: FmiVersion, features: &[&str], text: &str) -> &'static Path 
     PACKAGED[version as usize].get_or_init(|| {
         let fmu = library.with_file_name(format!("line{version}.fmu"));
         let scene = Scene::from_toml(text).unwrap();
-        package::write_fmu(&scene, text, version, library, &fmu).unwrap();
+        let binaries = Binaries::read(library).unwrap();
+        package::write_fmu(&scene, text, version, &binaries, &fmu).unwrap();
         fmu
     })
 }
