@@ -55,7 +55,13 @@ const PACKAGES: [(&str, &[&str]); 13] = [
     ("fmu/host", &["moorline"]),
     (
         "python",
-        &["moorline", "moorline-cli", "moorline-decks", "moorline-system"],
+        &[
+            "moorline",
+            "moorline-cli",
+            "moorline-decks",
+            "moorline-sweep",
+            "moorline-system",
+        ],
     ),
     ("sweep", &["moorline", "moorline-decks"]),
 ];

@@ -159,7 +159,7 @@ struct Target {
 ///
 /// # Errors
 /// All mistakes in the file, with their places: keys that lead nowhere, units, values that the scene refuses, files that are missing.
-pub fn cases(base: &Base, path: &Path, from: Option<f64>) -> Result<Vec<Case>, LoadError> {
+pub fn cases(base: &Base, path: &Path, from: Option<f64>) -> Result<Arc<[Case]>, LoadError> {
     let sheet = Sheet::read(path)?;
     let builder = Builder::new(base, &sheet, from)?;
     let checked: Vec<Result<Checked, Vec<SceneError>>> = (0..sheet.cases.len())
@@ -201,7 +201,7 @@ struct Checked {
 }
 
 /// Gives cases of one kind of system the same discretisation.
-fn with_kinds(checked: Vec<Checked>) -> Vec<Case> {
+fn with_kinds(checked: Vec<Checked>) -> Arc<[Case]> {
     let mut members: BTreeMap<[u8; 32], Vec<usize>> = BTreeMap::new();
     for (index, case) in checked.iter().enumerate() {
         members.entry(case.system).or_default().push(index);

@@ -41,6 +41,12 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
+    /// One number of all.
+    pub(crate) fn fingerprint(&self) -> [u8; SUM] {
+        let parts = [&self.scenes[..], &self.files, &self.options].concat();
+        Sha256::digest(parts).into()
+    }
+
     /// The difference of another sweep, in words that follow "it holds".
     fn difference(&self, other: &Identity) -> Option<String> {
         if self.scenes != other.scenes {

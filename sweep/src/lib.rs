@@ -1,7 +1,7 @@
 //! Load cases: a scene with other values of its keys, case by case, on all cores.
 //!
-//! [`cases`] reads a file of cases and checks each as a scene, [`run_case`] runs one, [`table()`] makes a table of rows; a scheduler of
-//! its own, such as Dask, needs no more. [`Sweep`] runs all of them on this machine into a folder, with a journal: it can be
+//! [`cases`] reads a file of cases and checks each as a scene, [`run_case`] runs one, [`table()`] makes a table of rows; another
+//! scheduler needs no more. [`Sweep`] runs all of them on this machine into a folder, with a journal: it can be
 //! killed at any moment, and goes on from there to the same table, bit for bit.
 //!
 //! ```no_run
@@ -32,8 +32,8 @@ use moorline::output::OutputError;
 pub use case::{Base, Case, Key, cases};
 pub use journal::JOURNAL;
 pub use row::{Figures, Quantity, Results, Row, TABLE, Table, table};
-pub use run::{SERIES, run_case};
-pub use sweep::{Progress, Sweep, shortfalls};
+pub use run::{SERIES, run_case, run_case_until};
+pub use sweep::{Progress, Sweep, fingerprint, shortfalls};
 
 /// Reason why a sweep does not run in a folder.
 #[derive(Debug, thiserror::Error)]

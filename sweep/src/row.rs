@@ -67,6 +67,26 @@ impl Row {
             notes,
         }
     }
+
+    /// The row as bytes for another process, without the values of its case.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let results = self.results.as_ref();
+        let results = results.map(|found| (&*found.quantities, &found.figures));
+        let ended = (self.case, results, &self.notes);
+        postcard::to_stdvec(&ended).expect("every row can be written")
+    }
+
+    /// Reads the row of one of these cases; `None` where the bytes are no such row.
+    pub fn of_bytes(bytes: &[u8], cases: &[Case]) -> Option<Row> {
+        let (number, results, notes): (usize, Result<(Vec<Quantity>, Vec<Figures>), String>, _) =
+            postcard::from_bytes(bytes).ok()?;
+        let case = number.checked_sub(1).and_then(|index| cases.get(index))?;
+        let results = results.map(|(quantities, figures)| Results {
+            quantities: Arc::new(quantities),
+            figures,
+        });
+        Some(Row::of(case, results, notes))
+    }
 }
 
 /// Columns and rows of a sweep.

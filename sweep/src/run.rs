@@ -57,10 +57,19 @@ pub fn run_case(case: &Case) -> Row {
         .row
 }
 
-/// Runs a case, with all results in time in a folder where one is given; `None` where `stops` becomes true.
+/// Runs a case as [`run_case`], with all results in time in a folder where one is given; `None` where `stops` becomes true.
 ///
 /// # Errors
 /// The series cannot be written.
+pub fn run_case_until(
+    case: &Case,
+    series: Option<&Path>,
+    stops: &dyn Fn() -> bool,
+) -> Result<Option<Row>, OutputError> {
+    Ok(run(case, series, stops)?.map(|done| done.row))
+}
+
+/// Runs a case as [`run_case_until`], and measures the time of its steps.
 pub(crate) fn run(
     case: &Case,
     series: Option<&Path>,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use moorline::output::{OutputError, make_folder};
@@ -22,12 +22,14 @@ const TABLE_EVERY: Duration = Duration::from_secs(60);
 
 /// Sweep into a folder, with the rows of earlier calls.
 #[derive(Debug)]
-pub struct Sweep<'c> {
-    cases: &'c [Case],
+pub struct Sweep {
+    cases: Arc<[Case]>,
     folder: PathBuf,
     series: Option<PathBuf>,
     journal: Journal,
     rows: Vec<Row>,
+    /// Time of the last table.
+    written: Instant,
 }
 
 /// State of a sweep, for its progress.
@@ -41,29 +43,55 @@ pub struct Progress {
     pub stepping: Duration,
 }
 
-impl<'c> Sweep<'c> {
+impl Sweep {
     /// Opens the folder, which is made where it is missing, and reads the rows of the cases that have ended there. With `series` all results in
     /// time of every case are kept too.
     ///
     /// # Errors
     /// The folder belongs to another sweep, is in use, or cannot be written into.
-    pub fn open(cases: &'c [Case], folder: &Path, series: bool) -> Result<Sweep<'c>, SweepError> {
+    pub fn open(cases: &Arc<[Case]>, folder: &Path, series: bool) -> Result<Sweep, SweepError> {
         make_folder(folder)?;
         let (journal, rows) = Journal::open(folder, &identity(cases, series)?, cases)?;
         let series = series.then(|| folder.join(SERIES));
         series.as_deref().map_or(Ok(()), make_folder)?;
         Ok(Sweep {
-            cases,
+            cases: cases.clone(),
             folder: folder.to_path_buf(),
             series,
             journal,
             rows,
+            written: Instant::now(),
         })
     }
 
     /// Rows of the cases that have ended, in the order of their ends.
     pub fn rows(&self) -> &[Row] {
         &self.rows
+    }
+
+    /// Folder of the series, where they are kept.
+    pub fn series(&self) -> Option<&Path> {
+        self.series.as_deref()
+    }
+
+    /// Numbers of the cases that have not ended, in their order.
+    pub fn left(&self) -> Vec<usize> {
+        let done: BTreeSet<usize> = self.rows.iter().map(|row| row.case).collect();
+        let numbers = self.cases.iter().map(|case| case.number);
+        numbers.filter(|number| !done.contains(number)).collect()
+    }
+
+    /// Keeps the row of a case that has ended, in the journal and, once a minute, in the table.
+    ///
+    /// # Errors
+    /// A file that the operating system refuses.
+    pub fn add(&mut self, mut row: Row) -> Result<(), SweepError> {
+        self.journal.add(&mut row)?;
+        self.rows.push(row);
+        if self.written.elapsed() >= TABLE_EVERY {
+            self.write_table()?;
+        }
+        Ok(())
     }
 
     /// Runs the cases that are left, until `stops` is true, and writes the table. `ended` is called at the end of each case. Returns the
@@ -76,15 +104,14 @@ impl<'c> Sweep<'c> {
         stops: &(dyn Fn() -> bool + Sync),
         ended: &(dyn Fn(&Row, Progress) + Sync),
     ) -> Result<Progress, SweepError> {
-        let done: BTreeSet<usize> = self.rows.iter().map(|row| row.case).collect();
-        let left = self.cases.iter().filter(|case| !done.contains(&case.number));
-        let left: Vec<&Case> = left.collect();
+        let (cases, left) = (self.cases.clone(), self.left());
         let series = self.series.clone();
         let is_broken = AtomicBool::new(false);
         let ends = || stops() || is_broken.load(Ordering::Relaxed);
         let state = Mutex::new(State::new(self));
         // one by one from a queue: a core that is free takes the next case
-        left.into_iter().par_bridge().for_each(|case| {
+        left.into_iter().par_bridge().for_each(|number| {
+            let case = &cases[number - 1];
             let outcome = match ends() {
                 true => Ok(None),
                 false => run(case, series.as_deref(), &ends),
@@ -108,21 +135,26 @@ impl<'c> Sweep<'c> {
         Ok(progress)
     }
 
-    fn write_table(&self) -> Result<(), SweepError> {
-        Ok(table(&self.rows).write(&self.folder)?)
+    /// Writes the table of the cases that have ended.
+    ///
+    /// # Errors
+    /// A file that the operating system refuses.
+    pub fn write_table(&mut self) -> Result<(), SweepError> {
+        table(&self.rows).write(&self.folder)?;
+        self.written = Instant::now();
+        Ok(())
     }
 }
 
 /// State of a sweep that is running.
-struct State<'s, 'c> {
-    sweep: &'s mut Sweep<'c>,
+struct State<'s> {
+    sweep: &'s mut Sweep,
     progress: Progress,
-    written: Instant,
     error: Option<SweepError>,
 }
 
-impl<'s, 'c> State<'s, 'c> {
-    fn new(sweep: &'s mut Sweep<'c>) -> Self {
+impl<'s> State<'s> {
+    fn new(sweep: &'s mut Sweep) -> Self {
         let failed = sweep.rows.iter().filter(|row| row.results.is_err()).count();
         State {
             progress: Progress {
@@ -131,7 +163,6 @@ impl<'s, 'c> State<'s, 'c> {
                 stepping: Duration::ZERO,
             },
             sweep,
-            written: Instant::now(),
             error: None,
         }
     }
@@ -139,22 +170,27 @@ impl<'s, 'c> State<'s, 'c> {
     /// Keeps the row of a case that has ended.
     fn add(
         &mut self,
-        mut row: Row,
+        row: Row,
         stepping: Duration,
         ended: &(dyn Fn(&Row, Progress) + Sync),
     ) -> Result<(), SweepError> {
-        self.sweep.journal.add(&mut row)?;
         self.progress.done += 1;
         self.progress.failed += usize::from(row.results.is_err());
         self.progress.stepping += stepping;
-        ended(&row, self.progress);
-        self.sweep.rows.push(row);
-        if self.written.elapsed() >= TABLE_EVERY {
-            self.sweep.write_table()?;
-            self.written = Instant::now();
+        self.sweep.add(row)?;
+        if let Some(row) = self.sweep.rows.last() {
+            ended(row, self.progress);
         }
         Ok(())
     }
+}
+
+/// Fingerprint of cases with all files that they name: the same on two machines if these read the same.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn fingerprint(cases: &[Case]) -> Result<[u8; 32], OutputError> {
+    Ok(identity(cases, false)?.fingerprint())
 }
 
 /// Fingerprint of a sweep.

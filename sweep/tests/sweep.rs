@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use moorline::scene::LoadError;
@@ -39,7 +40,7 @@ impl Folder {
         Base::load(&self.path("base.toml"), &Supplement::default()).unwrap()
     }
 
-    fn cases(&self, name: &str) -> Result<Vec<Case>, LoadError> {
+    fn cases(&self, name: &str) -> Result<Arc<[Case]>, LoadError> {
         cases(&self.base(), &self.path(&format!("cases/{name}")), None)
     }
 
@@ -58,7 +59,7 @@ fn refused(base: &str, name: &str, text: &str, parts: &[&str]) {
 }
 
 /// Runs a sweep until a number of cases have ended; returns whether all have.
-fn run(cases: &[Case], folder: &Path, most: usize) -> bool {
+fn run(cases: &Arc<[Case]>, folder: &Path, most: usize) -> bool {
     let mut sweep = Sweep::open(cases, folder, false).unwrap();
     let count = AtomicUsize::new(0);
     let stops = || count.load(Ordering::Relaxed) >= most;
@@ -211,7 +212,7 @@ fn the_folder_of_another_sweep_is_refused() {
     let out = folder.path("out");
     let cases = || folder.cases("cases.toml").unwrap();
     assert!(run(&cases(), &out, usize::MAX));
-    let refusal = |cases: &[Case], series: bool| match Sweep::open(cases, &out, series) {
+    let refusal = |cases: &Arc<[Case]>, series: bool| match Sweep::open(cases, &out, series) {
         Err(SweepError::Other { problem, .. }) => problem,
         other => panic!("{other:?}"),
     };

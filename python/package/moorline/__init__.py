@@ -17,8 +17,9 @@ from moorline.errors import Error, InputError, OutputError, SceneError, StaticsE
 from moorline.plotting import animate, plot, plot3d
 from moorline.results import Table
 from moorline.runs import Case, batch, run
+from moorline.sweeps import sweep
 
 __all__ = [
     "Case", "Error", "InputError", "OutputError", "Scene", "SceneError", "Simulation", "State", "StaticsError", "StepError", "Table",
-    "__version__", "animate", "batch", "fmu", "plot", "plot3d", "run",
+    "__version__", "animate", "batch", "fmu", "plot", "plot3d", "run", "sweep",
 ]

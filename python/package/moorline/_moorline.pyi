@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from moorline.errors import Error
 from moorline.results import Mode, PointState, Statics, Table
 
-__all__ = ["MoorDyn", "Scene", "Simulation", "State", "__version__", "batch", "fmu", "main", "run"]
+__all__ = ["MoorDyn", "Scene", "Simulation", "State", "Sweep", "__version__", "batch", "fmu", "main", "run"]
 __version__: str
 
 @final
@@ -146,6 +146,29 @@ def batch(scenes: Sequence[Scene], *, columns: Sequence[str] | None = None, shap
 
 def main(arguments: Sequence[str | os.PathLike[str]]) -> int:
     """Runs the program `moorline` with its arguments, of which the first is its name, and returns the exit code."""
+
+@final
+class Sweep:
+    """The cases of a sweep, and once it is opened its folder."""
+
+    def __new__(cls, base: str | os.PathLike[str], cases: str | os.PathLike[str], start: float | None = None) -> Self:
+        """Reads and checks the cases of a file with a base. `start` is the time from which results count [s]; None is the end of the ramps."""
+    def __len__(self) -> int:
+        """Number of cases."""
+    def fingerprint(self) -> str:
+        """Fingerprint of the cases and of all files that they name."""
+    def open(self, folder: str | os.PathLike[str], series: bool = False) -> list[int]:
+        """Opens the folder of the sweep, and returns the numbers of the cases that have not ended there."""
+    def close(self) -> None:
+        """Closes the folder."""
+    def run_case(self, number: int, folder: str | os.PathLike[str] | None = None) -> bytes:
+        """Runs a case by its number and returns its row as bytes. `folder` is that of a sweep with series."""
+    def add(self, row: bytes) -> None:
+        """Keeps the row of a case that ended elsewhere."""
+    def run(self, progress: Callable[[int, int], object] | None = None) -> None:
+        """Runs the cases that are left on all cores, and writes the table. Ctrl-C ends it, with the table of the cases that have ended."""
+    def table(self) -> Table:
+        """Writes the table of the cases that have ended, and returns it."""
 
 @final
 class MoorDyn:
