@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """Builds the wheel of the Python package: the FMU library is built and put into the package, then maturin does the rest.
 
-    python3 python/build.py [-o FOLDER] [--fmu-libraries ARCHIVE] [further arguments of maturin]
-
-`--fmu-libraries` puts an archive of FMU libraries of several platforms, which `release/build` makes, into the package instead.
+    python3 python/build.py [-o FOLDER] [further arguments of maturin]
 
 Needs a Rust toolchain, and maturin in the environment of the interpreter that runs this. The wheel holds for all versions of Python
-from 3.11 on.
+from 3.11 on. `release/build` makes the wheels of a release.
 """
 
 import argparse
@@ -19,7 +17,6 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGE = HERE / "package" / "moorline"
-ARCHIVE = "moorline_fmu.zip"
 LIBRARIES = ["libmoorline_fmu.so", "libmoorline_fmu.dylib", "moorline_fmu.dll"]
 
 
@@ -40,12 +37,11 @@ def fmu_library():
 def main():
     parser = argparse.ArgumentParser(description="Builds the wheel of the Python package.")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=HERE / "dist", help="folder for the wheel")
-    parser.add_argument("--fmu-libraries", type=pathlib.Path, help="archive of FMU libraries in place of the one for this platform")
     options, others = parser.parse_known_args()
-    library = options.fmu_libraries or fmu_library()
-    for name in (ARCHIVE, *LIBRARIES):
+    library = fmu_library()
+    for name in LIBRARIES:
         (PACKAGE / name).unlink(missing_ok=True)
-    shutil.copy2(library, PACKAGE / (ARCHIVE if options.fmu_libraries else library.name))
+    shutil.copy2(library, PACKAGE / library.name)
     maturin = [sys.executable, "-m", "maturin", "build", "--release", "--locked", "--interpreter", sys.executable]
     subprocess.run([*maturin, "--out", options.output.resolve(), *others], cwd=HERE, check=True)
 

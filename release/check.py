@@ -7,8 +7,12 @@ import re
 import lief
 
 SYSTEM_DLLS = re.compile(
-    r"(?i)(api-ms-win-.*|advapi32|bcrypt|bcryptprimitives|kernel32|msvcrt|ntdll|shell32|user32|userenv|ucrtbase|vcruntime140(_1)?|ws2_32)\.dll")
-"""Libraries that every Windows has, and those of the compiler of Microsoft."""
+    r"(?i)(api-ms-win-.*|advapi32|bcrypt|bcryptprimitives|kernel32|msvcrt|ntdll|python3|shell32|user32|userenv|ucrtbase|vcruntime140(_1)?|ws2_32)\.dll")
+"""Libraries that every Windows has, those of the compiler of Microsoft, and that of the interpreter for a module of Python."""
+
+
+LINUX_LIBRARIES = re.compile(r"(ld-linux-\S+|lib(c|dl|gcc_s|m|pthread|rt))\.so\.\d+")
+"""Libraries that every Linux with glibc has: of those that manylinux allows."""
 
 
 class Wrong(Exception):
@@ -66,13 +70,16 @@ def program(path, glibc, root):
 
 
 def check_elf(path, binary, glibc):
-    """Claims that an ELF file needs no younger glibc and is stripped."""
+    """Claims that an ELF file needs no younger glibc and no other library, and is stripped."""
     number = lambda version: tuple(map(int, version.split(".")))
     needed = {one.name for group in binary.symbols_version_requirement for one in group.get_auxiliary_symbols()}
     versions = [name.removeprefix("GLIBC_") for name in needed if re.fullmatch(r"GLIBC_[\d.]+", name)]
     younger = sorted(version for version in versions if number(version) > number(glibc))
     if younger:
         raise Wrong(f"{path.name}: it needs symbols of glibc {', '.join(younger)}, younger than {glibc}")
+    others = sorted(name for name in binary.libraries if not LINUX_LIBRARIES.fullmatch(name))
+    if others:
+        raise Wrong(f"{path.name}: it needs {', '.join(others)}, which a Linux may not have")
     if any(section.name == ".symtab" for section in binary.sections):
         raise Wrong(f"{path.name}: it is not stripped")
     print(f"{path.name}: glibc {max(versions, key=number, default='none')} at most, {path.stat().st_size / 1e6:.2f} MB")

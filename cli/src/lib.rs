@@ -54,7 +54,11 @@ pub enum Library<'a> {
 }
 
 impl Library<'_> {
-    fn find(self) -> Result<Binaries, PackageError> {
+    /// The libraries.
+    ///
+    /// # Errors
+    /// A file that is missing or cannot be read.
+    pub fn find(self) -> Result<Binaries, PackageError> {
         match (EMBEDDED, self) {
             (Some(embedded), _) => Binaries::of_bytes(embedded),
             (None, Library::BesideTheProgram) => Binaries::beside_the_program(),

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use moorline::discretisation;
-use moorline::output::binaries::Binaries;
 use moorline::output::fmi::FmiVersion;
 use moorline::output::package::write_fmu;
 use moorline::output::{check_file, collect, modes};
 use moorline::scene::{Integrator, LoadError, LoadedScene, Note, load_text};
 use moorline::simulation::Simulation;
+use moorline_cli::Library;
 use moorline_decks::{Supplement, load_with};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -331,7 +331,7 @@ fn package(scene: &Scene, target: &Path, version: FmiVersion, folder: &Path) -> 
     let loaded = scene.discretise();
     // A scene without an equilibrium would make an FMU that no host can start.
     Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?;
-    let binaries = Binaries::of_folder(folder);
+    let binaries = Library::In(folder).find();
     let written =
         binaries.and_then(|binaries| write_fmu(&loaded.scene, &loaded.text, version, &binaries, target));
     written.map_err(|error| Failure::of_package(error, &loaded, name))

@@ -15,7 +15,7 @@ import moorline
 from conftest import CHAIN, ROOT
 from moorline import sweeps
 
-CASES = "lines.line1.length [m],motion.fairlead.x[0][0] [m]\n" + "".join(f"{450 + k},{1.0 + 0.1 * k}\n" for k in range(12))
+CASES = "lines.line1.length [m],motion.fairlead.x[0][0]\n" + "".join(f"{450 + k},{1.0 + 0.1 * k}\n" for k in range(12))
 BROKEN = CASES + "450,1e7\n"
 FILES = ["cases.csv", "cases.parquet", "cases.units.csv"]
 
