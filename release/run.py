@@ -5,7 +5,8 @@
 
 For every platform of which DIST holds the program: it is copied alone into an empty folder, where it makes an FMU and runs the demo, which loads
 an FMU as a host does. The FMU must hold the libraries of all platforms of the release. Windows programs run under wine, those for aarch64 under
-qemu-aarch64-static with the libc of Debian's libc6-arm64-cross; what cannot run here is named with the reason. On the platform of this machine FMPy
+qemu-aarch64-static with the libc of Debian's libc6-arm64-cross; what cannot run here is named with the reason. Wine 8 of Debian 12 has no
+bcryptprimitives.dll, which every program of Rust needs for one function: mingw builds a stand-in of it for wine. On the platform of this machine FMPy
 simulates the FMU too, and a C compiler builds and runs the host of capi/examples with the libraries of the release.
 """
 
@@ -26,6 +27,12 @@ THIS = f"{MACHINE}-{platform.system().lower()}"
 ARM_LIBC = pathlib.Path("/usr/aarch64-linux-gnu")
 FOLDERS = {"x86_64-linux": "linux64", "x86_64-windows": "win64", "x86_64-darwin": "darwin64"}
 """Folders of FMI 2.0 where they are not the names of platforms."""
+RANDOM = """
+#include <windows.h>
+BOOLEAN NTAPI SystemFunction036(PVOID, ULONG);
+__declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE data, SIZE_T size) { return SystemFunction036(data, (ULONG)size); }
+"""
+"""The function of bcryptprimitives.dll, by that of advapi32.dll."""
 
 
 def runner(name):
@@ -33,8 +40,7 @@ def runner(name):
     if name == THIS:
         return []
     if name == "x86_64-windows" and THIS == "x86_64-linux":
-        wine = shutil.which("wine64") or shutil.which("wine")
-        return [wine] if wine else "wine is not installed"
+        return ["wine"] if shutil.which("wine") else "wine is not installed"
     if name == "aarch64-linux" and THIS == "x86_64-linux":
         qemu = shutil.which("qemu-aarch64-static")
         if qemu is None or not ARM_LIBC.is_dir():
@@ -51,6 +57,16 @@ def run(words, folder, **environment):
     return done.stdout
 
 
+def wine_settings(folder):
+    """Environment of wine: a fresh prefix in a folder, no messages, and the library that old versions lack."""
+    library = folder / "bcryptprimitives.dll"
+    compiler = shutil.which("x86_64-w64-mingw32-gcc")
+    if compiler is not None:
+        (folder / "random.c").write_text(RANDOM)
+        run([compiler, "-shared", "-o", library, folder / "random.c", "-ladvapi32"], folder)
+    return {"WINEPREFIX": str(folder / "prefix"), "WINEDEBUG": "-all", "WINEPATH": f"Z:{folder}".replace("/", "\\")}
+
+
 def unpack(archive, folder):
     """Unpacks the file of a platform and returns the folder in it."""
     if archive.suffix == ".zip":
@@ -61,15 +77,15 @@ def unpack(archive, folder):
     return inner
 
 
-def alone(program, words, platforms, folder):
+def alone(program, words, platforms, folder, settings):
     """Runs a program in an empty folder and returns the FMU that it made."""
     folder.mkdir()
     program = shutil.copy2(program, folder)
     (folder / "scene.toml").write_bytes(SCENE.read_bytes())
     call = [*words, program]
-    print("  ", run([*call, "--version"], folder).strip())
-    run([*call, "fmu", "scene.toml", "-o", "scene.fmu"], folder)
-    run([*call, "demo", "-o", "demo"], folder)
+    print("  ", run([*call, "--version"], folder, **settings).strip())
+    run([*call, "fmu", "scene.toml", "-o", "scene.fmu"], folder, **settings)
+    run([*call, "demo", "-o", "demo"], folder, **settings)
     with zipfile.ZipFile(folder / "scene.fmu") as fmu:
         found = {name.split("/")[1] for name in fmu.namelist() if name.startswith("binaries/")}
     if found != {FOLDERS.get(name, name) for name in platforms} or not (folder / "demo" / "report.html").is_file():
@@ -118,7 +134,8 @@ def main():
             (folder / "release").mkdir()
             release = unpack(archive, folder / "release")
             program = release / ("moorline.exe" if name.endswith("windows") else "moorline")
-            fmu = alone(program, words, platforms, folder / "alone")
+            settings = wine_settings(folder) if words == ["wine"] else {}
+            fmu = alone(program, words, platforms, folder / "alone", settings)
             if name == THIS:
                 in_fmpy(fmu)
                 in_c(release, folder)
