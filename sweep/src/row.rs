@@ -44,6 +44,9 @@ pub struct Results {
     pub figures: Vec<Figures>,
 }
 
+/// Quantities and the figures of each, as they are sent.
+type Listed = (Vec<Quantity>, Vec<Figures>);
+
 /// Result of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -78,7 +81,7 @@ impl Row {
 
     /// Reads the row of one of these cases; `None` where the bytes are no such row.
     pub fn of_bytes(bytes: &[u8], cases: &[Case]) -> Option<Row> {
-        let (number, results, notes): (usize, Result<(Vec<Quantity>, Vec<Figures>), String>, _) =
+        let (number, results, notes): (usize, Result<Listed, String>, Vec<String>) =
             postcard::from_bytes(bytes).ok()?;
         let case = number.checked_sub(1).and_then(|index| cases.get(index))?;
         let results = results.map(|(quantities, figures)| Results {
