@@ -110,7 +110,11 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { output } => manual::man(output.as_deref()),
         Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.supplement()),
-        Command::Fmu { input, output, fmi } => fmu::fmu(&input, &output, &fmi, library),
+        Command::Fmu { made, verify } => match (made, verify) {
+            (_, Some(verify)) => fmu::verify(&verify),
+            (Some(made), None) => fmu::fmu(&made, library),
+            (None, None) => unreachable!("one of them is required"),
+        },
         Command::Accuracy {
             scenes,
             output,
