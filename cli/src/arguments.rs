@@ -114,10 +114,10 @@ pub(crate) enum Command {
     /// the same bytes.
     Fmu {
         #[command(flatten)]
-        made: Option<Made>,
-        /// Replay the reference results in an FMU; exit code 1 where they are not met
-        #[arg(long, value_name = "FILE", exclusive = true)]
-        verify: Option<PathBuf>,
+        made: Made,
+        /// Replay the reference results in an FMU, given in place of the scene; exit code 1 where they are not met
+        #[arg(long, conflicts_with_all = ["output", "author", "ssp"])]
+        verify: bool,
     },
     /// Speed against error on this machine: meshes, integrators and steps against a converged solution
     Accuracy {
@@ -158,8 +158,8 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 pub(crate) struct Made {
     /// The .fmu file
-    #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "FILE", required_unless_present = "verify")]
+    pub output: Option<PathBuf>,
     /// Version of FMI
     #[arg(long, default_value = "2", value_name = "VERSION", value_parser = ["2", "3"])]
     pub fmi: String,

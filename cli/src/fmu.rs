@@ -17,8 +17,8 @@ use crate::folder::{Folder, check_apart};
 use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
-pub(crate) fn fmu(made: &Made, library: Library<'_>) -> Result<(), Failure> {
-    let (input, target) = (&made.input, &*made.output);
+pub(crate) fn fmu(made: &Made, target: &Path, library: Library<'_>) -> Result<(), Failure> {
+    let input = &made.input;
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     check_file(target)?;
     check_apart(&input.scene, target)?;

@@ -110,10 +110,9 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { output } => manual::man(output.as_deref()),
         Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.supplement()),
-        Command::Fmu { made, verify } => match (made, verify) {
-            (_, Some(verify)) => fmu::verify(&verify),
-            (Some(made), None) => fmu::fmu(&made, library),
-            (None, None) => unreachable!("one of them is required"),
+        Command::Fmu { made, verify } => match made.output.as_deref() {
+            Some(target) if !verify => fmu::fmu(&made, target, library),
+            _ => fmu::verify(&made.input.scene),
         },
         Command::Accuracy {
             scenes,
