@@ -126,6 +126,15 @@ units! {
 }
 
 impl Unit {
+    /// Base units with their exponents other than 0.
+    pub(crate) fn exponents(&self) -> Vec<(&'static str, String)> {
+        let exponents = [("kg", self.kg), ("m", self.m), ("s", self.s), ("rad", self.rad)];
+        let present = exponents.into_iter().filter(|(_, exponent)| *exponent != 0);
+        present
+            .map(|(base, exponent)| (base, exponent.to_string()))
+            .collect()
+    }
+
     /// Unit written as `N m²` in a doc comment or the scene format; dimensionless where it is unknown.
     fn of_scene(text: &str) -> Unit {
         let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
@@ -231,6 +240,8 @@ pub struct Variable {
     pub dimension: Option<usize>,
     /// Value before the host sets one; inputs and parameters have one.
     pub start: Option<f64>,
+    /// Least and greatest value, in its unit; none where the type alone limits it.
+    pub range: [Option<f64>; 2],
     /// Value references that it depends on during initialization; outputs and calculated parameters only. After
     /// initialization outputs change with a step only and so depend on nothing that is set between two steps.
     pub initial_dependencies: Vec<u32>,
@@ -292,7 +303,7 @@ impl Interface {
             check_name(name, &format!("line_types.{name}"))?;
         }
         variables.extend(parameters::variables(scene));
-        if scene.output.profile {
+        if scene.output.profile.is_given() {
             profile::push(&mut variables, model, layout);
         }
         check_unique(&variables)?;
@@ -479,7 +490,7 @@ mod tests {
     #[test]
     fn profiles_stand_last_and_move_no_other_variable() {
         let mut plain = scene();
-        plain.output.profile = false;
+        plain.output.profile = crate::scene::Profile::None;
         let without = interface_of(&plain, Layout::Scalars);
         for layout in [Layout::Scalars, Layout::Arrays] {
             let with = interface(layout);

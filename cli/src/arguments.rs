@@ -109,15 +109,15 @@ pub(crate) enum Command {
         host: FromHost,
     },
     /// Package a scene as an FMU for co-simulation
+    ///
+    /// The date of SOURCE_DATE_EPOCH, where the environment has it, is written into the description; else there is none, and the same scene gives
+    /// the same bytes.
     Fmu {
-        /// The .fmu file
-        #[arg(short, long, value_name = "FILE")]
-        output: PathBuf,
-        /// Version of FMI
-        #[arg(long, default_value = "2", value_name = "VERSION", value_parser = ["2", "3"])]
-        fmi: String,
         #[command(flatten)]
-        input: Input,
+        made: Made,
+        /// Replay the reference results in an FMU, given in place of the scene; exit code 1 where they are not met
+        #[arg(long, conflicts_with_all = ["output", "author", "ssp"])]
+        verify: bool,
     },
     /// Speed against error on this machine: meshes, integrators and steps against a converged solution
     Accuracy {
@@ -152,6 +152,25 @@ pub(crate) enum Command {
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
+}
+
+/// FMU to be packaged.
+#[derive(Debug, Args)]
+pub(crate) struct Made {
+    /// The .fmu file
+    #[arg(short, long, value_name = "FILE", required_unless_present = "verify")]
+    pub output: Option<PathBuf>,
+    /// Version of FMI
+    #[arg(long, default_value = "2", value_name = "VERSION", value_parser = ["2", "3"])]
+    pub fmi: String,
+    /// Author of the model, for the description
+    #[arg(long, value_name = "NAME")]
+    pub author: Option<String>,
+    /// Write a system of SSP 1.0 that holds the FMU, with connectors for the motion of the body and the force on it
+    #[arg(long)]
+    pub ssp: bool,
+    #[command(flatten)]
+    pub input: Input,
 }
 
 /// Input file, with the data that a deck leaves to its host.

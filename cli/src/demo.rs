@@ -8,6 +8,7 @@ use moorline::discretisation;
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
 use moorline::output::files::RunFiles;
+use moorline::output::package::{Container, Stamp};
 use moorline::output::record::{Frame, Node, Record};
 use moorline::output::times::Times;
 use moorline::output::{collect, write_report};
@@ -32,7 +33,8 @@ pub(crate) fn demo(folder: &Path, library: Library<'_>) -> Result<(), Failure> {
     discretise(&mut loaded, discretisation::select);
     let _open = Folder::open(folder)?;
     let target = folder.join("demo.fmu");
-    package(&loaded, &target, FmiVersion::Two, library)?;
+    let plain = (Container::Fmu, &Stamp::default());
+    package(&loaded, &target, FmiVersion::Two, plain, library)?;
     let reference = simulate(&loaded)?;
     let record = drive(&target, &loaded.scene, &reference, folder)?;
     write_report(&record, &loaded.scene, folder)?;

@@ -125,7 +125,10 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { output } => manual::man(output.as_deref()),
         Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.supplement()),
-        Command::Fmu { input, output, fmi } => fmu::fmu(&input, &output, &fmi, library),
+        Command::Fmu { made, verify } => match made.output.as_deref() {
+            Some(target) if !verify => fmu::fmu(&made, target, library),
+            _ => fmu::verify(&made.input.scene),
+        },
         Command::Accuracy {
             scenes,
             output,

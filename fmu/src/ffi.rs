@@ -10,7 +10,7 @@ use moorline_boundary::guard::guard;
 use moorline_boundary::pointers;
 pub(crate) use moorline_boundary::pointers::{slice, slice_mut};
 use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
-use moorline_host::fmi3::fmi3LogMessageCallback;
+use moorline_host::fmi3::{fmi3IntermediateUpdateCallback, fmi3LogMessageCallback};
 use moorline_host::{FmiVersion, Status};
 
 use crate::instance::{Instance, Refusal};
@@ -22,10 +22,53 @@ pub(crate) struct Handle {
     instance: Instance,
     version: FmiVersion,
     sink: Sink,
+    /// The host's function within communication steps, with permission to end them.
+    update: Option<Update>,
     /// A call panicked: nothing but free is served any more.
     is_poisoned: bool,
     /// Text given to the host; it lives until the next one.
     text: CString,
+}
+
+/// The host's function within communication steps.
+#[derive(Clone, Copy)]
+pub(crate) struct Update {
+    pub(crate) callback: fmi3IntermediateUpdateCallback,
+    pub(crate) environment: *mut c_void,
+    /// True if the host may end a step there.
+    pub(crate) may_end: bool,
+}
+
+/// Calls the host's function at a time [s] within a step; true if the host ends the step.
+///
+/// # Safety
+/// `handle` is null or a live handle that no other call is using; none of its instance is borrowed, since the host calls it.
+pub(crate) unsafe fn update(handle: *mut c_void, time: f64) -> bool {
+    // SAFETY: by the caller's promise; the copy does not borrow the handle.
+    let update = unsafe { handle.cast::<Handle>().as_ref() }.and_then(|handle| handle.update);
+    let Some(Update {
+        callback: Some(callback),
+        environment,
+        may_end,
+    }) = update
+    else {
+        return false;
+    };
+    let (mut ends, mut at) = (false, time);
+    // SAFETY: the host's function and environment; both results live on this stack frame.
+    unsafe {
+        callback(
+            environment,
+            time,
+            true,
+            true,
+            true,
+            may_end,
+            &raw mut ends,
+            &raw mut at,
+        );
+    }
+    may_end && ends
 }
 
 /// Destination of messages.
@@ -103,6 +146,7 @@ fn c_text(text: &str) -> CString {
 pub(crate) fn instantiate(
     version: FmiVersion,
     sink: Sink,
+    update: Option<Update>,
     make: impl FnOnce() -> Result<Instance, Refusal>,
 ) -> *mut c_void {
     match guard(make) {
@@ -110,6 +154,7 @@ pub(crate) fn instantiate(
             instance,
             version,
             sink,
+            update,
             is_poisoned: false,
             text: CString::default(),
         }))

@@ -86,7 +86,7 @@ unsafe extern "C" fn fmi2Instantiate(
     // SAFETY: the host's callbacks and texts.
     unsafe {
         let sink = Sink::two(functions, instanceName);
-        ffi::instantiate(VERSION, sink, || {
+        ffi::instantiate(VERSION, sink, None, || {
             if fmuType != fmi2CoSimulation {
                 return Err("fmi2Instantiate: this FMU offers co-simulation, not model exchange".into());
             }

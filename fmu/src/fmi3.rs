@@ -5,10 +5,10 @@
 
 use moorline::interface::Kind;
 use moorline_host::fmi3::*;
-use moorline_host::{FmiVersion, fmi3_functions};
+use moorline_host::{FmiVersion, Status, fmi3_functions};
 
-use crate::ffi::{self, Sink};
-use crate::instance::{Instance, Refusal};
+use crate::ffi::{self, Sink, Update};
+use crate::instance::{Instance, Parts, Refusal};
 
 const VERSION: FmiVersion = FmiVersion::Three;
 
@@ -139,7 +139,7 @@ fn refuse_kind(
     logger: fmi3LogMessageCallback,
 ) -> fmi3Instance {
     let sink = Sink::Three { logger, environment };
-    ffi::instantiate(VERSION, sink, || {
+    ffi::instantiate(VERSION, sink, None, || {
         Err(Refusal(format!("this FMU offers co-simulation, not {kind}")))
     })
 }
@@ -152,29 +152,35 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
     _visible: fmi3Boolean,
     loggingOn: fmi3Boolean,
     eventModeUsed: fmi3Boolean,
-    _earlyReturnAllowed: fmi3Boolean,
-    _requiredIntermediateVariables: *const fmi3ValueReference,
-    _nRequiredIntermediateVariables: usize,
+    earlyReturnAllowed: fmi3Boolean,
+    requiredIntermediateVariables: *const fmi3ValueReference,
+    nRequiredIntermediateVariables: usize,
     instanceEnvironment: fmi3InstanceEnvironment,
     logMessage: fmi3LogMessageCallback,
-    _intermediateUpdate: fmi3IntermediateUpdateCallback,
+    intermediateUpdate: fmi3IntermediateUpdateCallback,
 ) -> fmi3Instance {
     let sink = Sink::Three {
         logger: logMessage,
         environment: instanceEnvironment,
     };
-    // SAFETY: the host's texts.
-    ffi::instantiate(VERSION, sink, || unsafe {
+    let update = intermediateUpdate.map(|callback| Update {
+        callback: Some(callback),
+        environment: instanceEnvironment,
+        may_end: earlyReturnAllowed,
+    });
+    // SAFETY: the host's texts and array.
+    ffi::instantiate(VERSION, sink, update, || unsafe {
         if eventModeUsed {
             return Err("fmi3InstantiateCoSimulation: this FMU has no event mode".into());
         }
-        Instance::new(
-            VERSION,
-            ffi::text(instantiationToken),
-            ffi::location(resourcePath),
-            loggingOn,
-        )
-        .map_err(|Refusal(why)| Refusal(format!("fmi3InstantiateCoSimulation: {why}")))
+        let announced = ffi::slice(requiredIntermediateVariables, nRequiredIntermediateVariables)?;
+        let (token, resources) = (ffi::text(instantiationToken), ffi::location(resourcePath));
+        let mut instance = Instance::new(VERSION, token, resources, loggingOn)
+            .map_err(|Refusal(why)| Refusal(format!("fmi3InstantiateCoSimulation: {why}")))?;
+        if update.is_some() {
+            instance.announce(announced);
+        }
+        Ok(instance)
     })
 }
 
@@ -410,6 +416,7 @@ unsafe extern "C" fn fmi3GetFMUState(instance: fmi3Instance, FMUState: *mut fmi3
     // SAFETY: the host's handle and state.
     unsafe {
         ffi::call(instance, VERSION, "fmi3GetFMUState", |instance| {
+            instance.expect_no_update()?;
             ffi::store_state(FMUState, instance.snapshot())
         })
     }
@@ -492,15 +499,31 @@ unsafe extern "C" fn fmi3DoStep(
     earlyReturn: *mut fmi3Boolean,
     lastSuccessfulTime: *mut fmi3Float64,
 ) -> fmi3Status {
-    // SAFETY: the host's handle and results.
+    let mut parts = None;
+    // SAFETY: the host's handle and results. No call borrows the instance while the host is called between parts.
     unsafe {
-        ffi::call(instance, VERSION, "fmi3DoStep", |instance| {
-            ffi::write(eventHandlingNeeded, false)?;
-            ffi::write(terminateSimulation, false)?;
-            ffi::write(earlyReturn, false)?;
-            ffi::write(lastSuccessfulTime, instance.time())?;
-            instance.do_step(currentCommunicationPoint, communicationStepSize)?;
-            ffi::write(lastSuccessfulTime, instance.time())
-        })
+        loop {
+            let status = ffi::call(instance, VERSION, "fmi3DoStep", |instance| {
+                ffi::write(eventHandlingNeeded, false)?;
+                ffi::write(terminateSimulation, false)?;
+                ffi::write(earlyReturn, false)?;
+                ffi::write(lastSuccessfulTime, instance.time())?;
+                if parts.is_none() {
+                    parts = Some(instance.divide(currentCommunicationPoint, communicationStepSize)?);
+                }
+                let made = parts.as_mut().map_or(Ok(()), |parts| instance.make_part(parts));
+                ffi::write(lastSuccessfulTime, instance.time())?;
+                made
+            });
+            if status != Status::Ok as u32 || parts.as_ref().is_none_or(Parts::are_done) {
+                return status;
+            }
+            if ffi::update(instance, *lastSuccessfulTime) {
+                return ffi::call(instance, VERSION, "fmi3DoStep", |instance| {
+                    instance.end_early()?;
+                    ffi::write(earlyReturn, true)
+                });
+            }
+        }
     }
 }

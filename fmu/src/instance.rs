@@ -5,6 +5,7 @@
 //! `Discard`, since a smaller communication step cannot help a solver that has already substepped.
 
 mod access;
+mod parts;
 
 use moorline::interface::{Binding, Interface};
 use moorline::model::Body;
@@ -12,6 +13,8 @@ use moorline::output::description::{Description, VERSION, time_reference};
 use moorline::scene::{Note, Scene};
 use moorline::simulation::{Simulation, Watch};
 use moorline_host::{FmiVersion, Status};
+
+pub(crate) use parts::Parts;
 
 use crate::log::{Log, Topic};
 use crate::resources;
@@ -72,6 +75,8 @@ pub(crate) struct Instance {
     /// Observes the steps, where warnings are logged.
     watch: Option<Watch>,
     step_status: Status,
+    /// True if the host gives all displacements within communication steps.
+    is_updated: bool,
 }
 
 impl Instance {
@@ -115,6 +120,7 @@ impl Instance {
             noted: Vec::new(),
             watch: None,
             step_status: Status::Ok,
+            is_updated: false,
         };
         instance.log_plausibility();
         Ok(instance)
@@ -151,6 +157,7 @@ impl Instance {
             Phase::Initialization => "in initialization mode",
             Phase::Step => "after initialization",
             Phase::Terminated => "after terminate",
+            Phase::Intermediate => "in the host's intermediate update",
         };
         Err(Refusal(format!("out of order: not allowed {now}")))
     }
@@ -237,6 +244,7 @@ impl Instance {
 
     /// Back to just after instantiation; the log keeps its settings.
     pub(crate) fn reset(&mut self) -> Outcome {
+        self.expect_no_update()?;
         self.scene.clone_from(&self.packaged);
         self.inputs.fill(BodyInput::default());
         self.releases.fill(false);
@@ -260,12 +268,16 @@ impl Instance {
             let places = self.inputs.iter().map(|input| input.displacement);
             self.start_displacements = places.collect();
             self.start_length_changes.clone_from(&self.length_changes);
-            self.simulation = Some(statics(
+            #[cfg(test)]
+            tests::count_statics();
+            let simulation = statics(
                 &self.scene,
                 self.start_time,
                 &self.start_displacements,
                 &self.start_length_changes,
-            )?);
+            )?;
+            self.check_lengths(simulation.model())?;
+            self.simulation = Some(simulation);
         }
         Ok(self.simulation.as_mut().expect("was there or was just solved"))
     }
@@ -382,6 +394,7 @@ impl Instance {
 
     /// Goes back to a saved state.
     pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
+        self.expect_no_update()?;
         let (own, new) = (self.parameters(&self.scene), &snapshot.parameters);
         let same_scene = same_bits(&own, new);
         let same_start = same_scene
@@ -487,6 +500,41 @@ mod tests {
     use super::*;
 
     const SCENE: &str = include_str!("../../tests/scenes/hand.toml");
+
+    thread_local! {
+        /// Statics solved on this thread [-].
+        static STATICS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+    }
+
+    pub(super) fn count_statics() {
+        STATICS.set(STATICS.get() + 1);
+    }
+
+    #[test]
+    fn parameters_set_one_by_one_are_solved_for_once() {
+        let mut instance = instance(FmiVersion::Two);
+        instance.enter_initialization().unwrap();
+        let before = STATICS.get();
+        for name in ["rope.mass", "rope.length", "gravity"] {
+            let value = real(&mut instance, name);
+            for factor in [1.1, 1.2, 1.05] {
+                set(&mut instance, name, factor * value).unwrap();
+            }
+        }
+        assert_eq!(STATICS.get(), before);
+        let tension = real(&mut instance, "rope.tension_b");
+        instance.exit_initialization().unwrap();
+        assert_eq!(STATICS.get(), before + 1);
+        assert_eq!(real(&mut instance, "rope.tension_b"), tension);
+    }
+
+    #[test]
+    fn a_parameter_out_of_range_is_refused_where_it_is_set() {
+        let mut instance = instance(FmiVersion::Two);
+        let mass = real(&mut instance, "rope.mass");
+        assert!(set(&mut instance, "rope.mass", -1.0).is_err());
+        assert_eq!(real(&mut instance, "rope.mass"), mass);
+    }
 
     fn instance(version: FmiVersion) -> Instance {
         instance_of(SCENE, version)

@@ -18,6 +18,8 @@ pub(crate) enum Phase {
     Step,
     /// After terminate.
     Terminated,
+    /// Between two parts of a communication step, while the host is called.
+    Intermediate,
 }
 
 /// Last input of the host for a point or a vessel; points use the first three axes.

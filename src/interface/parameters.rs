@@ -133,8 +133,10 @@ fn variable(
     let unit = key.unit().map_or(Unit::ONE, Unit::of_scene);
     let binding = Binding::Parameter(parameter);
     let mut variable = row(name, description, Causality::Parameter, unit, binding);
-    if let table::Kind::Words(_) = key.kind() {
+    variable.range = key.rule.bounds.range();
+    if let table::Kind::Words(words) = key.kind() {
         variable.kind = Kind::Int32;
+        variable.range = [Some(0.0), Some(words.words.len() as f64 - 1.0)];
     }
     variable.start = Some(start);
     Some(variable)

@@ -18,6 +18,10 @@ pub(super) fn row(
         (_, Causality::Input | Causality::Output) => (Kind::Float64, Variability::Continuous),
         (_, Causality::Parameter | Causality::CalculatedParameter) => (Kind::Float64, Variability::Fixed),
     };
+    let is_magnitude = matches!(
+        binding,
+        Binding::Line { .. } | Binding::Solver(SolverResult::Substeps | SolverResult::InputError)
+    );
     Variable {
         name,
         description,
@@ -27,6 +31,7 @@ pub(super) fn row(
         unit,
         dimension: None,
         start: (causality == Causality::Input).then_some(0.0),
+        range: [is_magnitude.then_some(0.0), None],
         initial_dependencies: Vec::new(),
         binding,
     }

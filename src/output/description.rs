@@ -6,17 +6,19 @@
 
 use std::io;
 
-use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
 use super::fmi::FmiVersion;
+use super::package::Stamp;
+use super::xml::{Xml, document, number};
 use crate::interface::{Causality, Interface, Kind, Layout, Unit, Variability, Variable};
 use crate::model::Model;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Profile, Scene, SceneError};
 
-/// Name of the library in the FMU, without extension.
-pub const MODEL_IDENTIFIER: &str = "moorline";
+/// Beginning of the name of every library.
+const IDENTIFIER: &str = "moorline";
+/// Length of a title in the name of the library, at most [-].
+const TITLE_MAX: usize = 40;
 
 /// Version of this program, part of the token.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -42,6 +44,10 @@ pub struct Description {
     pub interface: Interface,
     /// Text of modelDescription.xml.
     pub xml: String,
+    /// Name of the model: the title of the scene.
+    pub model_name: String,
+    /// Name of the library in the FMU, without extension.
+    pub model_identifier: String,
     /// The instantiation token: hash of the description, the scene's text and the program's version.
     pub token: String,
 }
@@ -52,17 +58,32 @@ impl Description {
     /// # Errors
     /// A scene that makes no model, or names that clash.
     pub fn new(text: &str, scene: &Scene, version: FmiVersion) -> Result<Description, SceneError> {
-        let layout = match version {
-            FmiVersion::Two => Layout::Scalars,
-            FmiVersion::Three => Layout::Arrays,
+        Description::stamped(text, scene, version, &Stamp::default())
+    }
+
+    /// Describes a scene with author and date; the token is that of [`Description::new`].
+    ///
+    /// # Errors
+    /// As [`Description::new`].
+    pub fn stamped(
+        text: &str,
+        scene: &Scene,
+        version: FmiVersion,
+        stamp: &Stamp,
+    ) -> Result<Description, SceneError> {
+        let layout = match (version, scene.output.profile) {
+            (FmiVersion::Two, _) | (_, Profile::Scalar) => Layout::Scalars,
+            (FmiVersion::Three, _) => Layout::Arrays,
         };
         let model = Model::new(scene)?;
         let interface = Interface::new(scene, &model, layout)?;
-        let token = token(&write(scene, &interface, version, ""), text);
-        let xml = write(scene, &interface, version, &token);
+        let token = token(&write(scene, &interface, version, ("", &Stamp::default())), text);
+        let xml = write(scene, &interface, version, (&token, stamp));
         Ok(Description {
             interface,
             xml,
+            model_name: model_name(scene),
+            model_identifier: model_identifier(scene),
             token,
         })
     }
@@ -78,24 +99,17 @@ fn token(xml: &str, scene: &str) -> String {
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn write(scene: &Scene, interface: &Interface, version: FmiVersion, token: &str) -> String {
-    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-    write_document(&mut writer, scene, interface, version, token).expect("writing to memory does not fail");
-    let mut bytes = writer.into_inner();
-    bytes.push(b'\n');
-    String::from_utf8(bytes).expect("the writer was given UTF-8 only")
+fn write(scene: &Scene, interface: &Interface, version: FmiVersion, signed: (&str, &Stamp)) -> String {
+    document(|writer| write_root(writer, scene, interface, version, signed))
 }
 
-type Xml = Writer<Vec<u8>>;
-
-fn write_document(
+fn write_root(
     writer: &mut Xml,
     scene: &Scene,
     interface: &Interface,
     version: FmiVersion,
-    token: &str,
+    (token, stamp): (&str, &Stamp),
 ) -> io::Result<()> {
-    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let name = model_name(scene);
     let generation_tool = format!("moorline {VERSION}");
     let naming = if interface.variables().iter().all(|v| is_structured(&v.name)) {
@@ -107,6 +121,11 @@ fn write_document(
         FmiVersion::Two => "guid",
         FmiVersion::Three => "instantiationToken",
     };
+    let stamped = [
+        ("author", stamp.author.as_deref()),
+        ("generationDateAndTime", stamp.date.as_deref()),
+    ];
+    let stamped = stamped.into_iter().filter_map(|(key, text)| Some((key, text?)));
     let root = writer.create_element("fmiModelDescription").with_attributes([
         ("fmiVersion", version.to_string().as_str()),
         ("modelName", name.as_str()),
@@ -121,8 +140,9 @@ fn write_document(
         ("generationTool", generation_tool.as_str()),
         ("variableNamingConvention", naming),
     ]);
+    let root = root.with_attributes(stamped);
     root.write_inner_content(|writer| {
-        write_co_simulation(writer, version)?;
+        write_co_simulation(writer, &model_identifier(scene), version)?;
         write_units(writer, interface, version)?;
         write_log_categories(writer)?;
         writer
@@ -130,6 +150,7 @@ fn write_document(
             .with_attributes([
                 ("startTime", "0.0"),
                 ("stopTime", number(scene.output.duration).as_str()),
+                ("tolerance", number(scene.solver.tolerance).as_str()),
                 ("stepSize", number(scene.output.interval).as_str()),
             ])
             .write_empty()?;
@@ -164,9 +185,20 @@ fn model_name(scene: &Scene) -> String {
     }
 }
 
-/// Shortest decimal form that reads back to the same bits.
-fn number(value: f64) -> String {
-    format!("{value:?}")
+/// Name of the library: the title of the scene as a name of C, so that the FMUs of different scenes have different ones.
+fn model_identifier(scene: &Scene) -> String {
+    let mut identifier = IDENTIFIER.to_string();
+    let title = scene.title.to_lowercase();
+    let words = title.split(|c: char| !c.is_ascii_alphanumeric());
+    for word in words.filter(|word| !word.is_empty()) {
+        let room = IDENTIFIER.len() + TITLE_MAX - identifier.len();
+        if room < 2 {
+            break;
+        }
+        identifier.push('_');
+        identifier.push_str(&word[..word.len().min(room - 1)]);
+    }
+    identifier
 }
 
 /// Returns whether a name follows the standard's structured naming convention without quotes.
@@ -188,10 +220,10 @@ fn is_structured(name: &str) -> bool {
     })
 }
 
-fn write_co_simulation(writer: &mut Xml, version: FmiVersion) -> io::Result<()> {
+fn write_co_simulation(writer: &mut Xml, identifier: &str, version: FmiVersion) -> io::Result<()> {
     let attributes: &[(&str, &str)] = match version {
         FmiVersion::Two => &[
-            ("modelIdentifier", MODEL_IDENTIFIER),
+            ("modelIdentifier", identifier),
             ("needsExecutionTool", "false"),
             ("canHandleVariableCommunicationStepSize", "true"),
             ("canInterpolateInputs", "true"),
@@ -204,7 +236,7 @@ fn write_co_simulation(writer: &mut Xml, version: FmiVersion) -> io::Result<()> 
             ("providesDirectionalDerivative", "false"),
         ],
         FmiVersion::Three => &[
-            ("modelIdentifier", MODEL_IDENTIFIER),
+            ("modelIdentifier", identifier),
             ("needsExecutionTool", "false"),
             ("canBeInstantiatedOnlyOncePerProcess", "false"),
             ("canGetAndSetFMUState", "true"),
@@ -212,9 +244,9 @@ fn write_co_simulation(writer: &mut Xml, version: FmiVersion) -> io::Result<()> 
             ("providesDirectionalDerivatives", "false"),
             ("canHandleVariableCommunicationStepSize", "true"),
             ("maxOutputDerivativeOrder", "0"),
-            ("providesIntermediateUpdate", "false"),
+            ("providesIntermediateUpdate", "true"),
             ("mightReturnEarlyFromDoStep", "false"),
-            ("canReturnEarlyAfterIntermediateUpdate", "false"),
+            ("canReturnEarlyAfterIntermediateUpdate", "true"),
             ("hasEventMode", "false"),
         ],
     };
@@ -247,12 +279,7 @@ fn write_units(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> 
 }
 
 fn write_unit(writer: &mut Xml, unit: &Unit) -> io::Result<()> {
-    let exponents = [("kg", unit.kg), ("m", unit.m), ("s", unit.s), ("rad", unit.rad)];
-    let present: Vec<(&str, String)> = exponents
-        .iter()
-        .filter(|(_, exponent)| *exponent != 0)
-        .map(|(base, exponent)| (*base, exponent.to_string()))
-        .collect();
+    let present = unit.exponents();
     writer
         .create_element("Unit")
         .with_attribute(("name", unit.name))
@@ -358,15 +385,24 @@ fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
             attributes.push(("displayUnit", "deg".to_string()));
         }
     }
-    if let Some(start) = variable.start {
-        let text = match variable.kind {
-            Kind::Float64 => number(start),
-            Kind::Int32 => format!("{start:.0}"),
-            Kind::Boolean => (start != 0.0).to_string(),
-        };
-        attributes.push(("start", text));
+    let text = |value: f64| match variable.kind {
+        Kind::Float64 => number(value),
+        Kind::Int32 => format!("{value:.0}"),
+        Kind::Boolean => (value != 0.0).to_string(),
+    };
+    for (key, limit) in ["min", "max"].into_iter().zip(variable.range) {
+        attributes.extend(limit.map(|limit| (key, text(limit))));
     }
+    attributes.extend(nominal(variable).map(|nominal| ("nominal", number(nominal))));
+    attributes.extend(variable.start.map(|start| ("start", text(start))));
     attributes
+}
+
+/// Typical magnitude of a parameter: that of its value in the scene. The standard takes 1 for the others.
+fn nominal(variable: &Variable) -> Option<f64> {
+    let is_real = variable.causality == Causality::Parameter && variable.kind == Kind::Float64;
+    let magnitude = variable.start?.abs();
+    (is_real && magnitude > 0.0).then_some(magnitude)
 }
 
 fn texts<'a>(attributes: &'a [(&'static str, String)]) -> impl Iterator<Item = (&'a str, &'a str)> {
@@ -394,8 +430,17 @@ fn write_variable2(writer: &mut Xml, variable: &Variable, index: usize) -> io::R
     Ok(())
 }
 
+/// Returns whether a host may access the variable within a communication step.
+fn has_intermediate_values(variable: &Variable) -> bool {
+    let is_in_time = matches!(variable.causality, Causality::Input | Causality::Output);
+    is_in_time && variable.variability == Variability::Continuous
+}
+
 fn write_variable3(writer: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
     let mut attributes = common_attributes(variable, index);
+    if has_intermediate_values(variable) {
+        attributes.push(("intermediateUpdate", "true".to_string()));
+    }
     attributes.extend(value_attributes(variable));
     let element = writer
         .create_element(match variable.kind {
@@ -482,14 +527,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_back_to_the_same_bits() {
-        for value in [0.1, 1.0 / 3.0, 1e300, 5e-324, -0.0, 753.6e6, 9.80665] {
-            let back: f64 = number(value).parse().unwrap();
-            assert_eq!(back.to_bits(), value.to_bits(), "{value}");
-        }
-    }
-
-    #[test]
     fn a_name_with_other_characters_is_not_structured() {
         for name in ["line1.tension_b", "_a.b[12]", "gravity"] {
             assert!(is_structured(name), "{name}");
@@ -501,7 +538,7 @@ mod tests {
 
     #[test]
     fn a_radian_is_shown_in_degrees() {
-        let mut writer = Writer::new(Vec::new());
+        let mut writer = Xml::new(Vec::new());
         write_unit(&mut writer, &Unit::RADIAN).unwrap();
         assert_eq!(
             String::from_utf8(writer.into_inner()).unwrap(),
@@ -514,6 +551,39 @@ mod tests {
         let mut scene = Scene::from_toml(include_str!("../../scenes/demo.toml")).unwrap();
         scene.title = "a\u{1}<b>".into();
         assert_eq!(model_name(&scene), "a <b>");
+    }
+
+    #[test]
+    fn the_library_has_the_title_in_its_name_as_a_name_of_c() {
+        let mut scene = Scene::from_toml(include_str!("../../scenes/demo.toml")).unwrap();
+        for (title, identifier) in [
+            ("OC3 line, 40 elements", "moorline_oc3_line_40_elements"),
+            ("  3 Ø-lines! ", "moorline_3_lines"),
+            ("", "moorline"),
+            (
+                "abcdefghij abcdefghij abcdefghij abcdefghij",
+                "moorline_abcdefghij_abcdefghij_abcdefghij_abcdef",
+            ),
+        ] {
+            scene.title = title.into();
+            assert_eq!(model_identifier(&scene), identifier);
+        }
+    }
+
+    #[test]
+    fn author_and_date_are_described_and_leave_the_token() {
+        let text = include_str!("../../scenes/demo.toml");
+        let scene = Scene::from_toml(text).unwrap();
+        let plain = Description::new(text, &scene, FmiVersion::Two).unwrap();
+        let (author, date) = (
+            Some("A & B".to_string()),
+            Some("2026-01-01T00:00:00Z".to_string()),
+        );
+        let stamp = Stamp { author, date };
+        let stamped = Description::stamped(text, &scene, FmiVersion::Two, &stamp).unwrap();
+        assert_eq!(stamped.token, plain.token);
+        let wanted = "author=\"A &amp; B\" generationDateAndTime=\"2026-01-01T00:00:00Z\"";
+        assert!(stamped.xml.contains(wanted) && !plain.xml.contains("author"));
     }
 
     #[test]

@@ -136,6 +136,7 @@ impl RunFiles {
         let columns = profile_columns(record, bends);
         let profile = output
             .profile
+            .is_given()
             .then(|| Table::create(&folder.join("profile"), &columns, output));
         let strides = strides(output, times);
         let shapes = strides.files.map(|_| Shapes::create(folder));

@@ -26,6 +26,7 @@ pub mod table;
 pub mod times;
 pub mod trace;
 pub mod vtk;
+mod xml;
 
 #[cfg(test)]
 mod sample;

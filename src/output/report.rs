@@ -9,7 +9,8 @@ use quick_xml::escape::escape;
 
 use super::record::{LineRecord, Record, StaticLine};
 
-const STYLE: &str = "
+/// Style of pages.
+pub(super) const STYLE: &str = "
 body { font: 16px/1.5 sans-serif; color: #222; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 table { border-collapse: collapse; } caption { text-align: left; color: #555; padding-bottom: .3rem; }

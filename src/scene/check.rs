@@ -189,6 +189,17 @@ impl Bounds {
         }
     }
 
+    /// Least and greatest number that are accepted, where the bounds alone say it.
+    pub(crate) fn range(self) -> [Option<f64>; 2] {
+        match self {
+            Bounds::Finite | Bounds::Elsewhere => [None, None],
+            Bounds::Positive(limit) => [Some(POSITIVE_MIN), Some(limit)],
+            Bounds::NotNegative(limit) => [Some(0.0), Some(limit)],
+            Bounds::Magnitude(limit) => [Some(-limit), Some(limit)],
+            Bounds::Within(least, most) => [Some(least), Some(most)],
+        }
+    }
+
     /// Returns the refusal of a value outside the bounds.
     pub(super) fn complaint(self, value: f64, unit: &str) -> Option<String> {
         if self.accepts(value) {

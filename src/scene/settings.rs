@@ -6,7 +6,9 @@ use super::SceneError;
 use super::check::Findings;
 use super::document::Node;
 use super::line::ELEMENTS_MAX;
-use super::table::{Key, Kind, MIXED, PLAIN, Value, choice, choice_of_values, positive, table, within};
+use super::table::{
+    Key, Kind, MIXED, PLAIN, Value, Words, choice, choice_of_values, positive, table, within,
+};
 
 table! {
     /// Solver settings.
@@ -108,8 +110,8 @@ table! {
         pub duration: f64 = 60.0 => positive(1e9).elsewhere(&["tmax"]),
         /// Interval of output and communication [s].
         pub interval: f64 = 0.05 => positive(1e9).elsewhere(&["dtout", "dt"]),
-        /// True if node positions and tensions are variables too.
-        pub profile: bool = false,
+        /// Node positions and tensions as variables too: `true` or `array` gives arrays in FMI 3.0, `scalar` one variable for each node in both versions.
+        pub profile: Profile = Profile::None,
         /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost about half as much
         /// again.
         pub energy_balance: bool = false,
@@ -122,6 +124,64 @@ table! {
         pub digits: Option<usize> => within(1.0, DIGITS_MAX),
         /// Shapes that `moorline run` writes for ParaView; `overview` where absent.
         pub frames: Option<Frames>,
+    }
+}
+
+/// Form of node positions and tensions among the variables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Profile {
+    /// They are no variables.
+    None,
+    /// Arrays in FMI 3.0; FMI 2.0, which has none, gets scalars.
+    Array,
+    /// One scalar for each node.
+    Scalar,
+}
+
+impl Profile {
+    /// Words of the key, beside `true` and `false`.
+    const WORDS: Words = Words {
+        name: "Profile",
+        words: &[
+            (
+                "array",
+                "As arrays in FMI 3.0, which some hosts cannot read; FMI 2.0 gets scalars. `true` means the same.",
+            ),
+            ("scalar", "One variable for each node, in FMI 2.0 and 3.0."),
+        ],
+    };
+
+    /// Returns whether nodes are among the variables.
+    pub fn is_given(self) -> bool {
+        self != Profile::None
+    }
+}
+
+impl Value for Profile {
+    fn kind() -> Kind {
+        Kind::Words(Profile::WORDS)
+    }
+
+    fn blank() -> Profile {
+        Profile::None
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        *self = match (node.text(), node.truth()) {
+            (Ok("array"), _) | (_, Ok(true)) => Profile::Array,
+            (Ok("scalar"), _) => Profile::Scalar,
+            (_, Ok(false)) => Profile::None,
+            _ => return Err(node.expected("true, false, \"array\" or \"scalar\"")),
+        };
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        Some(match self {
+            Profile::None => false.into(),
+            Profile::Array => true.into(),
+            Profile::Scalar => "scalar".into(),
+        })
     }
 }
 

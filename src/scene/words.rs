@@ -57,7 +57,11 @@ impl Scene {
         } else {
             self.compression_in_words()
         };
-        let nodes = if output.profile { ", with all nodes" } else { "" };
+        let nodes = if output.profile.is_given() {
+            ", with all nodes"
+        } else {
+            ""
+        };
         let tables = tables_in_words(output);
         let [duration, interval] = [output.duration, output.interval].map(|time| quantity(time, "s"));
         let inputs = match solver.input_reconstruction {

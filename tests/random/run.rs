@@ -6,7 +6,7 @@ use moorline::discretisation::discretised;
 use moorline::dynamics::{Choice, StepError};
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Network;
-use moorline::scene::{Integrator, Scene};
+use moorline::scene::{Integrator, Profile, Scene};
 use moorline::simulation::{Error, Simulation, Snapshot};
 
 use crate::dice::Tape;
@@ -250,7 +250,7 @@ struct Outputs {
 impl Outputs {
     fn new(scene: &Scene, simulation: &Simulation) -> Result<Outputs, String> {
         let mut scene = scene.clone();
-        scene.output.profile = true;
+        scene.output.profile = Profile::Array;
         let table = Interface::new(&scene, simulation.model(), Layout::Arrays);
         let table = table.map_err(|error| format!("no interface: {error}"))?;
         Ok(Outputs { table })

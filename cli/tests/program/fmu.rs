@@ -104,3 +104,34 @@ fn a_missing_fmu_library_is_named_with_how_to_build_it() {
     assert_says(&err(&output), &["moorline_fmu", "cargo build --release"]);
     assert!(!folder.path("x.fmu").exists());
 }
+
+#[test]
+fn the_reference_results_of_an_fmu_are_replayed() {
+    place_library();
+    let folder = folder();
+    for version in ["2", "3"] {
+        folder.done(&format!("fmu scene.toml -o x.fmu --fmi {version}"));
+        let said = folder.done("fmu --verify x.fmu");
+        assert_says(&said, &["x.fmu: ", " steps to t = ", "1.0e-6 is allowed"]);
+    }
+    folder.refused("fmu --verify none.fmu", &["none.fmu"]);
+    folder.refused("fmu --verify scene.toml", &["scene.toml"]);
+    folder.refused(
+        "fmu --verify x.fmu scene.toml",
+        &["unexpected argument 'scene.toml'"],
+    );
+}
+
+#[test]
+fn an_ssp_package_holds_the_fmu_beside_its_structure() {
+    place_library();
+    let folder = folder();
+    folder.done("fmu scene.toml -o x.ssp --ssp");
+    let file = fs::File::open(folder.path("x.ssp")).unwrap();
+    let archive = zip::ZipArchive::new(file).unwrap();
+    let names: Vec<_> = archive.file_names().map(Result::unwrap).collect();
+    assert!(
+        names[0] == "SystemStructure.ssd" && names[1].starts_with("resources/moorline"),
+        "{names:?}"
+    );
+}

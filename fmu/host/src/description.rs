@@ -180,11 +180,11 @@ fn variable_type(tag: &str) -> VariableType {
     }
 }
 
-fn broken(error: impl std::fmt::Display) -> HostError {
+pub(crate) fn broken(error: impl std::fmt::Display) -> HostError {
     HostError::Description(error.to_string())
 }
 
-fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, HostError> {
+pub(crate) fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, HostError> {
     let Some(attribute) = tag.try_get_attribute(name).map_err(broken)? else {
         return Ok(None);
     };
@@ -194,12 +194,12 @@ fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, HostErr
     Ok(Some(value.into_owned()))
 }
 
-fn required(tag: &BytesStart<'_>, name: &str) -> Result<String, HostError> {
+pub(crate) fn required(tag: &BytesStart<'_>, name: &str) -> Result<String, HostError> {
     attribute(tag, name)?
         .ok_or_else(|| HostError::Description(format!("{} has no attribute {name}", tag.name().as_ref())))
 }
 
-fn number(tag: &BytesStart<'_>, name: &str) -> Result<Option<f64>, HostError> {
+pub(crate) fn number(tag: &BytesStart<'_>, name: &str) -> Result<Option<f64>, HostError> {
     attribute(tag, name)?
         .map(|text| {
             text.parse()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use tempfile::TempDir;
 
-use crate::{Description, FmiVersion, Slave, Status, archive, fmi2, fmi3};
+use crate::{Description, FmiVersion, Slave, Status, Variable, archive, fmi2, fmi3};
 
 /// Errors of a host.
 #[derive(Debug, thiserror::Error)]
@@ -41,6 +41,9 @@ pub enum HostError {
     /// The FMU refused to be instantiated.
     #[error("the FMU refused to be instantiated: {0}")]
     Instantiate(String),
+    /// The reference results of the FMU are missing or cannot be used.
+    #[error("reference results: {0}")]
+    Reference(String),
     /// A text or a length that C cannot take.
     #[error("{0}")]
     Argument(String),
@@ -133,12 +136,20 @@ impl Fmu {
     /// # Errors
     /// No variable has this name.
     pub fn reference(&self, name: &str) -> Result<u32, HostError> {
-        self.description()
+        Ok(self.variable(name)?.reference)
+    }
+
+    /// Variable of a name.
+    ///
+    /// # Errors
+    /// No variable has this name.
+    pub fn variable(&self, name: &str) -> Result<&Variable, HostError> {
+        let found = self
+            .description()
             .variables
             .iter()
-            .find(|variable| variable.name == name)
-            .map(|variable| variable.reference)
-            .ok_or_else(|| HostError::UnknownVariable(name.to_string()))
+            .find(|variable| variable.name == name);
+        found.ok_or_else(|| HostError::UnknownVariable(name.to_string()))
     }
 
     /// Makes a co-simulation instance; `logging` turns the FMU's log on.

@@ -61,6 +61,7 @@ pub mod fmi2;
 pub mod fmi3;
 mod fmu;
 mod log;
+mod replay;
 mod slave;
 mod status;
 
@@ -68,5 +69,6 @@ pub use description::{Causality, Description, Variable, VariableType};
 pub use fmu::{Fmu, HostError};
 pub use log::LogMessage;
 pub use moorline::output::fmi::FmiVersion;
+pub use replay::{Deviation, Replay, replay};
 pub use slave::{SavedState, Slave};
 pub use status::Status;

@@ -168,7 +168,8 @@ impl Instance {
                 set.map_err(|problem| format!("{}: {problem}", variable.name))?;
             }
         }
-        self.check_scene(&scene)?;
+        // the model is built once, when values are needed, however many calls set parameters
+        scene.check().map_err(|e| e.to_string())?;
         self.scene = scene;
         self.simulation = None;
         Ok(())
@@ -182,7 +183,7 @@ impl Instance {
                     let input = &mut self.inputs[slot(&self.scene, body)];
                     let before = std::mem::replace(&mut input.displacement[axis], value);
                     match self.phase {
-                        Phase::Step => input.has_moved[axis / 3] |= value != before,
+                        Phase::Step | Phase::Intermediate => input.has_moved[axis / 3] |= value != before,
                         Phase::Initialization => self.simulation = None,
                         _ => {}
                     }
@@ -191,7 +192,8 @@ impl Instance {
                     let input = &mut self.inputs[slot(&self.scene, body)];
                     input.velocity[axis] = value;
                     // Hosts write the start value 0 of every input: that is not yet a velocity.
-                    input.has_velocity[axis] |= self.phase == Phase::Step || value != 0.0;
+                    let steps = matches!(self.phase, Phase::Step | Phase::Intermediate);
+                    input.has_velocity[axis] |= steps || value != 0.0;
                     input.has_speed[axis / 3] |= value != 0.0;
                 }
                 Binding::Release { line } => self.releases[line] = value != 0.0,
@@ -211,9 +213,7 @@ impl Instance {
     #[inline]
     fn check_settable(&self, variable: &Variable, value: f64) -> Outcome {
         let is_in_range = match (variable.causality, self.phase) {
-            (Causality::Input, Phase::Instantiated | Phase::Initialization | Phase::Step) => {
-                value.abs() <= INPUT_MAX
-            }
+            (Causality::Input, phase) if phase != Phase::Terminated => value.abs() <= INPUT_MAX,
             (Causality::Parameter, Phase::Instantiated | Phase::Initialization) => value.is_finite(),
             _ => false,
         };
@@ -226,7 +226,12 @@ impl Instance {
     #[cold]
     fn not_settable(&self, variable: &Variable, value: f64) -> Refusal {
         let allowed: &[Phase] = match variable.causality {
-            Causality::Input => &[Phase::Instantiated, Phase::Initialization, Phase::Step],
+            Causality::Input => &[
+                Phase::Instantiated,
+                Phase::Initialization,
+                Phase::Step,
+                Phase::Intermediate,
+            ],
             Causality::Parameter => &[Phase::Instantiated, Phase::Initialization],
             Causality::Output | Causality::CalculatedParameter => &[],
         };
@@ -239,9 +244,8 @@ impl Instance {
         Refusal(format!("{}: {problem}", variable.name))
     }
 
-    /// The parameters are in range and leave the arrays of the interface as long as they are.
-    fn check_scene(&self, scene: &Scene) -> Outcome {
-        let model = Model::new(scene).map_err(|e| e.to_string())?;
+    /// The parameters leave the arrays of the interface as long as they are.
+    pub(super) fn check_lengths(&self, model: &Model) -> Outcome {
         for variable in self.interface.variables() {
             if let Binding::Profile { line, node, .. } = variable.binding {
                 let nodes = model.lines[line].nodes_max();

@@ -1,0 +1,108 @@
+//! Communication steps in parts: between them a host of FMI 3.0 reads outputs and sets inputs, and may end the step.
+//!
+//! Source: FMI 3.0.2 section 4.2.2, intermediate update mode and early return. A step longer than the interval of the scene is divided into equal
+//! parts no longer than it. The host must have announced all displacements: a body that it did not move between would stand still there.
+//! Where inputs hold for the end of the step, nothing is to be given within it.
+
+use moorline::interface::{Binding, Interface};
+use moorline::scene::Reconstruction;
+
+use super::{Instance, Outcome, Refusal};
+use crate::saved::{Phase, Snapshot};
+
+/// Part of a step by which a quotient of times may be rounded [-].
+const ROUNDING: f64 = 1e-6;
+/// Parts of a communication step, at most [-].
+const PARTS_MAX: f64 = 1e6;
+
+/// A communication step that is made in parts.
+pub(crate) struct Parts {
+    start: f64,
+    length: f64,
+    count: u32,
+    done: u32,
+    /// State before the first part, where there are several.
+    before: Option<Box<Snapshot>>,
+}
+
+impl Parts {
+    /// Time at the end of a number of parts [s].
+    fn at(&self, parts: u32) -> f64 {
+        self.start + self.length * (f64::from(parts) / f64::from(self.count))
+    }
+
+    /// Returns whether the whole step is made.
+    pub(crate) fn are_done(&self) -> bool {
+        self.done == self.count
+    }
+}
+
+impl Instance {
+    /// Keeps which variables the host accesses within steps; it is called there if it announces all displacements.
+    pub(crate) fn announce(&mut self, references: &[u32]) {
+        let mut rows = self.interface.variables().iter().enumerate();
+        self.is_updated = !references.is_empty()
+            && rows.all(|(index, variable)| {
+                !matches!(variable.binding, Binding::Displacement { .. })
+                    || references.contains(&Interface::reference(index))
+            });
+    }
+
+    /// Divides a communication step of a length from a time [s].
+    ///
+    /// # Errors
+    /// In an update by the host.
+    pub(crate) fn divide(&self, start: f64, length: f64) -> Result<Parts, Refusal> {
+        self.expect_no_update()?;
+        let divides = self.is_updated
+            && self.phase == Phase::Step
+            && self.scene.solver.input_reconstruction != Reconstruction::Interpolate;
+        let parts = (length / self.scene.output.interval - ROUNDING).ceil();
+        let count = match divides {
+            true if parts.is_finite() => parts.clamp(1.0, PARTS_MAX) as u32,
+            _ => 1,
+        };
+        Ok(Parts {
+            start,
+            length,
+            count,
+            done: 0,
+            before: (count > 1).then(|| Box::new(self.snapshot())),
+        })
+    }
+
+    /// Makes the next part; an error leaves the instance as it was before the first one. Between parts only the host's update is allowed.
+    pub(crate) fn make_part(&mut self, parts: &mut Parts) -> Outcome {
+        if parts.done > 0 {
+            self.phase = Phase::Step;
+        }
+        let at = parts.at(parts.done);
+        let step = match parts.count {
+            1 => parts.length,
+            _ => parts.at(parts.done + 1) - at,
+        };
+        let made = self.do_step(at, step);
+        if let (Err(_), Some(before)) = (&made, &parts.before) {
+            self.restore(before)?;
+        }
+        made?;
+        parts.done += 1;
+        if !parts.are_done() {
+            self.phase = Phase::Intermediate;
+        }
+        Ok(())
+    }
+
+    /// Ends the host's update without another part.
+    pub(crate) fn end_early(&mut self) -> Outcome {
+        self.phase = Phase::Step;
+        Ok(())
+    }
+
+    pub(crate) fn expect_no_update(&self) -> Outcome {
+        match self.phase {
+            Phase::Intermediate => Err("out of order: not allowed in the host's intermediate update".into()),
+            _ => Ok(()),
+        }
+    }
+}
