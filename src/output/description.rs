@@ -122,7 +122,7 @@ fn write_document(
         ("variableNamingConvention", naming),
     ]);
     root.write_inner_content(|writer| {
-        write_co_simulation(writer, version)?;
+        write_co_simulation(writer, version, scene.output.derivatives)?;
         write_units(writer, interface, version)?;
         write_log_categories(writer)?;
         writer
@@ -138,7 +138,9 @@ fn write_document(
             .write_inner_content(|writer| write_variables(writer, interface, version))?;
         writer
             .create_element("ModelStructure")
-            .write_inner_content(|writer| write_structure(writer, interface, version))?;
+            .write_inner_content(|writer| {
+                write_structure(writer, interface, version, scene.output.derivatives)
+            })?;
         Ok(())
     })?;
     Ok(())
@@ -188,7 +190,7 @@ fn is_structured(name: &str) -> bool {
     })
 }
 
-fn write_co_simulation(writer: &mut Xml, version: FmiVersion) -> io::Result<()> {
+fn write_co_simulation(writer: &mut Xml, version: FmiVersion, derivatives: bool) -> io::Result<()> {
     let attributes: &[(&str, &str)] = match version {
         FmiVersion::Two => &[
             ("modelIdentifier", MODEL_IDENTIFIER),
@@ -218,9 +220,16 @@ fn write_co_simulation(writer: &mut Xml, version: FmiVersion) -> io::Result<()> 
             ("hasEventMode", "false"),
         ],
     };
+    let of_scene = |&(name, value): &(&'static str, &'static str)| match name {
+        "providesDirectionalDerivative" | "providesDirectionalDerivatives" if derivatives => (name, "true"),
+        "maxOutputDerivativeOrder" if derivatives => (name, "1"),
+        _ => (name, value),
+    };
+    let adjoint =
+        (derivatives && version == FmiVersion::Three).then_some(("providesAdjointDerivatives", "true"));
     writer
         .create_element("CoSimulation")
-        .with_attributes(attributes.iter().copied())
+        .with_attributes(attributes.iter().map(of_scene).chain(adjoint))
         .write_empty()?;
     Ok(())
 }
@@ -417,7 +426,12 @@ fn write_variable3(writer: &mut Xml, variable: &Variable, index: usize) -> io::R
     Ok(())
 }
 
-fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
+fn write_structure(
+    writer: &mut Xml,
+    interface: &Interface,
+    version: FmiVersion,
+    derivatives: bool,
+) -> io::Result<()> {
     let of = |causalities: &'static [Causality]| {
         interface
             .variables()
@@ -425,7 +439,12 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
             .enumerate()
             .filter(move |(_, variable)| causalities.contains(&variable.causality))
     };
-    let outputs = || of(&[Causality::Output]).map(|(index, _)| (index, ""));
+    // without derivatives outputs change with a step alone
+    let depends = |variable| match derivatives {
+        true => references(&interface.motions_of(variable)),
+        false => String::new(),
+    };
+    let outputs = || of(&[Causality::Output]).map(|(index, variable)| (index, depends(variable)));
     let initial: Vec<(usize, String)> = of(&[Causality::Output, Causality::CalculatedParameter])
         .map(|(index, variable)| (index, references(&variable.initial_dependencies)))
         .collect();
@@ -433,7 +452,7 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
         FmiVersion::Two => {
             writer.create_element("Outputs").write_inner_content(|writer| {
                 outputs().try_for_each(|(index, depends)| {
-                    write_unknown(writer, ["Unknown", "index"], index, depends)
+                    write_unknown(writer, ["Unknown", "index"], index, &depends)
                 })
             })?;
             writer
@@ -446,7 +465,7 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
         }
         FmiVersion::Three => {
             for (index, depends) in outputs() {
-                write_unknown(writer, ["Output", "valueReference"], index, depends)?;
+                write_unknown(writer, ["Output", "valueReference"], index, &depends)?;
             }
             for (index, depends) in &initial {
                 write_unknown(writer, ["InitialUnknown", "valueReference"], *index, depends)?;
