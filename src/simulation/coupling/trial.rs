@@ -12,7 +12,7 @@ use crate::simulation::prescribed::MotionSource;
 use crate::simulation::{Simulation, Snapshot};
 
 /// Displacement of a difference quotient over the longest line [-].
-const ASIDE: f64 = 1e-7;
+const ASIDE: f64 = 1e-8;
 /// Shortest lever of rotations over the longest line [-].
 const LEVER_MIN: f64 = 1e-3;
 
