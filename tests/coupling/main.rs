@@ -34,23 +34,23 @@ fn difference(run: &[Vector3<f64>], truth: &[Vector3<f64>]) -> f64 {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn with_the_impedance_of_the_coming_step_bodies_of_any_mass_are_stable_and_accurate() {
     for mass in [10.0, 1e3, 1e5, 1e7] {
         let (truth, _) = run(&oc3(), "fairlead", Master::Impedance, case(mass, 0.0125)).unwrap();
         for step in [0.1, 0.05] {
             let (path, _) = run(&oc3(), "fairlead", Master::Impedance, case(mass, step)).unwrap();
             let error = difference(&path, &truth);
-            eprintln!("{mass} kg, {step} s: {error}");
             assert!(error < 0.01, "{mass} kg, {step} s: {error}");
         }
     }
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn newton_with_the_derivatives_takes_three_iterations_where_a_fixed_point_takes_ten() {
     let (by_newton, newton) = run(&oc3(), "fairlead", Master::Newton, case(2e4, 0.1)).unwrap();
     let (by_fixed, fixed) = run(&oc3(), "fairlead", Master::FixedPoint, case(2e4, 0.1)).unwrap();
-    eprintln!("{newton} {fixed}");
     assert!(newton <= 3 && fixed >= 10, "{newton} {fixed}");
     assert!(difference(&by_newton, &by_fixed) < 1e-5);
     let (one_pass, _) = run(&oc3(), "fairlead", Master::Impedance, case(2e4, 0.1)).unwrap();
@@ -80,8 +80,8 @@ fn chain(integrator: &str, span: f64) -> Scene {
 fn motion(t: f64) -> [[f64; 3]; 2] {
     let (sin, cos) = (2.0 * t).sin_cos();
     [
-        [0.002, 0.003, 0.004].map(|part| part * (1.0 - cos)),
-        [0.004, 0.006, 0.008].map(|part| part * sin),
+        [0.04, 0.06, 0.08].map(|part| part * (1.0 - cos)),
+        [0.08, 0.12, 0.16].map(|part| part * sin),
     ]
 }
 
@@ -138,10 +138,7 @@ fn derivatives_are_those_of_differences_by_save_perturb_step_and_restore() {
                 let found = simulation.derivative(motion, read).unwrap();
                 let error = (Vector3::from_column_slice(&found) - by_hand).norm();
                 let error = error / greatest[number / 3].max(f64::MIN_POSITIVE);
-                eprintln!(
-                    "{integrator}, {state}, {number}: {error:.1e} {found:?} {by_hand:?} {}",
-                    simulation.substeps()
-                );
+                assert!(error < 1e-6, "{integrator}, {state}, {number}: {error}");
             }
         }
     }
@@ -276,7 +273,6 @@ fn the_derivatives_of_a_vessel_are_those_of_its_inputs() {
             .derivative(motion, |s| Ok(s.vessel_force(0).to_vec()))
             .unwrap();
         let error = (Vector6::from_column_slice(&found) - by_hand).norm() / by_hand.norm();
-        eprintln!("{number}: {error:.1e}");
         assert!(error < 1e-5, "{number}: {error}");
     }
 }
@@ -329,7 +325,6 @@ fn noise_of_force(reconstruction: Reconstruction, noise: f64) -> [f64; 2] {
 fn noise_of_displacements_is_filtered_to_two_hundredths_of_the_range_of_the_force() {
     let [range, plain] = noise_of_force(Reconstruction::Smooth, 1e-4);
     let [filtered_range, filtered] = noise_of_force(Reconstruction::Filtered, 1e-4);
-    eprintln!("range {range:.3e} {filtered_range:.3e} N, smooth {plain:.3e} N, filtered {filtered:.3e} N");
     assert!(filtered < 0.01 * range, "{filtered} of {range}");
     assert!(filtered < 0.5 * plain, "{filtered} {plain}");
     assert!((filtered_range / range - 1.0).abs() < 0.01);
