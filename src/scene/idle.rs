@@ -151,7 +151,6 @@ impl Scene {
         rules! { notes, "output";
             "" if alone && output.interface.is_some() => "nothing is coupled to a host: `interface` changes nothing";
             "" if alone && output.force != ForceOutput::Total => "nothing is coupled to a host: `force` changes nothing";
-            "" if alone && output.derivatives => "nothing is coupled to a host: `derivatives` changes nothing";
             "" if rests && !alone && output.force != ForceOutput::Total =>
                 "quasi-static, without inertia: `force` changes nothing";
             "" if self.vessels.is_empty() && output.stiffness => "there is no vessel: `stiffness` changes nothing";
