@@ -7,6 +7,7 @@
 //! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene requests them. Releases and
 //! winches have their rows between vessels and lines.
 
+mod coupling;
 mod dependencies;
 mod parameters;
 mod profile;
@@ -107,6 +108,14 @@ units! {
     NEWTON_METRE = "N.m" 1 2 -2 0;
     /// Newton square metre.
     NEWTON_SQUARE_METRE = "N.m2" 1 3 -2 0;
+    /// Kilogram.
+    KILOGRAM = "kg" 1 0 0 0;
+    /// Kilogram square metre.
+    KILOGRAM_SQUARE_METRE = "kg.m2" 1 2 0 0;
+    /// Newton second per metre.
+    NEWTON_SECOND_PER_METRE = "N.s/m" 1 0 -1 0;
+    /// Newton metre second.
+    NEWTON_METRE_SECOND = "N.m.s" 1 2 -1 0;
     /// Newton second.
     NEWTON_SECOND = "N.s" 1 1 -1 0;
     /// Kilogram per metre.
@@ -167,6 +176,17 @@ pub enum Binding {
         /// Axis, 0 to 5.
         axis: usize,
     },
+    /// A quantity for a host that solves for a body together with its mooring.
+    Interface {
+        /// The point or vessel.
+        body: Body,
+        /// The quantity.
+        quantity: InterfaceQuantity,
+        /// Axis of the force, 0 to 5.
+        row: usize,
+        /// Axis of the motion, 0 to 5; 0 for a force.
+        column: usize,
+    },
     /// Release of a line from a point.
     Release {
         /// The line.
@@ -197,6 +217,21 @@ pub enum Binding {
         /// The only node, counted from 0; all where absent.
         node: Option<usize>,
     },
+}
+
+/// Quantity for a host that solves for a body together with its mooring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InterfaceQuantity {
+    /// Mass of the mooring's ends.
+    Mass,
+    /// Force at the end of the coming step at no displacement, velocity and acceleration.
+    Free,
+    /// Force at the end of the coming step per velocity there, with the opposite sign.
+    Damping,
+    /// Force at the end of the coming step per displacement there, with the opposite sign.
+    Stiffness,
+    /// Quasi-static force per displacement, with the opposite sign.
+    StaticStiffness,
 }
 
 /// Quantity of a profile.
@@ -273,11 +308,13 @@ impl Interface {
             if point.kind == PointKind::Coupled && point.on.is_none() {
                 check_name(&point.name, &format!("points[{index}].name"))?;
                 rows::body(&mut variables, Body::Point(index), &point.name);
+                coupling::push(&mut variables, scene, Body::Point(index), &point.name);
             }
         }
         for (index, vessel) in scene.vessels.iter().enumerate() {
             check_name(&vessel.name, &format!("vessels[{index}].name"))?;
             rows::body(&mut variables, Body::Vessel(index), &vessel.name);
+            coupling::push(&mut variables, scene, Body::Vessel(index), &vessel.name);
         }
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
@@ -342,11 +379,15 @@ impl Interface {
     pub fn read(variable: &Variable, simulation: &Simulation, values: &mut [f64]) -> Result<(), String> {
         assert_eq!(values.len(), variable.size(), "one place for each value");
         match variable.binding {
-            Binding::EndForce { body, axis } => {
-                values[0] = match body {
-                    Body::Point(point) => simulation.end_force(point)[axis],
-                    Body::Vessel(vessel) => simulation.vessel_force(vessel)[axis],
-                }
+            Binding::EndForce { body, axis } => values[0] = simulation.host_force(body)[axis],
+            Binding::Interface {
+                body,
+                quantity,
+                row,
+                column,
+            } => {
+                let value = coupling::read(simulation, body, quantity, [row, column]);
+                values[0] = value.ok_or_else(|| coupling::missing(&variable.name, quantity))?;
             }
             Binding::Line { line, result } => {
                 let missing = || {

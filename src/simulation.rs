@@ -4,6 +4,7 @@
 //! point to the next. Coupled points follow the displacements of [`Simulation::set_displacement`], or the scene's
 //! motion after [`Simulation::follow_scene`].
 
+mod coupling;
 mod input_error;
 mod inputs;
 mod paths;
@@ -26,6 +27,7 @@ use crate::model::{Line, LineState, Model, State};
 use crate::scene::{InitialShape, Scene, SceneError};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
+use coupling::StepStart;
 use input_error::InputRecord;
 use inputs::Inputs;
 use paths::Paths;
@@ -33,6 +35,7 @@ use prescribed::{MotionSource, PrescribedMotion};
 use results::Reactions;
 use scale::Scale;
 
+pub use coupling::{EndMotion, Impedance};
 pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
 pub use watch::Watch;
@@ -68,6 +71,10 @@ pub struct Snapshot {
     input_record: InputRecord,
     /// Time by which the host is ahead of the state, less than [`STEP_MIN`] [s].
     ahead: f64,
+    /// Length of the last step [s]; 0 before the first.
+    last_step: f64,
+    /// Start of the last step, where the scene requests derivatives.
+    begun: Option<Box<StepStart>>,
 }
 
 /// Mooring in time.
@@ -224,6 +231,21 @@ impl Simulation {
         }
         self.check_inputs(step)?;
         self.extend_paths(step)?;
+        if !self.model.derivatives {
+            return self.integrate(step);
+        }
+        let earlier = self.snapshot.begun.take();
+        let snapshot = self.snapshot.clone();
+        let done = self.integrate(step);
+        self.snapshot.begun = match done {
+            Ok(()) => Some(Box::new(StepStart { snapshot, step })),
+            Err(_) => earlier,
+        };
+        done
+    }
+
+    /// Integrates along the paths laid out for a step [s].
+    fn integrate(&mut self, step: f64) -> Result<(), StepError> {
         let before = self.release_lines();
         let record = self.record_inputs();
         let model = &*self.model;
@@ -243,6 +265,7 @@ impl Simulation {
         self.snapshot.counters = done.counters;
         self.snapshot.input_record = record;
         self.snapshot.ahead = 0.0;
+        self.snapshot.last_step = step;
         if let Some(balance) = &mut self.snapshot.balance {
             balance.flow.add(done.flow);
         }

@@ -51,14 +51,6 @@ refuse! {
 }
 
 refuse! {
-    "this FMU provides no derivatives of its outputs";
-    fmi2GetDirectionalDerivative(
-        *const fmi2ValueReference, usize, *const fmi2ValueReference, usize, *const fmi2Real, *mut fmi2Real
-    );
-    fmi2GetRealOutputDerivatives(*const fmi2ValueReference, usize, *const fmi2Integer, *mut fmi2Real);
-}
-
-refuse! {
     "no step is ever pending: steps are carried out in the call";
     fmi2CancelStep();
 }
@@ -174,6 +166,49 @@ unsafe extern "C" fn fmi2GetReal(
     unsafe {
         ffi::call(c, VERSION, "fmi2GetReal", |instance| {
             instance.get(Kind::Float64, ffi::slice(vr, nvr)?, ffi::slice_mut(value, nvr)?)
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi2GetDirectionalDerivative(
+    c: fmi2Component,
+    vUnknown_ref: *const fmi2ValueReference,
+    nUnknown: usize,
+    vKnown_ref: *const fmi2ValueReference,
+    nKnown: usize,
+    dvKnown: *const fmi2Real,
+    dvUnknown: *mut fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(c, VERSION, "fmi2GetDirectionalDerivative", |instance| {
+            instance.directional_derivative(
+                ffi::slice(vUnknown_ref, nUnknown)?,
+                ffi::slice(vKnown_ref, nKnown)?,
+                ffi::slice(dvKnown, nKnown)?,
+                ffi::slice_mut(dvUnknown, nUnknown)?,
+            )
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(c, VERSION, "fmi2GetRealOutputDerivatives", |instance| {
+            instance.output_derivatives(
+                ffi::slice(vr, nvr)?,
+                ffi::slice(order, nvr)?,
+                ffi::slice_mut(value, nvr)?,
+            )
         })
     }
 }

@@ -86,19 +86,6 @@ refuse! {
     );
 }
 
-refuse! {
-    "this FMU provides no derivatives of its outputs";
-    fmi3GetDirectionalDerivative(
-        *const fmi3ValueReference, usize, *const fmi3ValueReference, usize, *const fmi3Float64, usize,
-        *mut fmi3Float64, usize
-    );
-    fmi3GetAdjointDerivative(
-        *const fmi3ValueReference, usize, *const fmi3ValueReference, usize, *const fmi3Float64, usize,
-        *mut fmi3Float64, usize
-    );
-    fmi3GetOutputDerivatives(*const fmi3ValueReference, usize, *const fmi3Int32, *mut fmi3Float64, usize);
-}
-
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3GetVersion() -> fmi3String {
     c"3.0".as_ptr()
@@ -260,6 +247,77 @@ unsafe extern "C" fn fmi3GetFloat64(
             instance.get(
                 Kind::Float64,
                 ffi::slice(valueReferences, nValueReferences)?,
+                ffi::slice_mut(values, nValues)?,
+            )
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi3GetDirectionalDerivative(
+    instance: fmi3Instance,
+    unknowns: *const fmi3ValueReference,
+    nUnknowns: usize,
+    knowns: *const fmi3ValueReference,
+    nKnowns: usize,
+    seed: *const fmi3Float64,
+    nSeed: usize,
+    sensitivity: *mut fmi3Float64,
+    nSensitivity: usize,
+) -> fmi3Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(instance, VERSION, "fmi3GetDirectionalDerivative", |instance| {
+            instance.directional_derivative(
+                ffi::slice(unknowns, nUnknowns)?,
+                ffi::slice(knowns, nKnowns)?,
+                ffi::slice(seed, nSeed)?,
+                ffi::slice_mut(sensitivity, nSensitivity)?,
+            )
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi3GetAdjointDerivative(
+    instance: fmi3Instance,
+    unknowns: *const fmi3ValueReference,
+    nUnknowns: usize,
+    knowns: *const fmi3ValueReference,
+    nKnowns: usize,
+    seed: *const fmi3Float64,
+    nSeed: usize,
+    sensitivity: *mut fmi3Float64,
+    nSensitivity: usize,
+) -> fmi3Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(instance, VERSION, "fmi3GetAdjointDerivative", |instance| {
+            instance.adjoint_derivative(
+                ffi::slice(unknowns, nUnknowns)?,
+                ffi::slice(knowns, nKnowns)?,
+                ffi::slice(seed, nSeed)?,
+                ffi::slice_mut(sensitivity, nSensitivity)?,
+            )
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi3GetOutputDerivatives(
+    instance: fmi3Instance,
+    valueReferences: *const fmi3ValueReference,
+    nValueReferences: usize,
+    orders: *const fmi3Int32,
+    values: *mut fmi3Float64,
+    nValues: usize,
+) -> fmi3Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(instance, VERSION, "fmi3GetOutputDerivatives", |instance| {
+            instance.output_derivatives(
+                ffi::slice(valueReferences, nValueReferences)?,
+                ffi::slice(orders, nValueReferences)?,
                 ffi::slice_mut(values, nValues)?,
             )
         })

@@ -5,6 +5,7 @@
 //! `Discard`, since a smaller communication step cannot help a solver that has already substepped.
 
 mod access;
+mod derivatives;
 mod parts;
 
 use moorline::interface::{Binding, Interface};
@@ -684,6 +685,74 @@ mod tests {
         instance.do_step(1.1, 0.1).unwrap();
         let refusal = instance.do_step(1.2, 0.1).unwrap_err();
         assert!(refusal.0.contains("stop time 1.2 s"), "{}", refusal.0);
+    }
+
+    #[test]
+    fn directional_and_adjoint_derivatives_are_those_of_steps_from_a_saved_state() {
+        let asked = "[output]\nderivatives = true\n[solver]\ninput_reconstruction = \"interpolate\"\n";
+        assert!(!SCENE.contains("[output]") && !SCENE.contains("[solver]"));
+        let mut instance = instance_of(&format!("{SCENE}\n{asked}"), FmiVersion::Three);
+        instance.enter_initialization().unwrap();
+        let inputs = ["hand.x", "hand.z", "hand.vx", "hand.vz"].map(|name| reference(&instance, name));
+        let forces = ["hand.fx", "hand.fz"].map(|name| reference(&instance, name));
+        let mut at_rest = [0.0; 2];
+        let still = [1.0, 0.0, 0.0, 0.0];
+        instance
+            .directional_derivative(&forces, &inputs, &still, &mut at_rest)
+            .unwrap();
+        assert!(at_rest[0] < 0.0, "{at_rest:?}");
+        instance.exit_initialization().unwrap();
+        let (start, values, seed) = (instance.snapshot(), [0.01, 0.0, 0.3, -0.2], [0.5, -0.3, 2.0, 1.0]);
+        let mut stepped = |by: f64| {
+            instance.restore(&start).unwrap();
+            let moved: Vec<f64> = values
+                .iter()
+                .zip(seed)
+                .map(|(value, part)| value + by * part)
+                .collect();
+            instance.set(Kind::Float64, &inputs, &moved).unwrap();
+            instance.do_step(0.0, 0.01).unwrap();
+            forces.map(|reference| {
+                let mut value = [0.0];
+                instance.get(Kind::Float64, &[reference], &mut value).unwrap();
+                value[0]
+            })
+        };
+        let [below, above] = [stepped(-1e-6), stepped(1e-6)];
+        stepped(0.0);
+        let mut found = [0.0; 2];
+        instance
+            .directional_derivative(&forces, &inputs, &seed, &mut found)
+            .unwrap();
+        let mut by_input = [0.0; 4];
+        instance
+            .adjoint_derivative(&forces, &inputs, &[1.0, 0.0], &mut by_input)
+            .unwrap();
+        let adjoint: f64 = by_input.iter().zip(seed).map(|(a, b)| a * b).sum();
+        assert!((adjoint - found[0]).abs() < 1e-12 * found[0].abs());
+        for axis in 0..2 {
+            let by_hand = (above[axis] - below[axis]) / 2e-6;
+            let error = (found[axis] - by_hand).abs() / by_hand.abs();
+            assert!(error < 1e-5, "{axis}: {} {by_hand}", found[axis]);
+        }
+        assert!(instance.output_derivatives(&forces, &[2, 2], &mut found).is_err());
+        instance.output_derivatives(&forces, &[1, 1], &mut found).unwrap();
+        let parameter = reference(&instance, "rope.mass");
+        let refusal = instance.directional_derivative(&forces, &[parameter], &[1.0], &mut found);
+        assert!(
+            refusal
+                .unwrap_err()
+                .0
+                .starts_with("rope.mass: derivatives are given by displacements")
+        );
+    }
+
+    #[test]
+    fn without_its_key_a_scene_has_no_derivatives() {
+        let mut instance = started();
+        let [force, place] = ["hand.fx", "hand.x"].map(|name| reference(&instance, name));
+        let refusal = instance.directional_derivative(&[force], &[place], &[1.0], &mut [0.0]);
+        assert!(refusal.unwrap_err().0.contains("`derivatives` in [output]"));
     }
 
     #[test]

@@ -35,6 +35,7 @@
 
 mod differences;
 mod extrapolation;
+mod fading;
 
 use std::array::from_fn;
 
@@ -48,6 +49,7 @@ use crate::scene::Reconstruction;
 use differences::Differences;
 pub use extrapolation::{Clock, Extrapolation};
 use extrapolation::{Order, SAMPLES_MAX, Samples};
+pub use fading::Fading;
 
 /// Acceleration that the removal of a prediction error may use in any case [m/s²]: a fiftieth of g.
 const EASE: f64 = 0.2;
@@ -279,6 +281,37 @@ impl AxesPath {
         let length = end - start;
         self.curve = Hermites::bridge([start, length, 1.0 / length], self.end, to);
         self.end = to;
+    }
+
+    /// Leads over a span of time [s] from the end of the path `before` to given positions [m, rad] and velocities [m/s, rad/s], and not to its own
+    /// prediction.
+    pub fn lead(&mut self, before: &AxesPath, [start, length]: [f64; 2], to: [Lanes; 2]) {
+        self.curve = Hermites::bridge([start, length, 1.0 / length], before.end, to);
+        self.end = to;
+    }
+
+    /// Newest sample from the host [m, rad]; `None` where it has a velocity along any axis.
+    pub fn unrated(&self) -> Option<Lanes> {
+        (!self.rated.any_positive()).then_some(self.positions[0])
+    }
+
+    /// Becomes straight segments from a time [s] over a length [s], from positions [m, rad] at velocities [m/s, rad/s].
+    pub fn glide(&mut self, [start, length]: [f64; 2], from: [Lanes; 2]) {
+        let [position, velocity] = from;
+        self.end = [position + Lanes::splat(length) * velocity, velocity];
+        self.curve = Hermites::bridge([start, length, 1.0 / length], from, self.end);
+    }
+
+    /// Moves the end of the present segments, which last from a time [s] over a length [s], by distances [m, rad] and velocities [m/s, rad/s].
+    pub fn shift_end(&mut self, [start, length]: [f64; 2], [distance, velocity]: [Lanes; 2]) {
+        let [[position, slope, _], _] = self.curve.ends();
+        self.end = [self.end[0] + distance, self.end[1] + velocity];
+        self.curve = Hermites::bridge([start, length, 1.0 / length], [position, slope], self.end);
+    }
+
+    /// Positions [m, rad] and velocities [m/s, rad/s] at the end of the present segments.
+    pub fn end(&self) -> [Lanes; 2] {
+        self.end
     }
 
     /// Positions, velocities and accelerations at time `t` [s] of the present segments.

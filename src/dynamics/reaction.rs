@@ -38,7 +38,7 @@
 //!
 //! Source: the node's own equation of motion, as for the interior nodes; the loads are derived here from the Taylor series of T q.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::beam::BeamView;
 use super::leapfrog::segment_tension;
@@ -111,6 +111,37 @@ pub fn nodal_force(
     })
 }
 
+/// Mass [kg] of a line at one of its ends, −∂F/∂a of [`end_force`] at the present positions and velocities.
+///
+/// With the load uniform over the half node it is the mass M(t) of the half node, added mass included. With the load linear to the next node
+/// F holds ⅔ of the end's own load, the rest being that of the next node, whose acceleration is a state of the line: ⅔ M(t₀), t₀ the tangent at
+/// the end. The share of the linear load is taken as it is. The force of a beam is linear in a, so that its mass follows from unit
+/// accelerations; a closed-form catenary and a released end have none.
+pub fn end_mass(
+    line: &Line,
+    state: &LineState,
+    end: End,
+    point: &PointState,
+    loads: (WaterAlong, [Vector3<f64>; 2]),
+    negative_tension: bool,
+) -> Matrix3<f64> {
+    let still = point.without_acceleration();
+    if let Some(force) = force_of_line(line, state, end, &still) {
+        return Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
+            let moved = PointState {
+                acceleration: axis,
+                ..still
+            };
+            force - force_of_line(line, state, end, &moved).unwrap_or(force)
+        }));
+    }
+    HalfNode::new(line, state, end, point, loads).mass(
+        state,
+        line.linear_load[end as usize],
+        negative_tension,
+    )
+}
+
 /// Force [N] at an end that has no half node: of a released end, a beam or a closed-form catenary.
 fn force_of_line(line: &Line, state: &LineState, end: End, point: &PointState) -> Option<Vector3<f64>> {
     if state.released[usize::from(end == End::B)] {
@@ -167,20 +198,14 @@ impl<'a> HalfNode<'a> {
     /// Force on the point [N], with the load linear to the next node or uniform over the half.
     fn force(&self, state: &LineState, is_linear: bool, negative_tension: bool) -> Vector3<f64> {
         let (line, end, node, nodes) = (self.line, self.end, self.node, &self.line.nodes);
-        let (segment, other) = match end {
-            End::A => (0, 1),
-            End::B => (node - 1, node - 1),
-        };
-        let chord = state.position[other] - state.position[node];
-        let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let pull = tension(line, state, segment, negative_tension) * inward + self.shear(state, segment);
+        let (chord, inward, pull) = self.pull(state, negative_tension);
         let load = match is_linear {
             true => self.linear_load(state, [inward, pull], negative_tension),
             false => self.load(inward, self.dry.part)[0],
         };
         let mut force = pull + load;
         if let (Some(winch_state), End::B) = (state.winch_state, end) {
-            force -= passing(line, winch_state) * chord / line.segments.length[segment];
+            force -= passing(line, winch_state) * chord / line.segments.length[node - 1];
         }
         force.z -= nodes.weight[node] + self.dry.weight;
         if let Some(contact) = &nodes.contact {
@@ -194,6 +219,30 @@ impl<'a> HalfNode<'a> {
             force += contact.push(node, &state.position, velocity);
         }
         force
+    }
+
+    /// Chord from the end to the next node [m], its direction, and the pull of the segment between them, shear included [N].
+    fn pull(&self, state: &LineState, negative_tension: bool) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
+        let (segment, other) = match self.end {
+            End::A => (0, 1),
+            End::B => (self.node - 1, self.node - 1),
+        };
+        let chord = state.position[other] - state.position[self.node];
+        let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let pull = tension(self.line, state, segment, negative_tension) * inward;
+        (chord, inward, pull + self.shear(state, segment))
+    }
+
+    /// Mass of which the acceleration of the end is a part of the force [kg], see [`end_mass`].
+    fn mass(&self, state: &LineState, is_linear: bool, negative_tension: bool) -> Matrix3<f64> {
+        let (_, inward, pull) = self.pull(state, negative_tension);
+        let masses = Slender::new(self.line.nodes.masses(self.node, self.dry.part));
+        let uniform = masses.matrix(inward);
+        if !is_linear {
+            return uniform;
+        }
+        let (_, share, tangent) = self.linear_part(state, [inward, pull], negative_tension);
+        uniform + share * (masses.matrix(tangent) * (2.0 / 3.0) - uniform)
     }
 
     /// Shear of a segment on its node towards this end [N].
@@ -231,6 +280,21 @@ impl<'a> HalfNode<'a> {
         [inward, pull]: [Vector3<f64>; 2],
         negative_tension: bool,
     ) -> Vector3<f64> {
+        let (linear, share, _) = self.linear_part(state, [inward, pull], negative_tension);
+        if share == 1.0 {
+            return linear;
+        }
+        let [uniform, _] = self.load(inward, self.dry.part);
+        uniform + share * (linear - uniform)
+    }
+
+    /// Load that is linear to the next node [N], its share in the load of the half node [-], and the tangent at the end.
+    fn linear_part(
+        &self,
+        state: &LineState,
+        [inward, pull]: [Vector3<f64>; 2],
+        negative_tension: bool,
+    ) -> (Vector3<f64>, f64, Vector3<f64>) {
         let [next, after] = match self.end {
             End::A => [1, 2],
             End::B => [self.node - 1, self.node - 2],
@@ -262,12 +326,7 @@ impl<'a> HalfNode<'a> {
         let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
         let bulge = self.bulge(state, next, tangents, drag);
         let linear = own + change / 3.0 + bulge;
-        let share = at_surface * ratio.powi(2).min(1.0);
-        if share == 1.0 {
-            return linear;
-        }
-        let [uniform, _] = self.load(inward, self.dry.part);
-        uniform + share * (linear - uniform)
+        (linear, at_surface * ratio.powi(2).min(1.0), tangents[0])
     }
 
     /// Difference of the drag in the middle of the last element from the mean of its ends, over 3/2 [N]; `tangents` are those of the end, the middle

@@ -40,7 +40,9 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
     for variable in variables {
         let (lines, closed_form) = match &variable.binding {
-            Binding::EndForce { body, .. } => (networks_of(model, attached_to(*body)), false),
+            Binding::EndForce { body, .. } | Binding::Interface { body, .. } => {
+                (networks_of(model, attached_to(*body)), false)
+            }
             Binding::Line { line, result } if result.is_catenary() => (BTreeSet::from([*line]), true),
             Binding::Line { line, .. } | Binding::Profile { line, .. } => {
                 (networks_of(model, [*line]), false)
@@ -60,6 +62,27 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
                 of_scope.map(|known| known.reference).collect()
             })
             .clone();
+    }
+}
+
+impl Interface {
+    /// Displacements and velocities of bodies that an output of a step depends on by the motion at its end, as value references.
+    pub fn motions_of(&self, output: &Variable) -> Vec<u32> {
+        let known = |index: usize| output.initial_dependencies.contains(&Interface::reference(index));
+        let rows = || self.variables.iter().enumerate();
+        let moved: BTreeSet<Body> = rows()
+            .filter_map(|(index, row)| match row.binding {
+                Binding::Displacement { body, .. } if known(index) => Some(body),
+                _ => None,
+            })
+            .collect();
+        let of_moved = |(index, row): (usize, &Variable)| match row.binding {
+            Binding::Displacement { body, .. } | Binding::Velocity { body, .. } if moved.contains(&body) => {
+                Some(Interface::reference(index))
+            }
+            _ => None,
+        };
+        rows().filter_map(of_moved).collect()
     }
 }
 

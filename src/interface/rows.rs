@@ -109,7 +109,7 @@ pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
     }
 }
 
-fn component(of: &str, name: &str, along: &str) -> String {
+pub(super) fn component(of: &str, name: &str, along: &str) -> String {
     format!("{of} {name}, component {along} in global axes")
 }
 

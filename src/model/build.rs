@@ -88,6 +88,9 @@ impl Model {
             vessels,
             solver: scene.solver.clone(),
             energy_balance: scene.output.energy_balance,
+            force: scene.output.force,
+            derivatives: scene.output.derivatives,
+            interval: scene.output.interval,
         })
     }
 

@@ -30,7 +30,7 @@ use crate::physics::slender::Slender;
 use crate::physics::stretch::StretchLaw;
 use crate::physics::stretch_step::Spring;
 use crate::physics::viscoelastic::Viscoelastic;
-use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
+use crate::scene::{ForceOutput, InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint, joint_of_segments};
@@ -74,6 +74,12 @@ pub struct Model {
     pub solver: Solver,
     /// True if the scene requests the energy balance.
     pub energy_balance: bool,
+    /// Force that the scene requests on coupled points and vessels.
+    pub force: ForceOutput,
+    /// True if the scene requests derivatives of the forces.
+    pub derivatives: bool,
+    /// Interval of communication of the scene [s].
+    pub interval: f64,
 }
 
 /// A current.

@@ -142,7 +142,7 @@ fn write_root(
     ]);
     let root = root.with_attributes(stamped);
     root.write_inner_content(|writer| {
-        write_co_simulation(writer, &model_identifier(scene), version)?;
+        write_co_simulation(writer, scene, version)?;
         write_units(writer, interface, version)?;
         write_log_categories(writer)?;
         writer
@@ -159,7 +159,9 @@ fn write_root(
             .write_inner_content(|writer| write_variables(writer, interface, version))?;
         writer
             .create_element("ModelStructure")
-            .write_inner_content(|writer| write_structure(writer, interface, version))?;
+            .write_inner_content(|writer| {
+                write_structure(writer, interface, version, scene.output.derivatives)
+            })?;
         Ok(())
     })?;
     Ok(())
@@ -220,39 +222,46 @@ fn is_structured(name: &str) -> bool {
     })
 }
 
-fn write_co_simulation(writer: &mut Xml, identifier: &str, version: FmiVersion) -> io::Result<()> {
+fn write_co_simulation(writer: &mut Xml, scene: &Scene, version: FmiVersion) -> io::Result<()> {
+    let identifier = model_identifier(scene);
+    let (derivatives, order) = match scene.output.derivatives {
+        true => ("true", "1"),
+        false => ("false", "0"),
+    };
     let attributes: &[(&str, &str)] = match version {
         FmiVersion::Two => &[
-            ("modelIdentifier", identifier),
+            ("modelIdentifier", &identifier),
             ("needsExecutionTool", "false"),
             ("canHandleVariableCommunicationStepSize", "true"),
             ("canInterpolateInputs", "true"),
-            ("maxOutputDerivativeOrder", "0"),
+            ("maxOutputDerivativeOrder", order),
             ("canRunAsynchronuously", "false"),
             ("canBeInstantiatedOnlyOncePerProcess", "false"),
             ("canNotUseMemoryManagementFunctions", "true"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
-            ("providesDirectionalDerivative", "false"),
+            ("providesDirectionalDerivative", derivatives),
         ],
         FmiVersion::Three => &[
-            ("modelIdentifier", identifier),
+            ("modelIdentifier", &identifier),
             ("needsExecutionTool", "false"),
             ("canBeInstantiatedOnlyOncePerProcess", "false"),
             ("canGetAndSetFMUState", "true"),
             ("canSerializeFMUState", "true"),
-            ("providesDirectionalDerivatives", "false"),
+            ("providesDirectionalDerivatives", derivatives),
             ("canHandleVariableCommunicationStepSize", "true"),
-            ("maxOutputDerivativeOrder", "0"),
+            ("maxOutputDerivativeOrder", order),
             ("providesIntermediateUpdate", "true"),
             ("mightReturnEarlyFromDoStep", "false"),
             ("canReturnEarlyAfterIntermediateUpdate", "true"),
             ("hasEventMode", "false"),
         ],
     };
+    let adjoint = scene.output.derivatives && version == FmiVersion::Three;
+    let adjoint = adjoint.then_some(("providesAdjointDerivatives", "true"));
     writer
         .create_element("CoSimulation")
-        .with_attributes(attributes.iter().copied())
+        .with_attributes(attributes.iter().copied().chain(adjoint))
         .write_empty()?;
     Ok(())
 }
@@ -462,7 +471,12 @@ fn write_variable3(writer: &mut Xml, variable: &Variable, index: usize) -> io::R
     Ok(())
 }
 
-fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
+fn write_structure(
+    writer: &mut Xml,
+    interface: &Interface,
+    version: FmiVersion,
+    derivatives: bool,
+) -> io::Result<()> {
     let of = |causalities: &'static [Causality]| {
         interface
             .variables()
@@ -470,7 +484,12 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
             .enumerate()
             .filter(move |(_, variable)| causalities.contains(&variable.causality))
     };
-    let outputs = || of(&[Causality::Output]).map(|(index, _)| (index, ""));
+    // without derivatives outputs change with a step alone
+    let depends = |variable| match derivatives {
+        true => references(&interface.motions_of(variable)),
+        false => String::new(),
+    };
+    let outputs = || of(&[Causality::Output]).map(|(index, variable)| (index, depends(variable)));
     let initial: Vec<(usize, String)> = of(&[Causality::Output, Causality::CalculatedParameter])
         .map(|(index, variable)| (index, references(&variable.initial_dependencies)))
         .collect();
@@ -478,7 +497,7 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
         FmiVersion::Two => {
             writer.create_element("Outputs").write_inner_content(|writer| {
                 outputs().try_for_each(|(index, depends)| {
-                    write_unknown(writer, ["Unknown", "index"], index, depends)
+                    write_unknown(writer, ["Unknown", "index"], index, &depends)
                 })
             })?;
             writer
@@ -491,7 +510,7 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
         }
         FmiVersion::Three => {
             for (index, depends) in outputs() {
-                write_unknown(writer, ["Output", "valueReference"], index, depends)?;
+                write_unknown(writer, ["Output", "valueReference"], index, &depends)?;
             }
             for (index, depends) in &initial {
                 write_unknown(writer, ["InitialUnknown", "valueReference"], *index, depends)?;

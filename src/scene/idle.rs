@@ -5,7 +5,8 @@ use super::notes::Note;
 use super::path::quoted;
 use super::table::{Acts, Table};
 use super::{
-    Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section, Solver,
+    ForceOutput, Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed,
+    Section, Solver,
 };
 
 impl Scene {
@@ -145,6 +146,14 @@ impl Scene {
                 "elements and integrator are given, so that `tolerance` changes nothing";
             "" if (rests || meshed || solver.elements.is_some() || still) && solver.tolerance_of != usual.tolerance_of =>
                 "elements are not selected by trials with the scene's motion: `tolerance_of` changes nothing";
+        }
+        let output = &self.output;
+        rules! { notes, "output";
+            "" if alone && output.interface.is_some() => "nothing is coupled to a host: `interface` changes nothing";
+            "" if alone && output.force != ForceOutput::Total => "nothing is coupled to a host: `force` changes nothing";
+            "" if rests && !alone && output.force != ForceOutput::Total =>
+                "quasi-static, without inertia: `force` changes nothing";
+            "" if self.vessels.is_empty() && output.stiffness => "there is no vessel: `stiffness` changes nothing";
         }
     }
 }

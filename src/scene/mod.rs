@@ -98,7 +98,8 @@ pub use point::{Axis, Point, PointForce, PointKind, PointMoment, Vessel};
 pub use read::{LoadedScene, TOML, folder_of, is_toml, load, load_text, part, read_text};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
 pub use settings::{
-    Bossak, Format, Frames, Integrator, Output, Profile, Reconstruction, Solver, Threads, ToleranceOf,
+    Bossak, ForceOutput, Format, Frames, Integrator, InterfaceOutput, Output, Profile, Reconstruction,
+    Solver, Threads, ToleranceOf,
 };
 use table::{not_negative, table};
 pub use tension_strain::TensionStrain;

@@ -33,7 +33,7 @@ table! {
         pub bossak: Option<Bossak>,
         /// Path of a coupled point between communication points.
         pub input_reconstruction: Reconstruction = Reconstruction::Smooth => PLAIN.described("path of a coupled point between communication \
-            points: 0 smooth, 1 constant velocity with a jump, 2 cubics through inputs that hold for the end of the step"),
+            points: 0 smooth, 1 constant velocity with a jump, 2 cubics through inputs that hold for the end of the step, 3 smooth with noise filtered"),
         /// Number of threads that share the lines [-], 1 to 256, or `"auto"`. Results do not depend on it.
         pub threads: Threads = Threads::Auto,
     }
@@ -100,6 +100,8 @@ choice! {
         /// Cubics through inputs that hold for the end of the communication step, without prediction: for hosts that know the motion, or that
         /// step the floating body first.
         Interpolate = "interpolate",
+        /// As `smooth`; displacements that are given without velocities are filtered by a memory that follows from their scatter: for motions with noise.
+        Filtered = "filtered",
     }
 }
 
@@ -115,6 +117,15 @@ table! {
         /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost about half as much
         /// again.
         pub energy_balance: bool = false,
+        /// Force `fx` … of a coupled point or a vessel in the variables.
+        pub force: ForceOutput = ForceOutput::Total,
+        /// Further variables for hosts that solve for a body together with its mooring; none where absent.
+        pub interface: Option<InterfaceOutput>,
+        /// True if the quasi-static stiffness of the mooring on every vessel is a variable.
+        pub stiffness: bool = false,
+        /// True if forces have derivatives by the motion at the end of the step, and in time: the directional derivatives of FMI. The state at the
+        /// start of every step is then kept.
+        pub derivatives: bool = false,
         /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),
         /// Format of the tables of `moorline run`; `csv` where absent.
@@ -187,6 +198,26 @@ impl Value for Profile {
 
 /// Digits with which every number reads back to the same bits [-].
 const DIGITS_MAX: f64 = 17.0;
+
+choice! {
+    /// Force on coupled points and vessels.
+    pub enum ForceOutput {
+        /// Reaction with the inertia of the half elements at the end.
+        Total = "total",
+        /// Reaction without the mass of the end times its acceleration: the host has the mass on its own side.
+        WithoutInertia = "without_inertia",
+    }
+}
+
+choice! {
+    /// Variables for hosts that solve for a body together with its mooring.
+    pub enum InterfaceOutput {
+        /// Mass of the mooring's ends on the body.
+        Mass = "mass",
+        /// The mass, and force, stiffness and damping over the coming step.
+        Impedance = "impedance",
+    }
+}
 
 choice! {
     /// Format of tables.

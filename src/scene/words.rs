@@ -13,7 +13,7 @@ pub(super) use points::motion_in_words;
 use super::channel::Channel;
 use super::check::{number, quantity};
 use super::table::{Choice, Kind, Table};
-use super::{Format, Frames, Integrator, Output, Reconstruction, Scene};
+use super::{ForceOutput, Format, Frames, Integrator, InterfaceOutput, Output, Reconstruction, Scene};
 
 /// Widest line of the text, in characters.
 const WIDTH: usize = 110;
@@ -70,6 +70,7 @@ impl Scene {
                 Some("coupled points jump to the positions that a host gives".to_string())
             }
             Reconstruction::Interpolate => Some("inputs of a host hold for the end of its step".to_string()),
+            Reconstruction::Filtered => Some("displacements of a host are filtered".to_string()),
         };
         let channels = (!output.channels.is_empty())
             .then(|| format!("further columns of `run`: {}", output.channels.join(", ")));
@@ -89,6 +90,7 @@ impl Scene {
             .then(|| "with the energy balance".to_string());
         let tensions = tensions.then(|| TENSIONS_OF_CHANNELS.to_string());
         let rest = [inputs, balance, channels, tensions].into_iter().flatten();
+        let rest = rest.chain(interface_in_words(output).map(str::to_string));
         always.into_iter().chain(rest).collect()
     }
 
@@ -233,4 +235,19 @@ fn tables_in_words(output: &Output) -> String {
         }
     };
     format!("{format}{digits}{shapes}")
+}
+
+/// What the output has for hosts that solve for bodies together with their mooring.
+fn interface_in_words(output: &Output) -> impl Iterator<Item = &'static str> {
+    let interface = output.interface.map(|interface| match interface {
+        InterfaceOutput::Mass => "with the mass of the mooring's ends for a host",
+        InterfaceOutput::Impedance => "with mass, damping and stiffness of the coming step for a host",
+    });
+    let inertia = (output.force == ForceOutput::WithoutInertia)
+        .then_some("forces on coupled points and vessels are without the inertia of the ends");
+    let stiffness = output
+        .stiffness
+        .then_some("with the quasi-static stiffness on vessels");
+    let derivatives = output.derivatives.then_some("forces have derivatives");
+    [interface, inertia, stiffness, derivatives].into_iter().flatten()
 }

@@ -8,7 +8,7 @@ use super::inputs::{Inputs, PointInput};
 use super::prescribed::HostEnds;
 use super::winches::{self, WinchPath};
 use super::{Simulation, Snapshot};
-use crate::dynamics::motion::{Clock, Extrapolation, HostPath, InputSample, VesselPath};
+use crate::dynamics::motion::{AxesPath, Clock, Extrapolation, Fading, HostPath, InputSample, VesselPath};
 use crate::dynamics::{StepError, StepFailure};
 use crate::math::unit;
 use crate::model::{Line, Model, Point, Role};
@@ -24,6 +24,8 @@ pub(super) struct Paths {
     pub vessels: Vec<VesselPath>,
     /// Lengths that the winches pay out, by line; empty where there are none.
     pub winch_paths: Vec<WinchPath>,
+    /// Filters of the coupled points, then of displacement and angles of the vessels; empty except with [`Reconstruction::Filtered`].
+    filters: Vec<Fading>,
 }
 
 impl Clone for Paths {
@@ -33,6 +35,7 @@ impl Clone for Paths {
             points: self.points.clone(),
             vessels: self.vessels.clone(),
             winch_paths: self.winch_paths.clone(),
+            filters: self.filters.clone(),
         }
     }
 
@@ -41,6 +44,7 @@ impl Clone for Paths {
         self.points.clone_from(&source.points);
         self.vessels.clone_from(&source.vessels);
         self.winch_paths.clone_from(&source.winch_paths);
+        self.filters.clone_from(&source.filters);
     }
 }
 
@@ -58,12 +62,38 @@ impl Paths {
             HostPath::at_rest(point.reference + Vector3::from(input.displacement))
         };
         let vessels = inputs.vessels.iter();
-        Paths {
+        let mut paths = Paths {
             clock: Clock::new(time),
             points: coupled.map(place).collect(),
             vessels: vessels.map(|input| VesselPath::at_rest(input.pose)).collect(),
             winch_paths: winches::paths(model, &inputs.length_changes, time, follows_scene),
+            filters: Vec::new(),
+        };
+        if model.solver.input_reconstruction == Reconstruction::Filtered {
+            let at_rest = |path: &mut AxesPath| Fading::at_rest(time, path.end()[0]);
+            paths.filters = paths.axes().map(at_rest).collect();
         }
+        paths
+    }
+
+    /// Paths of the coupled points, then of displacement and angles of the vessels.
+    fn axes(&mut self) -> impl Iterator<Item = &mut AxesPath> {
+        let vessels = self.vessels.iter_mut().flat_map(|path| &mut path.0);
+        self.points.iter_mut().map(|path| &mut path.0).chain(vessels)
+    }
+
+    /// Leads the paths of what the host gives without velocities, continued from those `before`, to the predictions of their filters
+    /// over a step from a time [s] of a length [s].
+    fn filter(&mut self, before: &mut Paths, span @ [time, length]: [f64; 2]) {
+        let mut filters = std::mem::take(&mut self.filters);
+        filters.clone_from(&before.filters);
+        for ((path, before), filter) in self.axes().zip(before.axes()).zip(&mut filters) {
+            if let Some(sample) = path.unrated() {
+                let to = filter.predict(time, sample, length);
+                path.lead(before, span, to);
+            }
+        }
+        self.filters = filters;
     }
 
     /// Times from the newest sample to now, `time` [s], and from the one before to the newest [s], where both are known and in order.
@@ -175,6 +205,13 @@ impl Simulation {
                 extrapolation,
                 ends: self.prescribed.hosted(),
             });
+            if model.solver.input_reconstruction == Reconstruction::Filtered {
+                let mut before = before.clone();
+                paths.filter(&mut before, [time, step]);
+                for (ends, path) in self.prescribed.hosted().iter_mut().zip(&paths.points) {
+                    *ends = path.0.ends();
+                }
+            }
         }
         if !before.winch_paths.is_empty() {
             paths.winch_paths.clone_from(&before.winch_paths);
@@ -183,5 +220,18 @@ impl Simulation {
             self.work.set_winch_paths(winch_paths);
         }
         Ok(())
+    }
+
+    /// Uses paths that are laid out up to a length [s] of the step.
+    pub(super) fn take_paths(&mut self, length: f64) {
+        let end = self.snapshot.state.time + length;
+        for (ends, path) in self.prescribed.hosted().iter_mut().zip(&self.paths.points) {
+            let [start, _] = path.0.ends();
+            *ends = [start, path.0.at(end)];
+        }
+        if !self.paths.winch_paths.is_empty() {
+            let winch_paths = self.paths.winch_paths.iter().map(|winch_state| winch_state.path);
+            self.work.set_winch_paths(winch_paths);
+        }
     }
 }

@@ -96,7 +96,8 @@ impl<'a> MotionSource<'a> {
         }
     }
 
-    fn pose(&self, vessel: usize, t: f64) -> Pose {
+    /// Pose of the motion of a vessel at time `t` [s].
+    pub(super) fn pose(&self, vessel: usize, t: f64) -> Pose {
         match self.vessel_motion(vessel) {
             Some(motion) => motion.pose(t),
             None => self.paths.vessels[vessel].at(t),

@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
+use super::coupling::InterfaceValues;
 use super::prescribed::MotionSource;
 use super::{Simulation, start};
 use crate::dynamics::advance::Counters;
@@ -57,6 +58,8 @@ pub(super) struct Reactions {
     /// Force [N] and moment [N m] on every vessel.
     vessels: Vec<OnceCell<[f64; 6]>>,
     lines: Vec<LineReactions>,
+    /// Mass, impedance and stiffness of the bodies.
+    pub(super) interface: OnceCell<InterfaceValues>,
 }
 
 /// Those of a line.
@@ -76,6 +79,7 @@ impl Reactions {
             energy: OnceCell::new(),
             vessels: vec![OnceCell::new(); model.vessels.len()],
             lines: vec![LineReactions::default(); model.lines.len()],
+            interface: OnceCell::new(),
         }
     }
 
@@ -90,6 +94,7 @@ impl Reactions {
             line.tensions.take();
             line.bending.take();
         }
+        self.interface.take();
     }
 }
 
@@ -225,7 +230,7 @@ impl Simulation {
     }
 
     /// Present place of the origin of a vessel [m].
-    fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
+    pub(super) fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
         let snapshot = &self.snapshot;
         let at = MotionSource::new(&self.model, &snapshot.paths, snapshot.follows_scene);
         at.frame(vessel, snapshot.state.time).origin.position
@@ -272,7 +277,7 @@ impl Simulation {
     }
 
     /// Force of a point itself on its support [N], in the state that `seen` makes of its present one.
-    fn own_force(&self, point: usize, seen: impl Fn(PointState) -> PointState) -> Vector3<f64> {
+    pub(super) fn own_force(&self, point: usize, seen: impl Fn(PointState) -> PointState) -> Vector3<f64> {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let data = &model.points[point];
         if data.own.is_none() && data.load.is_none() {
@@ -284,7 +289,7 @@ impl Simulation {
     }
 
     /// Water along a line and moments on its ends [N m].
-    fn loads_along(&self, line: usize) -> (WaterAlong<'_>, [Vector3<f64>; 2]) {
+    pub(super) fn loads_along(&self, line: usize) -> (WaterAlong<'_>, [Vector3<f64>; 2]) {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let water = model.water_along(state, line, state.time);
         (water, model.end_moments(&model.lines[line], state.time))

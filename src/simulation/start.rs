@@ -75,6 +75,8 @@ pub(super) fn begin(
             start_time: time,
             input_record: InputRecord::default(),
             ahead: 0.0,
+            last_step: 0.0,
+            begun: None,
         },
         work,
     ))

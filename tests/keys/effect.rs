@@ -292,7 +292,7 @@ fn fate(found: Result<Outcome, Refusal>, at: &str, [name, key]: [&str; 2], befor
         here && note.text.contains(&format!("`{key}`")) && note.text.contains("nothing")
     };
     // they act on files alone
-    let is_of_files = ["title", "format", "digits", "frames"].contains(&key);
+    let is_of_files = ["title", "format", "digits", "frames", "derivatives"].contains(&key);
     let written = is_of_files && after.loaded.scene.in_words() != before.loaded.scene.in_words();
     match (after.notes.iter().find(about), differ(&after, before) || written) {
         (Some(note), true) => Fate::Silent(format!("acts, against the note {note}")),

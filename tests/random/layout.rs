@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use moorline::scene::channel::LineEnd;
 use moorline::scene::{
-    AngleOrder, Axis, Break, InitialShape, Integrator, Line, LineType, Point, PointForce, PointKind,
-    PointMoment, RestShape, Scene, Section, TimeFunction, Vessel, Winch,
+    AngleOrder, Axis, Break, InitialShape, Integrator, InterfaceOutput, Line, LineType, Point, PointForce,
+    PointKind, PointMoment, RestShape, Scene, Section, TimeFunction, Vessel, Winch,
 };
 use nalgebra::{Rotation3, Vector3};
 
@@ -24,6 +24,7 @@ pub fn scene(tape: &Tape, plan: &Plan) -> Scene {
         ..Scene::default()
     };
     scene.output.energy_balance = true;
+    scene.output.interface = Some(InterfaceOutput::Mass);
     let cable = plan.resists != Resists::Torsion;
     let moving = plan.integrator != Integrator::QuasiStatic;
     if plan.wet {

@@ -12,7 +12,7 @@ const INPUT_MAX: f64 = 1e12;
 
 impl Instance {
     /// Row of a value reference.
-    fn variable(interface: &Interface, reference: u32) -> Result<&Variable, Refusal> {
+    pub(super) fn variable(interface: &Interface, reference: u32) -> Result<&Variable, Refusal> {
         interface
             .variable(reference)
             .ok_or_else(|| unknown(interface, reference))

@@ -1,0 +1,296 @@
+//! Quantities for a host that solves for the motion of a body together with its mooring: mass of the mooring's ends, forces of the coming
+//! step, and derivatives of the forces by the motion at the end of a step.
+//!
+//! **Why explicit coupling needs a heavy body.** A host that steps a body of mass m with the force of the last communication point feeds
+//! this force back one step h late. The force has the parts −M a of the end's half element, −Z v of the waves that the end radiates into the line, Z =
+//! √(EA m_t) along it, and −K x of the geometry. The late inertia needs m > M at any h (added-mass instability: Causin, Gerbeau & Nobile
+//! (2005), Comput. Methods Appl. Mech. Eng. 194, 4506-4527); the late damper needs m > ½Zh, since v₊ = v − (h/m) Z v₋ has a root beyond the unit circle
+//! from h Z/m = 1 to 2 on, by the lag. On the OC3 line M is 950 kg and Z 170 t/s: above h = 0.01 s the impedance decides, not the mass of the end,
+//! and moving M alone to the host's side gains little.
+//!
+//! **The force of the coming step** ([`Simulation::impedance`]). Over a step the force at its end is a function of the state of the line, which is known,
+//! and of position x and velocity v that the end reaches; the cubic between them is that of [`Reconstruction::Interpolate`](crate::scene::Reconstruction).
+//! To first order
+//!
+//! F(t+h) = F₀ − C v − K x − M a,   K = −∂F'/∂x,   C = −∂F'/∂v,   F' = F + M a,
+//!
+//! F₀ being F' + C v + K x of a trial step along the present velocity. What is left out is of second order in the distance between this
+//! prediction and the motion, h²a/2: an error of O(h⁴) in a step. A host that puts M, C and K to its own side, (m + M) a + C v + K x = f + F₀
+//! with the Newmark or generalised-α relations between a, v and x, solves body and line together, as a Rosenbrock method solves a system; it is stable for any
+//! mass, with no iteration and no repeated step, if its own integration is. The position that it finds is then given for the true step. Interface conditions
+//! of this kind are Robin conditions (Badia, Nobile & Vergara (2008), J. Comput. Phys. 227, 7027-7051) and, where K is zero and C is Z, those of
+//! transmission-line modelling (Krus, Jansson & Palmberg (1991), Simulation of fluid power transmission lines).
+//!
+//! The inertia is kept apart because the acceleration at the end of the cubic, (6(x₀ − x) + h(2v₀ + 4v))/h², is not the host's: it turns
+//! differences of positions into forces M·6/h².
+//!
+//! **Derivatives** ([`Simulation::derivative`]). The step just made is repeated from the state at its start, with the end of the path at x ± δ or v ±
+//! δ/h, and the quotient of central differences is taken. So every integrator, its contact, friction and seabed are differentiated as they
+//! were computed: the exact derivative of the discrete step, but for O(δ²) and rounding over δ. δ is 1e-8 of the longest line: rounding
+//! of positions is 1e-8 of it, and it is small beside ah²/6, the displacement that changes the acceleration at the end of the cubic by that of the motion
+//! itself, a, beyond which the load of the last element is not linear. Derivatives are one-sided averages where a node lands, slackens or slips within δ.
+//! A pair of steps is made for each motion that is differentiated by; nothing is computed where none is.
+//!
+//! Before the first step, the force is that of statics, and is differentiated by solving them again.
+//!
+//! Source: derived here.
+
+mod trial;
+
+use std::cell::OnceCell;
+
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+
+use super::Simulation;
+use super::prescribed::MotionSource;
+use crate::dynamics::reaction;
+use crate::model::{Body, End, Model, PointState};
+use crate::scene::{ForceOutput, Integrator};
+pub(super) use trial::StepStart;
+use trial::{Sides, Trial};
+
+/// Part of a step over which rates in time are found [-].
+const PART: f64 = 1e-3;
+/// Reason for which a vessel has no derivatives.
+const NO_RATES: &str = "the pitch of the vessel is 90 degrees, where roll and yaw have no unique rates";
+
+/// Component of the motion at the end of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EndMotion {
+    /// The body that moves.
+    pub body: Body,
+    /// Axis: x, y, z and of a vessel roll, pitch, yaw (of a velocity: rotation about x, y, z), 0 to 5.
+    pub axis: usize,
+    /// True for the velocity, at the same displacement; else the displacement, at the same velocity.
+    pub is_velocity: bool,
+}
+
+/// Force of the mooring at the end of the coming step, F = free − damping·v − stiffness·x − mass·a.
+///
+/// x and v are displacement and velocity of the body as inputs, a its acceleration, with the angular acceleration of a vessel. A point
+/// has the first three rows and columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Impedance {
+    /// Force [N] and moment [N m] at x = v = a = 0.
+    pub free: Vector6<f64>,
+    /// Force [N/m, N] and moment [N, N m] per displacement.
+    pub stiffness: Matrix6<f64>,
+    /// Force [N s/m, N s] and moment [N s, N m s] per velocity.
+    pub damping: Matrix6<f64>,
+}
+
+/// Mass and impedance of the bodies, each evaluated when it is read first.
+#[derive(Debug, Clone)]
+pub(super) struct InterfaceValues {
+    masses: Vec<OnceCell<Matrix6<f64>>>,
+    impedances: Vec<OnceCell<Option<Impedance>>>,
+    stiffnesses: Vec<OnceCell<Option<[[f64; 6]; 6]>>>,
+}
+
+impl InterfaceValues {
+    /// Allocates for a model.
+    pub(super) fn new(model: &Model) -> InterfaceValues {
+        let bodies = model.bodies().count();
+        InterfaceValues {
+            masses: vec![OnceCell::new(); bodies],
+            impedances: vec![OnceCell::new(); bodies],
+            stiffnesses: vec![OnceCell::new(); model.vessels.len()],
+        }
+    }
+}
+
+impl Simulation {
+    fn interface_values(&self) -> &InterfaceValues {
+        let values = &self.reactions.interface;
+        values.get_or_init(|| InterfaceValues::new(&self.model))
+    }
+
+    /// Force [N] and moment [N m] of the mooring on a body as the scene requests it: with the inertia of the ends or without. A point has no
+    /// moment.
+    pub fn host_force(&self, body: Body) -> [f64; 6] {
+        match self.model.force {
+            ForceOutput::Total => self.total_force(body),
+            ForceOutput::WithoutInertia => self.force_without_inertia(body).into(),
+        }
+    }
+
+    fn total_force(&self, body: Body) -> [f64; 6] {
+        match body {
+            Body::Point(point) => {
+                let [x, y, z] = self.end_force(point);
+                [x, y, z, 0.0, 0.0, 0.0]
+            }
+            Body::Vessel(vessel) => self.vessel_force(vessel),
+        }
+    }
+
+    /// Force [N] and moment [N m] on a body, with [`Simulation::end_mass`] times its acceleration added.
+    pub fn force_without_inertia(&self, body: Body) -> Vector6<f64> {
+        let (model, snapshot) = (&*self.model, &self.snapshot);
+        let acceleration = match body {
+            Body::Point(point) => {
+                let a = snapshot.state.points[point].acceleration;
+                Vector6::new(a.x, a.y, a.z, 0.0, 0.0, 0.0)
+            }
+            Body::Vessel(vessel) => {
+                let at = MotionSource::new(model, &snapshot.paths, snapshot.follows_scene);
+                let frame = at.frame(vessel, snapshot.state.time);
+                joined(frame.origin.acceleration, frame.attitude.spin_rate)
+            }
+        };
+        Vector6::from(self.total_force(body)) + self.end_mass(body) * acceleration
+    }
+
+    /// Mass of the mooring's ends on a body: −∂F/∂a at the present positions and velocities, of force [kg, kg m] and moment [kg m, kg m²] by
+    /// acceleration and angular acceleration; added mass and the bodies of points are included. Zero in quasi-static runs.
+    pub fn end_mass(&self, body: Body) -> Matrix6<f64> {
+        let mass = &self.interface_values().masses[place(&self.model, body)];
+        *mass.get_or_init(|| self.evaluate_end_mass(body))
+    }
+
+    fn evaluate_end_mass(&self, body: Body) -> Matrix6<f64> {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let mut sum = Matrix6::zeros();
+        if model.solver.integrator == Integrator::QuasiStatic {
+            return sum;
+        }
+        let origin = match body {
+            Body::Point(point) => state.points[point].position,
+            Body::Vessel(vessel) => self.vessel_origin(vessel),
+        };
+        for point in (0..model.points.len()).filter(|&point| model.moves_with(point, body)) {
+            let mass = self.point_mass(point);
+            let arm = (state.points[point].position - origin).cross_matrix();
+            // a of the point is a + α × arm, the moment arm × F
+            let by_spin = -mass * arm;
+            let blocks = [[mass, by_spin], [arm * mass, arm * by_spin]];
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let mut block = sum.fixed_view_mut::<3, 3>(3 * i, 3 * j);
+                block += blocks[i][j];
+            }
+        }
+        if let Body::Point(_) = body {
+            sum.fixed_view_mut::<3, 3>(3, 3).fill(0.0);
+        }
+        sum
+    }
+
+    /// Mass [kg] of a point: of the ends of its lines and its own.
+    fn point_mass(&self, point: usize) -> Matrix3<f64> {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let at = state.points[point];
+        let of_line = |&(line, end): &(usize, End)| {
+            let (data, shape) = (&model.lines[line], &state.lines[line]);
+            let loads = self.loads_along(line);
+            reaction::end_mass(data, shape, end, &at, loads, model.solver.negative_tension)
+        };
+        let of_lines: Matrix3<f64> = model.points[point].attached.iter().map(of_line).sum();
+        let pushed = |acceleration| {
+            self.own_force(point, |state| PointState {
+                acceleration,
+                ..state
+            })
+        };
+        let still = pushed(Vector3::zeros());
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        of_lines + Matrix3::from_columns(&axes.map(|axis| still - pushed(axis)))
+    }
+
+    /// Force of the mooring on a body over the coming step, which is taken to be as long as the last one; the first as the scene's interval. `None`
+    /// where the step fails, or where the attitude of a vessel has no unique rates.
+    pub fn impedance(&self, body: Body) -> Option<&Impedance> {
+        let impedance = &self.interface_values().impedances[place(&self.model, body)];
+        impedance.get_or_init(|| self.evaluate_impedance(body)).as_ref()
+    }
+
+    fn evaluate_impedance(&self, body: Body) -> Option<Impedance> {
+        let mut trial = Trial::of_coming_step(self)?;
+        let force = |simulation: &Simulation| simulation.force_without_inertia(body);
+        let mut slopes = [Matrix6::zeros(); 2];
+        for (slope, is_velocity) in slopes.iter_mut().zip([false, true]) {
+            for axis in 0..axes(body) {
+                let motion = EndMotion {
+                    body,
+                    axis,
+                    is_velocity,
+                };
+                let Sides { values, apart } = trial.both_sides(motion, force).ok()?;
+                let [below, above] = values;
+                slope.set_column(axis, &((below - above) / apart));
+            }
+        }
+        let [stiffness, damping] = slopes;
+        let [x, v] = trial.end_of(body);
+        Some(Impedance {
+            free: force(trial.run(trial.length).ok()?) + damping * v + stiffness * x,
+            stiffness,
+            damping,
+        })
+    }
+
+    /// [`Simulation::vessel_stiffness`], evaluated once.
+    pub fn static_stiffness(&self, vessel: usize) -> Option<&[[f64; 6]; 6]> {
+        let stiffness = &self.interface_values().stiffnesses[vessel];
+        stiffness.get_or_init(|| self.vessel_stiffness(vessel)).as_ref()
+    }
+
+    /// Derivatives of values that `read` returns, by a component of the motion at the end of the last step: by differences of repeated
+    /// steps, see the module. Before the first step, those of the static values.
+    ///
+    /// # Errors
+    /// A sentence with the reason.
+    pub fn derivative(
+        &self,
+        motion: EndMotion,
+        read: impl Fn(&Simulation) -> Result<Vec<f64>, String>,
+    ) -> Result<Vec<f64>, String> {
+        let Sides { values, apart } = match Trial::of_last_step(self)? {
+            Some(mut trial) => trial.both_sides(motion, read)?,
+            None if motion.is_velocity => return Ok(vec![0.0; read(self)?.len()]),
+            None => trial::beside_statics(self, motion, read)?,
+        };
+        let [below, above] = values;
+        let pairs = above?.into_iter().zip(below?);
+        Ok(pairs.map(|(above, below)| (above - below) / apart).collect())
+    }
+
+    /// Rates in time of values that `read` returns, at the end of the last step: of the parabola through them there and a thousandth and two
+    /// thousandths of the step before, along the same path.
+    ///
+    /// # Errors
+    /// As [`Simulation::derivative`].
+    pub fn rates(&self, read: impl Fn(&Simulation) -> Result<Vec<f64>, String>) -> Result<Vec<f64>, String> {
+        let last = read(self)?;
+        let Some(mut trial) = Trial::of_last_step(self)? else {
+            return Ok(vec![0.0; last.len()]);
+        };
+        let part = PART * trial.length;
+        let mut before = |parts: f64| read(trial.run(trial.length - parts * part)?);
+        let (first, second) = (before(1.0)?, before(2.0)?);
+        let values = last.iter().zip(first.iter().zip(&second));
+        Ok(values
+            .map(|(a, (b, c))| (3.0 * a - 4.0 * b + c) / (2.0 * part))
+            .collect())
+    }
+}
+
+/// Place of a body among all points followed by all vessels.
+fn place(model: &Model, body: Body) -> usize {
+    match body {
+        Body::Point(point) => point,
+        Body::Vessel(vessel) => model.points.len() + vessel,
+    }
+}
+
+/// Number of axes of a body's motion.
+fn axes(body: Body) -> usize {
+    match body {
+        Body::Point(_) => 3,
+        Body::Vessel(_) => 6,
+    }
+}
+
+/// Six components of two vectors.
+fn joined(first: Vector3<f64>, second: Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
+}

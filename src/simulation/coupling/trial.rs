@@ -1,0 +1,255 @@
+//! Steps that are repeated, or made in advance, along a path whose end is moved aside.
+
+use nalgebra::{Vector3, Vector6};
+use serde::{Deserialize, Serialize};
+
+use super::{EndMotion, NO_RATES, joined};
+use crate::math::attitude::{Attitude, Order, angle_rates};
+use crate::math::lanes::Lanes;
+use crate::model::{Body, Role};
+use crate::simulation::paths::{Paths, is_coupled};
+use crate::simulation::prescribed::MotionSource;
+use crate::simulation::{Simulation, Snapshot};
+
+/// Displacement of a difference quotient over the longest line [-].
+const ASIDE: f64 = 1e-8;
+/// Shortest lever of rotations over the longest line [-].
+const LEVER_MIN: f64 = 1e-3;
+
+/// Start of the last step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(in crate::simulation) struct StepStart {
+    pub snapshot: Snapshot,
+    /// Length of the step [s].
+    pub step: f64,
+}
+
+/// Values on both sides of a motion, below and above, and the distance of the two [m, rad, m/s, rad/s].
+pub(super) struct Sides<T> {
+    pub values: [T; 2],
+    pub apart: f64,
+}
+
+/// A step from a start along given paths.
+pub(super) struct Trial {
+    simulation: Simulation,
+    start: Snapshot,
+    paths: Box<Paths>,
+    /// Length of the step [s].
+    pub length: f64,
+}
+
+impl Trial {
+    /// The last step again. `None` before the first one.
+    pub(super) fn of_last_step(simulation: &Simulation) -> Result<Option<Trial>, String> {
+        if !simulation.model.derivatives {
+            return Err("the scene asks for no derivatives (`derivatives` in [output])".into());
+        }
+        if simulation.snapshot.follows_scene {
+            return Err(
+                "along the motion of the scene there are no derivatives: the host must move the bodies"
+                    .into(),
+            );
+        }
+        let Some(begun) = &simulation.snapshot.begun else {
+            return Ok(None);
+        };
+        Ok(Some(Trial {
+            simulation: simulation.clone(),
+            start: begun.snapshot.clone(),
+            paths: simulation.snapshot.paths.clone(),
+            length: begun.step,
+        }))
+    }
+
+    /// The coming step, as long as the last one, along the present velocities of all bodies. `None` where a vessel has no unique rates.
+    pub(super) fn of_coming_step(simulation: &Simulation) -> Option<Trial> {
+        let (model, snapshot) = (&*simulation.model, &simulation.snapshot);
+        let length = match snapshot.last_step {
+            0.0 => model.interval,
+            step => step,
+        };
+        let (time, lanes) = (snapshot.state.time, |v: Vector3<f64>| {
+            Lanes::new([v.x, v.y, v.z, v.z])
+        });
+        let mut paths = snapshot.paths.clone();
+        let coupled = model.points.iter().zip(&snapshot.state.points);
+        let coupled = coupled.filter(|(point, _)| is_coupled(point));
+        for (path, (_, at)) in paths.points.iter_mut().zip(coupled) {
+            path.0
+                .glide([time, length], [at.position, at.velocity].map(lanes));
+        }
+        let at = MotionSource::new(model, &snapshot.paths, snapshot.follows_scene);
+        for (vessel, path) in paths.vessels.iter_mut().enumerate() {
+            let (data, frame) = (&model.vessels[vessel], at.frame(vessel, time));
+            let pose = data.pose_for_host(&at.pose(vessel, time), &frame);
+            let angles = Vector3::new(pose[3], pose[4], pose[5]);
+            let rates = angle_rates(data.attitude + angles, frame.attitude.spin)?;
+            let place = Vector3::new(pose[0], pose[1], pose[2]);
+            let [shift, turn] = &mut path.0;
+            shift.glide([time, length], [place, frame.origin.velocity].map(lanes));
+            turn.glide([time, length], [angles, rates].map(lanes));
+        }
+        let mut start = snapshot.clone();
+        (start.follows_scene, start.begun) = (false, None);
+        Some(Trial {
+            simulation: simulation.clone(),
+            start,
+            paths,
+            length,
+        })
+    }
+
+    /// Displacement and velocity that a body reaches at the end of the step, as inputs.
+    pub(super) fn end_of(&self, body: Body) -> [Vector6<f64>; 2] {
+        let model = &self.simulation.model;
+        match body {
+            Body::Point(point) => {
+                let [position, velocity] = self.paths.points[place_of_path(&self.simulation, point)].0.end();
+                let moved = position.xyz() - model.points[point].reference;
+                [moved, velocity.xyz()].map(|three| joined(three, Vector3::zeros()))
+            }
+            Body::Vessel(vessel) => {
+                let [shift, turn] = self.paths.vessels[vessel].0.each_ref().map(|path| path.end());
+                let spin = spin(model.vessels[vessel].attitude + turn[0].xyz(), turn[1].xyz());
+                [
+                    joined(shift[0].xyz(), turn[0].xyz()),
+                    joined(shift[1].xyz(), spin),
+                ]
+            }
+        }
+    }
+
+    /// Makes the step up to a length [s] of it.
+    pub(super) fn run(&mut self, length: f64) -> Result<&Simulation, String> {
+        self.step_beside(length, None)
+    }
+
+    fn step_beside(&mut self, length: f64, aside: Option<(EndMotion, f64)>) -> Result<&Simulation, String> {
+        let simulation = &mut self.simulation;
+        simulation.restore(self.start.clone());
+        let mut paths = self.paths.clone();
+        if let Some((motion, by)) = aside {
+            let span = [self.start.state.time, self.length];
+            shift_end(&mut paths, simulation, motion, span, by)?;
+        }
+        simulation.paths = paths;
+        simulation.take_paths(length);
+        simulation.integrate(length).map_err(|e| e.to_string())?;
+        Ok(simulation)
+    }
+
+    /// Reads values after steps with a component of the end's motion on either side of that of the paths.
+    pub(super) fn both_sides<T>(
+        &mut self,
+        motion: EndMotion,
+        read: impl Fn(&Simulation) -> T,
+    ) -> Result<Sides<T>, String> {
+        let mut by = distance(&self.simulation, motion);
+        if motion.is_velocity {
+            by /= self.length;
+        }
+        let mut side = |by: f64| {
+            let length = self.length;
+            self.step_beside(length, Some((motion, by))).map(&read)
+        };
+        Ok(Sides {
+            values: [side(-by)?, side(by)?],
+            apart: 2.0 * by,
+        })
+    }
+}
+
+/// Reads values at statics with a displacement on either side of that of the inputs.
+pub(super) fn beside_statics<T>(
+    simulation: &Simulation,
+    motion: EndMotion,
+    read: impl Fn(&Simulation) -> T,
+) -> Result<Sides<T>, String> {
+    let by = distance(simulation, motion);
+    let side = |by: f64| {
+        let mut aside = simulation.clone();
+        match motion.body {
+            Body::Point(point) => {
+                let mut displacement = aside.displacement(point);
+                displacement[motion.axis] += by;
+                aside.set_displacement(point, displacement);
+            }
+            Body::Vessel(vessel) => {
+                let mut pose = aside.pose(vessel);
+                pose[motion.axis] += by;
+                aside.set_pose(vessel, pose);
+            }
+        }
+        aside.restart(simulation.time()).map_err(|e| e.to_string())?;
+        Ok::<T, String>(read(&aside))
+    };
+    Ok(Sides {
+        values: [side(-by)?, side(by)?],
+        apart: 2.0 * by,
+    })
+}
+
+/// Displacement of a difference quotient [m, rad].
+fn distance(simulation: &Simulation, motion: EndMotion) -> f64 {
+    let lines = simulation.model.lines.iter();
+    let lengths = lines.filter_map(|line| line.nodes.arc.last().copied());
+    let longest = lengths.fold(0.0, f64::max);
+    match motion.body {
+        Body::Vessel(vessel) if motion.axis >= 3 => {
+            ASIDE * longest / simulation.scale.levers[vessel].max(LEVER_MIN * longest)
+        }
+        _ => ASIDE * longest,
+    }
+}
+
+/// Place of a coupled point among the paths.
+fn place_of_path(simulation: &Simulation, point: usize) -> usize {
+    let before = simulation.model.points[..point].iter();
+    before.filter(|point| is_coupled(point)).count()
+}
+
+/// Moves the end of a body's path over a span, from a time [s] over a length [s].
+fn shift_end(
+    paths: &mut Paths,
+    simulation: &Simulation,
+    motion: EndMotion,
+    span: [f64; 2],
+    by: f64,
+) -> Result<(), String> {
+    let axis = Lanes::new(std::array::from_fn(|lane| {
+        if lane == motion.axis % 3 { by } else { 0.0 }
+    }));
+    let zero = Lanes::splat(0.0);
+    let along = match motion.is_velocity {
+        true => [zero, axis],
+        false => [axis, zero],
+    };
+    match motion.body {
+        Body::Point(point) => {
+            let coupled = matches!(simulation.model.points[point].role, Role::Coupled { .. });
+            assert!(coupled, "a host moves coupled points only");
+            paths.points[place_of_path(simulation, point)]
+                .0
+                .shift_end(span, along);
+        }
+        Body::Vessel(vessel) if motion.axis < 3 => paths.vessels[vessel].0[0].shift_end(span, along),
+        Body::Vessel(vessel) => {
+            // an angle moves at the same angular velocity, and that at the same angles
+            let path = &mut paths.vessels[vessel].0[1];
+            let [angles, rates] = path.end().map(|lanes| lanes.xyz());
+            let angles = simulation.model.vessels[vessel].attitude + angles;
+            let [turned, spun] = along.map(|lanes| lanes.xyz());
+            let to = angle_rates(angles + turned, spin(angles, rates) + spun).ok_or(NO_RATES)?;
+            let change = to - rates;
+            let change = Lanes::new([change.x, change.y, change.z, 0.0]);
+            path.shift_end(span, [along[0], change]);
+        }
+    }
+    Ok(())
+}
+
+/// Angular velocity [rad/s] of roll, pitch and yaw [rad] at their rates [rad/s].
+fn spin(angles: Vector3<f64>, rates: Vector3<f64>) -> Vector3<f64> {
+    Attitude::new(Order::Zyx, angles, rates, Vector3::zeros()).spin
+}
