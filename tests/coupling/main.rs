@@ -1,6 +1,7 @@
 //! Coupling of a body with its mooring: mass of the ends, impedance of the coming step, derivatives of the forces.
 
 #[path = "../../examples/body_on_spring/host.rs"]
+#[expect(dead_code, reason = "the example runs more masters")]
 mod host;
 
 use host::{Case, Master, run};

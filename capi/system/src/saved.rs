@@ -50,9 +50,12 @@ fn damaged() -> Failure {
     )
 }
 
+/// Check sum of a state, without its own word.
 fn sum(words: &[u64]) -> u64 {
     let mix = |sum: u64, word: &u64| (sum ^ word).wrapping_mul(0x0100_0000_01b3);
-    words.iter().fold(0xcbf2_9ce4_8422_2325, mix)
+    std::iter::once(&words[1])
+        .chain(&words[HEAD..])
+        .fold(0xcbf2_9ce4_8422_2325, mix)
 }
 
 /// SHA-256 of a scene.
@@ -94,7 +97,7 @@ impl System {
         bytes.resize(bytes.len().next_multiple_of(WORD), 0);
         let pieces = bytes.chunks_exact(WORD);
         words.extend(pieces.map(|piece| u64::from_le_bytes(std::array::from_fn(|i| piece[i]))));
-        words[2] = sum(&words[HEAD..]);
+        words[2] = sum(&words);
         Ok(words)
     }
 
@@ -104,7 +107,7 @@ impl System {
     /// The words are no state of this deck; the system is unchanged.
     pub fn deserialize(&mut self, words: &[u64]) -> Outcome {
         let head = words.first_chunk::<HEAD>().copied().ok_or_else(damaged)?;
-        if length(head)? != words.len() || sum(&words[HEAD..]) != head[2] {
+        if length(head)? != words.len() || sum(words) != head[2] {
             return Err(damaged());
         }
         let bytes: Vec<u8> = words[HEAD..].iter().flat_map(|word| word.to_le_bytes()).collect();
