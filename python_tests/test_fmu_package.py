@@ -134,7 +134,7 @@ def test_starts_lie_between_the_declared_limits(package, version):
         limited += variable.min is not None
         if variable.start is not None and variable.type != "Boolean":
             assert limits[0] <= float(variable.start) <= limits[1], variable.name
-        if variable.causality == "parameter" and variable.type in ("Real", "Float64") and float(variable.start):
+        if variable.causality == "parameter" and variable.type == "Real" and float(variable.start):
             assert float(variable.nominal) == abs(float(variable.start)), variable.name
     assert limited > 10
 

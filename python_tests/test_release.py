@@ -67,8 +67,8 @@ def test_a_program_beside_an_archive_makes_an_fmu_for_all_its_platforms(tmp_path
         done = fmu(version)
         assert done.returncode == 0, done.stderr
         with zipfile.ZipFile(tmp_path / "chain.fmu") as made:
-            assert made.read(f"binaries/{folders[0]}/moorline.so") == own
-            assert made.read(f"binaries/{folders[1]}/moorline.dll") == b"a library for Windows"
+            libraries = {name.split("/")[1]: made.read(name) for name in made.namelist() if name.startswith("binaries/")}
+            assert libraries == {folders[0]: own, folders[1]: b"a library for Windows"}
     from fmpy import simulate_fmu
     result = simulate_fmu(str(tmp_path / "chain.fmu"), stop_time=0.5, output_interval=0.05, output=["line1.tension_b"])
     assert result["line1.tension_b"][-1] > 0.0

@@ -402,7 +402,6 @@ fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
     for (key, limit) in ["min", "max"].into_iter().zip(variable.range) {
         attributes.extend(limit.map(|limit| (key, text(limit))));
     }
-    attributes.extend(nominal(variable).map(|nominal| ("nominal", number(nominal))));
     attributes.extend(variable.start.map(|start| ("start", text(start))));
     attributes
 }
@@ -420,7 +419,9 @@ fn texts<'a>(attributes: &'a [(&'static str, String)]) -> impl Iterator<Item = (
 
 fn write_variable2(writer: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
     let common = common_attributes(variable, index);
-    let value = value_attributes(variable);
+    let mut value = value_attributes(variable);
+    // not in FMI 3.0: the crate fmi 0.8 refuses descriptions with it
+    value.extend(nominal(variable).map(|nominal| ("nominal", number(nominal))));
     let element = match variable.kind {
         Kind::Float64 => "Real",
         Kind::Int32 => "Integer",
