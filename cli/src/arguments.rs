@@ -114,7 +114,7 @@ pub(crate) enum Command {
     /// the same bytes.
     Fmu {
         #[command(flatten)]
-        made: Made,
+        packaging: Packaging,
         /// Replay the reference results in an FMU, given in place of the scene; exit code 1 where they are not met
         #[arg(long, conflicts_with_all = ["output", "author", "ssp"])]
         verify: bool,
@@ -156,7 +156,7 @@ pub(crate) enum Command {
 
 /// FMU to be packaged.
 #[derive(Debug, Args)]
-pub(crate) struct Made {
+pub(crate) struct Packaging {
     /// The .fmu file
     #[arg(short, long, value_name = "FILE", required_unless_present = "verify")]
     pub output: Option<PathBuf>,

@@ -5,24 +5,26 @@ use std::path::Path;
 use moorline::discretisation;
 use moorline::output::check_file;
 use moorline::output::fmi::FmiVersion;
-use moorline::output::package::{Container, Stamp, date, write_package};
+use moorline::output::package::{Container, Stamp, write_package};
 use moorline::scene::LoadedScene;
 use moorline::simulation::Watch;
 use moorline_host::{Fmu, HostError, replay};
+use time::OffsetDateTime;
+use time::format_description::well_known::Rfc3339;
 
 use crate::Library;
-use crate::arguments::Made;
+use crate::arguments::Packaging;
 use crate::failure::Failure;
 use crate::folder::{Folder, check_apart};
 use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
-pub(crate) fn fmu(made: &Made, target: &Path, library: Library<'_>) -> Result<(), Failure> {
-    let input = &made.input;
+pub(crate) fn fmu(packaging: &Packaging, target: &Path, library: Library<'_>) -> Result<(), Failure> {
+    let input = &packaging.input;
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     check_file(target)?;
     check_apart(&input.scene, target)?;
-    let author = made.author.clone();
+    let author = packaging.author.clone();
     let stamp = Stamp {
         author,
         date: epoch()?,
@@ -32,11 +34,11 @@ pub(crate) fn fmu(made: &Made, target: &Path, library: Library<'_>) -> Result<()
     // A scene without an equilibrium would make an FMU that no host can start.
     let simulation = simulate(&loaded)?;
     remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));
-    let version = match made.fmi.as_str() {
+    let version = match packaging.fmi.as_str() {
         "3" => FmiVersion::Three,
         _ => FmiVersion::Two,
     };
-    let container = match made.ssp {
+    let container = match packaging.ssp {
         true => Container::Ssp,
         false => Container::Fmu,
     };
@@ -44,25 +46,26 @@ pub(crate) fn fmu(made: &Made, target: &Path, library: Library<'_>) -> Result<()
     print(&format!("written to {}\n", target.display()))
 }
 
-/// Date of the environment variable that reproducible builds set.
+/// Date in the environment variable that reproducible builds set.
 /// Source: reproducible-builds.org, "SOURCE_DATE_EPOCH specification", version 1.1.
 fn epoch() -> Result<Option<String>, Failure> {
     let Some(text) = std::env::var_os("SOURCE_DATE_EPOCH") else {
         return Ok(None);
     };
-    let seconds = text.to_str().and_then(|text| text.parse().ok());
-    // years of four digits, which the description takes
-    let seconds = seconds.filter(|seconds| *seconds < EPOCH_MAX).ok_or_else(|| {
+    let seconds = text
+        .to_str()
+        .and_then(|text| text.parse::<i64>().ok())
+        .filter(|seconds| *seconds >= 0);
+    let time = seconds.and_then(|seconds| OffsetDateTime::from_unix_timestamp(seconds).ok());
+    let date = time.and_then(|time| time.format(&Rfc3339).ok());
+    let date = date.ok_or_else(|| {
         let text = text.to_string_lossy();
         Failure::Argument(format!(
             "SOURCE_DATE_EPOCH is \"{text}\": whole seconds since 1970 would be right"
         ))
     })?;
-    Ok(Some(date(seconds)))
+    Ok(Some(date))
 }
-
-/// The end of the year 9999, after 1970 [s].
-const EPOCH_MAX: u64 = 253_402_300_800;
 
 /// Replays the reference results of an FMU.
 pub(crate) fn verify(file: &Path) -> Result<(), Failure> {

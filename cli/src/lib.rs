@@ -125,9 +125,9 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { output } => manual::man(output.as_deref()),
         Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.supplement()),
-        Command::Fmu { made, verify } => match made.output.as_deref() {
-            Some(target) if !verify => fmu::fmu(&made, target, library),
-            _ => fmu::verify(&made.input.scene),
+        Command::Fmu { packaging, verify } => match packaging.output.as_deref() {
+            Some(target) if !verify => fmu::fmu(&packaging, target, library),
+            _ => fmu::verify(&packaging.input.scene),
         },
         Command::Accuracy {
             scenes,

@@ -22,7 +22,7 @@ pub(crate) struct Handle {
     instance: Instance,
     version: FmiVersion,
     sink: Sink,
-    /// The host's function within communication steps, with permission to end them.
+    /// The host's callback within communication steps.
     update: Option<Update>,
     /// A call panicked: nothing but free is served any more.
     is_poisoned: bool,
@@ -30,7 +30,7 @@ pub(crate) struct Handle {
     text: CString,
 }
 
-/// The host's function within communication steps.
+/// Callback of a host within communication steps.
 #[derive(Clone, Copy)]
 pub(crate) struct Update {
     pub(crate) callback: fmi3IntermediateUpdateCallback,
@@ -39,7 +39,7 @@ pub(crate) struct Update {
     pub(crate) may_end: bool,
 }
 
-/// Calls the host's function at a time [s] within a step; true if the host ends the step.
+/// Calls the host at a time [s] within a step; returns whether it ends the step.
 ///
 /// # Safety
 /// `handle` is null or a live handle that no other call is using; none of its instance is borrowed, since the host calls it.
@@ -55,7 +55,7 @@ pub(crate) unsafe fn update(handle: *mut c_void, time: f64) -> bool {
         return false;
     };
     let (mut ends, mut at) = (false, time);
-    // SAFETY: the host's function and environment; both results live on this stack frame.
+    // SAFETY: the host's callback and environment; both results live on this stack frame.
     unsafe {
         callback(
             environment,

@@ -743,7 +743,7 @@ mod tests {
             refusal
                 .unwrap_err()
                 .0
-                .starts_with("rope.mass: derivatives are given by displacements")
+                .starts_with("rope.mass: derivatives are with respect to displacements")
         );
     }
 

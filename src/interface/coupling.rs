@@ -18,7 +18,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, scene: &Scene, body: Body, nam
         push_matrix(variables, body, name, InterfaceQuantity::Mass);
     }
     if interface == Some(InterfaceOutput::Impedance) {
-        for row in 0..axes(body) {
+        for row in 0..body.axes() {
             push_free(variables, body, name, row);
         }
         push_matrix(variables, body, name, InterfaceQuantity::Damping);
@@ -26,13 +26,6 @@ pub(super) fn push(variables: &mut Vec<Variable>, scene: &Scene, body: Body, nam
     }
     if scene.output.stiffness && matches!(body, Body::Vessel(_)) {
         push_matrix(variables, body, name, InterfaceQuantity::StaticStiffness);
-    }
-}
-
-fn axes(body: Body) -> usize {
-    match body {
-        Body::Point(_) => 3,
-        Body::Vessel(_) => 6,
     }
 }
 
@@ -56,15 +49,15 @@ fn push_free(variables: &mut Vec<Variable>, body: Body, name: &str, axis: usize)
 }
 
 fn push_matrix(variables: &mut Vec<Variable>, body: Body, name: &str, quantity: InterfaceQuantity) {
-    let (label, of, units) = match quantity {
+    let (label, [what, motion], units) = match quantity {
         InterfaceQuantity::Mass => (
             "mass",
-            "mass of the mooring's ends: acceleration",
+            ["mass of the mooring's ends", "acceleration"],
             [Unit::KILOGRAM, Unit::KILOGRAM_METRE, Unit::KILOGRAM_SQUARE_METRE],
         ),
         InterfaceQuantity::Damping => (
             "damping",
-            "over the coming step: velocity at its end",
+            ["damping over the coming step", "velocity at its end"],
             [
                 Unit::NEWTON_SECOND_PER_METRE,
                 Unit::NEWTON_SECOND,
@@ -73,22 +66,19 @@ fn push_matrix(variables: &mut Vec<Variable>, body: Body, name: &str, quantity: 
         ),
         InterfaceQuantity::Stiffness => (
             "stiffness",
-            "over the coming step: displacement at its end",
+            ["stiffness over the coming step", "displacement at its end"],
             [Unit::NEWTON_PER_METRE, Unit::NEWTON, Unit::NEWTON_METRE],
         ),
         _ => (
             "static_stiffness",
-            "quasi-static: displacement",
+            ["quasi-static stiffness", "displacement"],
             [Unit::NEWTON_PER_METRE, Unit::NEWTON, Unit::NEWTON_METRE],
         ),
     };
-    for i in 0..axes(body) {
-        for j in 0..axes(body) {
+    for i in 0..body.axes() {
+        for j in 0..body.axes() {
             let between = if i < 3 && j < 3 { "" } else { "_" };
-            let meaning = format!(
-                "{of} of {name} along {} changes the force along {} by minus this per unit",
-                AXES[j], AXES[i]
-            );
+            let meaning = format!("{what} on {name}: -{} per {motion} in {}", FORCES[i], AXES[j]);
             let binding = Binding::Interface {
                 body,
                 quantity,
@@ -126,8 +116,10 @@ pub(super) fn read(
 pub(super) fn missing(name: &str, quantity: InterfaceQuantity) -> String {
     match quantity {
         InterfaceQuantity::StaticStiffness => {
-            format!("{name}: the lines are not stable as they are, or one of them is a beam or released")
+            format!(
+                "{name}: there is no stiffness where the equilibrium is unstable, or a line is a beam or released"
+            )
         }
-        _ => format!("{name}: from here no step as long as the last one can be made"),
+        _ => format!("{name}: a step as long as the last one fails from the present state"),
     }
 }

@@ -129,6 +129,16 @@ pub enum Body {
     Vessel(usize),
 }
 
+impl Body {
+    /// Number of axes of the motion: x, y, z and of a vessel roll, pitch, yaw.
+    pub fn axes(self) -> usize {
+        match self {
+            Body::Point(_) => 3,
+            Body::Vessel(_) => 6,
+        }
+    }
+}
+
 /// Origin of a point's motion.
 #[derive(Debug, Clone)]
 pub enum Role {

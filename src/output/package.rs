@@ -20,7 +20,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 pub use reference::EXPERIMENTS_FILE;
-pub use stamp::{Stamp, date};
+pub use stamp::Stamp;
 
 use super::binaries::Binaries;
 use super::description::Description;

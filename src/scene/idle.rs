@@ -152,7 +152,7 @@ impl Scene {
             "" if alone && output.interface.is_some() => "nothing is coupled to a host: `interface` changes nothing";
             "" if alone && output.force != ForceOutput::Total => "nothing is coupled to a host: `force` changes nothing";
             "" if rests && !alone && output.force != ForceOutput::Total =>
-                "quasi-static, without inertia: `force` changes nothing";
+                "quasi-static runs have no inertia: `force` changes nothing";
             "" if self.vessels.is_empty() && output.stiffness => "there is no vessel: `stiffness` changes nothing";
         }
     }

@@ -33,7 +33,7 @@ table! {
         pub bossak: Option<Bossak>,
         /// Path of a coupled point between communication points.
         pub input_reconstruction: Reconstruction = Reconstruction::Smooth => PLAIN.described("path of a coupled point between communication \
-            points: 0 smooth, 1 constant velocity with a jump, 2 cubics through inputs that hold for the end of the step, 3 smooth with noise filtered"),
+            points: 0 smooth, 1 constant velocity with a jump, 2 cubics through inputs that hold for the end of the step, 3 smooth with a noise filter"),
         /// Number of threads that share the lines [-], 1 to 256, or `"auto"`. Results do not depend on it.
         pub threads: Threads = Threads::Auto,
     }
@@ -100,7 +100,7 @@ choice! {
         /// Cubics through inputs that hold for the end of the communication step, without prediction: for hosts that know the motion, or that
         /// step the floating body first.
         Interpolate = "interpolate",
-        /// As `smooth`; displacements that are given without velocities are filtered by a memory that follows from their scatter: for motions with noise.
+        /// As `smooth`, with a noise filter for displacements that are given without velocities. The memory of the filter follows from their scatter.
         Filtered = "filtered",
     }
 }
@@ -123,8 +123,8 @@ table! {
         pub interface: Option<InterfaceOutput>,
         /// True if the quasi-static stiffness of the mooring on every vessel is a variable.
         pub stiffness: bool = false,
-        /// True if forces have derivatives by the motion at the end of the step, and in time: the directional derivatives of FMI. The state at the
-        /// start of every step is then kept.
+        /// True if forces have derivatives with respect to the motion at the end of a step, FMI's directional derivatives, and to time. The state at
+        /// the start of each step is then kept.
         pub derivatives: bool = false,
         /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),

@@ -92,6 +92,9 @@ pub fn factor_to(si: &str, text: &str) -> Result<f64, String> {
     match quantity {
         Some((quantity, ..)) => factor(text, *quantity),
         None if bare(text) == si => Ok(1.0),
+        None if si.contains(',') => Err(format!(
+            "its numbers have different units ({si}): leave the unit out"
+        )),
         None => Err(format!(
             "unknown unit {}: {si} would be right",
             super::rows::shown(bare(text))
@@ -138,6 +141,11 @@ mod tests {
                 .ends_with("kg/m would be right")
         );
         assert!(factor_to("m", "s").unwrap_err().contains("one of m, mm"));
+        assert!(
+            factor_to("m, rad", "m")
+                .unwrap_err()
+                .ends_with("leave the unit out")
+        );
     }
 
     #[test]

@@ -237,7 +237,7 @@ fn tables_in_words(output: &Output) -> String {
     format!("{format}{digits}{shapes}")
 }
 
-/// What the output has for hosts that solve for bodies together with their mooring.
+/// Sentences on the output for hosts that solve for bodies together with their mooring.
 fn interface_in_words(output: &Output) -> impl Iterator<Item = &'static str> {
     let interface = output.interface.map(|interface| match interface {
         InterfaceOutput::Mass => "with the mass of the mooring's ends for a host",
@@ -248,6 +248,6 @@ fn interface_in_words(output: &Output) -> impl Iterator<Item = &'static str> {
     let stiffness = output
         .stiffness
         .then_some("with the quasi-static stiffness on vessels");
-    let derivatives = output.derivatives.then_some("forces have derivatives");
+    let derivatives = output.derivatives.then_some("with derivatives of the forces");
     [interface, inertia, stiffness, derivatives].into_iter().flatten()
 }

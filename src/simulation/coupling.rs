@@ -208,7 +208,7 @@ impl Simulation {
         let force = |simulation: &Simulation| simulation.force_without_inertia(body);
         let mut slopes = [Matrix6::zeros(); 2];
         for (slope, is_velocity) in slopes.iter_mut().zip([false, true]) {
-            for axis in 0..axes(body) {
+            for axis in 0..body.axes() {
                 let motion = EndMotion {
                     body,
                     axis,
@@ -279,14 +279,6 @@ fn place(model: &Model, body: Body) -> usize {
     match body {
         Body::Point(point) => point,
         Body::Vessel(vessel) => model.points.len() + vessel,
-    }
-}
-
-/// Number of axes of a body's motion.
-fn axes(body: Body) -> usize {
-    match body {
-        Body::Point(_) => 3,
-        Body::Vessel(_) => 6,
     }
 }
 

@@ -70,24 +70,30 @@ impl Paths {
             filters: Vec::new(),
         };
         if model.solver.input_reconstruction == Reconstruction::Filtered {
-            let at_rest = |path: &mut AxesPath| Fading::at_rest(time, path.end()[0]);
+            let at_rest = |path: &AxesPath| Fading::at_rest(time, path.end()[0]);
             paths.filters = paths.axes().map(at_rest).collect();
         }
         paths
     }
 
     /// Paths of the coupled points, then of displacement and angles of the vessels.
-    fn axes(&mut self) -> impl Iterator<Item = &mut AxesPath> {
+    fn axes(&self) -> impl Iterator<Item = &AxesPath> {
+        let vessels = self.vessels.iter().flat_map(|path| &path.0);
+        self.points.iter().map(|path| &path.0).chain(vessels)
+    }
+
+    /// The same, to be written.
+    fn axes_mut(&mut self) -> impl Iterator<Item = &mut AxesPath> {
         let vessels = self.vessels.iter_mut().flat_map(|path| &mut path.0);
         self.points.iter_mut().map(|path| &mut path.0).chain(vessels)
     }
 
     /// Leads the paths of what the host gives without velocities, continued from those `before`, to the predictions of their filters
     /// over a step from a time [s] of a length [s].
-    fn filter(&mut self, before: &mut Paths, span @ [time, length]: [f64; 2]) {
+    fn filter(&mut self, before: &Paths, span @ [time, length]: [f64; 2]) {
         let mut filters = std::mem::take(&mut self.filters);
         filters.clone_from(&before.filters);
-        for ((path, before), filter) in self.axes().zip(before.axes()).zip(&mut filters) {
+        for ((path, before), filter) in self.axes_mut().zip(before.axes()).zip(&mut filters) {
             if let Some(sample) = path.unrated() {
                 let to = filter.predict(time, sample, length);
                 path.lead(before, span, to);
@@ -206,8 +212,7 @@ impl Simulation {
                 ends: self.prescribed.hosted(),
             });
             if model.solver.input_reconstruction == Reconstruction::Filtered {
-                let mut before = before.clone();
-                paths.filter(&mut before, [time, step]);
+                paths.filter(before, [time, step]);
                 for (ends, path) in self.prescribed.hosted().iter_mut().zip(&paths.points) {
                     *ends = path.0.ends();
                 }

@@ -105,7 +105,7 @@ impl Instance {
 }
 
 /// Reason for which there is nothing to differentiate.
-const NO_SIMULATION: &str = "out of order: there are derivatives from initialization mode on";
+const NO_SIMULATION: &str = "out of order: derivatives are available from initialization mode on";
 
 /// Component of the motion that an input gives.
 fn end_motion(variable: &Variable) -> Result<EndMotion, Refusal> {
@@ -114,7 +114,7 @@ fn end_motion(variable: &Variable) -> Result<EndMotion, Refusal> {
         Binding::Velocity { body, axis } => (body, axis, true),
         _ => {
             return Err(Refusal(format!(
-                "{}: derivatives are given by displacements and velocities of points and vessels",
+                "{}: derivatives are with respect to displacements and velocities of points and vessels",
                 variable.name
             )));
         }
@@ -143,7 +143,7 @@ fn count(what: &str, given: usize, wanted: usize) -> Outcome {
     match given == wanted {
         true => Ok(()),
         false => Err(Refusal(format!(
-            "the host gave room for {given} {what}s: {wanted} would be right"
+            "the host gave {given} {what}s: {wanted} would be right"
         ))),
     }
 }

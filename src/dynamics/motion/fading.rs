@@ -1,15 +1,15 @@
 //! Prediction of a motion from displacements that are noisy.
 //!
-//! A cubic is fitted to all samples x_k so far by least squares, the weight of a sample falling by θ⁴ … with its age: the fading-memory polynomial
-//! filter. With z = (x, hẋ, h²ẍ/2, h³x⃛/6) predicted for the next sample, one step h after the last, and its residual r,
+//! A cubic is fitted to all samples x_k so far by least squares, the weight of a sample falling by the factor θ with each later one: the
+//! fading-memory polynomial filter. With z = (x, hẋ, h²ẍ/2, h³x⃛/6) predicted for the next sample, one step h after the last, and its residual r,
 //!
 //! z ← z + g r,   g = (1 − θ⁴, ⅙(1−θ)²(11 + 14θ + 11θ²), (1−θ)³(1+θ), ⅙(1−θ)⁴).
 //!
-//! θ = 0 is the cubic through the last four samples, the highest degree of `Smooth`, so that its error is O(h⁴); a θ near 1 averages over some 4/(1 − θ) samples. White noise of
-//! variance σ² makes residuals of variance σ² (1 + a(θ)), a falling with θ; the motion makes residuals that rise with h⁴x⁗/(1−θ)⁴. So filters with several θ run
-//! side by side, each axis with its own, and that with the least mean square of its residuals gives the prediction: on smooth motion θ = 0 is better than
-//! the next by orders of magnitude, on noisy motion the scatter of the samples finds its own memory. The path leads from its end to the prediction, and
-//! does not return to the noisy sample.
+//! θ = 0 is the cubic through the last four samples, the highest degree of `Smooth`, with an error of O(h⁴); a θ near 1 averages over about
+//! 4/(1 − θ) samples. White noise of variance σ² makes residuals of variance σ² (1 + a(θ)), a falling with θ; the motion makes residuals that
+//! rise with h⁴x⁗/(1−θ)⁴. Filters with several θ run side by side, and for each axis the one with the least mean square of its residuals gives
+//! the prediction. On smooth motion that is θ = 0, by orders of magnitude; on noisy motion the scatter of the samples decides. The path leads from
+//! its end to the prediction, and does not return to the noisy sample.
 //!
 //! Source: Morrison (1969), Introduction to Sequential Smoothing and Prediction, chapter 13 (the filter); the choice of θ is derived here.
 //! Valid for steps of about equal length: z is scaled to another step, the gains are those of equal ones.

@@ -43,12 +43,11 @@ impl Trial {
     /// The last step again. `None` before the first one.
     pub(super) fn of_last_step(simulation: &Simulation) -> Result<Option<Trial>, String> {
         if !simulation.model.derivatives {
-            return Err("the scene asks for no derivatives (`derivatives` in [output])".into());
+            return Err("derivatives are off: set `derivatives` in [output] to true".into());
         }
         if simulation.snapshot.follows_scene {
             return Err(
-                "along the motion of the scene there are no derivatives: the host must move the bodies"
-                    .into(),
+                "there are no derivatives along the scene's own motion: the host must move the bodies".into(),
             );
         }
         let Some(begun) = &simulation.snapshot.begun else {
