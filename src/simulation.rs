@@ -5,6 +5,7 @@
 //! motion after [`Simulation::follow_scene`].
 
 mod coupling;
+mod flow;
 mod input_error;
 mod inputs;
 mod paths;
@@ -23,11 +24,12 @@ use crate::dynamics::advance::{Counters, Integrators};
 use crate::dynamics::energy_balance::{self, EnergyBalance};
 use crate::dynamics::motion::Extrapolation;
 use crate::dynamics::{Choice, StepError};
-use crate::model::{Line, LineState, Model, State};
+use crate::model::{Line, LineState, Model, State, WaveSpans};
 use crate::scene::{InitialShape, Scene, SceneError};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
 use coupling::StepStart;
+use flow::Course;
 use input_error::InputRecord;
 use inputs::Inputs;
 use paths::Paths;
@@ -36,6 +38,7 @@ use results::Reactions;
 use scale::Scale;
 
 pub use coupling::{EndMotion, Impedance};
+pub use flow::{FLOW_COMPONENTS, WaterFlow};
 pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
 pub use watch::Watch;
@@ -69,6 +72,8 @@ pub struct Snapshot {
     balance: Option<EnergyBalance>,
     start_time: f64,
     input_record: InputRecord,
+    /// Flow of the water that the host gave for the last step, where the next one needs it.
+    flow_before: WaterFlow,
     /// Time by which the host is ahead of the state, less than [`STEP_MIN`] [s].
     ahead: f64,
     /// Length of the last step [s]; 0 before the first.
@@ -85,6 +90,8 @@ pub struct Simulation {
     work: Integrators,
     /// Paths of the present step.
     paths: Box<Paths>,
+    /// Flow of the water over the present step, where a host gives it.
+    next_flow: Option<WaveSpans>,
     extrapolation: Extrapolation,
     prescribed: PrescribedMotion,
     reactions: Reactions,
@@ -121,6 +128,7 @@ impl Simulation {
         Ok(Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
             paths: snapshot.paths.clone(),
+            next_flow: None,
             extrapolation: Extrapolation::none(),
             prescribed: PrescribedMotion::new(&model, false, work.choices()),
             reactions: Reactions::new(&model),
@@ -163,6 +171,7 @@ impl Simulation {
     fn begin(&mut self, time: f64, follows_scene: bool, shapes: start::Shapes) -> Result<(), Error> {
         let inputs = self.snapshot.inputs.clone();
         self.scale.check_start(&self.model, &inputs)?;
+        inputs.flow.check_start(&self.model)?;
         let mut model = self.model.clone();
         winches::lay_out(&mut model, &inputs.length_changes, follows_scene.then_some(time))?;
         (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene, shapes)?;
@@ -231,6 +240,7 @@ impl Simulation {
         }
         self.check_inputs(step)?;
         self.extend_paths(step)?;
+        self.extend_flow(step, Course::Given);
         if !self.model.derivatives {
             return self.integrate(step);
         }
@@ -248,6 +258,7 @@ impl Simulation {
     fn integrate(&mut self, step: f64) -> Result<(), StepError> {
         let before = self.release_lines();
         let record = self.record_inputs();
+        self.swap_flow();
         let model = &*self.model;
         let follows_scene = self.snapshot.follows_scene;
         let at = MotionSource::new(model, &self.paths, follows_scene);
@@ -256,16 +267,18 @@ impl Simulation {
         let held = |point: usize, t: f64| self.prescribed.point(&at, point, t);
         let state = &mut self.snapshot.state;
         let advanced = self.work.advance(model, state, step, &held);
-        if advanced.is_err()
-            && let Some((state, balance)) = before
-        {
-            (self.snapshot.state, self.snapshot.balance) = (state, balance);
+        if advanced.is_err() {
+            self.swap_flow();
+            if let Some((state, balance)) = before {
+                (self.snapshot.state, self.snapshot.balance) = (state, balance);
+            }
         }
         let done = advanced?;
         self.snapshot.counters = done.counters;
         self.snapshot.input_record = record;
         self.snapshot.ahead = 0.0;
         self.snapshot.last_step = step;
+        self.keep_flow();
         if let Some(balance) = &mut self.snapshot.balance {
             balance.flow.add(done.flow);
         }
@@ -282,7 +295,10 @@ impl Simulation {
         let (snapshot, time) = (&self.snapshot, self.snapshot.state.time);
         match snapshot.follows_scene {
             true => Ok(()),
-            false => self.scale.check_step(&self.model, &snapshot.inputs, time, step),
+            false => {
+                snapshot.inputs.flow.check_step(&self.model, time)?;
+                self.scale.check_step(&self.model, &snapshot.inputs, time, step)
+            }
         }
     }
 
@@ -323,9 +339,9 @@ impl Simulation {
     }
 }
 
-/// Removes waves and initial shapes, for an equilibrium.
+/// Removes waves, a host's flow of the water and initial shapes, for an equilibrium.
 fn settle(model: &mut Model) {
-    model.waves = None;
+    (model.waves, model.host_flow) = (None, false);
     // the initial shape of a beam may be the one free of bending moments, and is the start of its search
     for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
         line.initial = InitialShape::Static;

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::threads::ThreadPool;
-use crate::model::{Model, Point, State, WaveSpan, WaveSpans};
+use crate::model::{Model, State, WaveSpan, WaveSpans};
 use crate::physics::airy::{Instant, Orbit, Waves};
 
 /// Rounding of times, over a step [-].
@@ -55,7 +55,7 @@ impl Place {
         let lines = model.lines.iter().enumerate();
         let lines = lines.filter(|(_, line)| line.heaves(model));
         let points = model.points.iter().enumerate();
-        let points = points.filter(|(_, point)| heaves(point));
+        let points = points.filter(|(_, point)| point.heaves());
         lines
             .map(|(line, _)| Place::Line(line))
             .chain(points.map(|(point, _)| Place::Point(point)))
@@ -121,18 +121,19 @@ impl SeaWork {
         }
     }
 
-    /// Sets the waves of a state at its time, or none.
+    /// Sets the waves of a state at its time; a state without waves is left as it is.
     pub(super) fn start(&mut self, model: &Model, state: &mut State) {
-        state.waves = model.waves.as_ref().map(|waves| {
-            let mut spans = WaveSpans::default();
-            spans.lines.resize_with(model.lines.len(), WaveSpan::default);
-            spans.points.resize_with(model.points.len(), WaveSpan::default);
-            for place in Place::of(model) {
-                let span = place.span_mut(&mut spans);
-                self.begin(waves, state, place, span);
-            }
-            spans
-        });
+        let Some(waves) = &model.waves else {
+            return;
+        };
+        let mut spans = WaveSpans::default();
+        spans.lines.resize_with(model.lines.len(), WaveSpan::default);
+        spans.points.resize_with(model.points.len(), WaveSpan::default);
+        for place in Place::of(model) {
+            let span = place.span_mut(&mut spans);
+            self.begin(waves, state, place, span);
+        }
+        state.waves = Some(spans);
     }
 
     /// A span that is over as it begins.
@@ -235,11 +236,6 @@ impl SeaWork {
             .resize_with(threads.max(self.instants.len()), Instant::default);
         pool.share(&mut self.due, &mut self.instants[..threads], work);
     }
-}
-
-/// Returns whether waves act on a point.
-fn heaves(point: &Point) -> bool {
-    point.body().is_some_and(|body| body.sphere.is_some())
 }
 
 /// Motion of the water where nodes, from their positions [m] and velocities [m/s] at a time [s], will be some time [s] later.

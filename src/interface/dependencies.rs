@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Binding, Interface, Parameter, Place, Variable};
 use crate::model::{Body, Model};
 use crate::scene::table::{Acts, Table};
-use crate::scene::{LineType, Scene};
+use crate::scene::{LineType, Scene, Water};
 
 /// Fills [`Variable::initial_dependencies`] of all outputs and calculated parameters.
 pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
@@ -187,12 +187,12 @@ impl Scope<'_> {
     /// Returns whether the water moves; closed forms are those of still water.
     fn flows(&self) -> bool {
         let water = self.scene.water.as_ref();
-        !self.closed_form && water.is_some_and(|water| water.current.is_some() || water.waves.is_some())
+        !self.closed_form && water.is_some_and(|water| water.current.is_some() || water.accelerates())
     }
 
     fn is_in_waves(&self) -> bool {
         let water = self.scene.water.as_ref();
-        !self.closed_form && water.is_some_and(|water| water.waves.is_some())
+        !self.closed_form && water.is_some_and(Water::accelerates)
     }
 
     /// Returns whether moving water exerts a force on a line type.

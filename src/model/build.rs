@@ -82,6 +82,7 @@ impl Model {
             bottom,
             current: scene.water.as_ref().and_then(current),
             waves: waves::waves(scene),
+            host_flow: scene.water.as_ref().is_some_and(|water| water.flow.is_some()),
             networks,
             points,
             lines,
@@ -641,8 +642,8 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
         normal: lump(&|law| law.drag.map_or(0.0, |drag| drag.normal)),
         tangent: lump(&|law| law.drag.map_or(0.0, |drag| drag.tangent)),
     });
-    let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
-    let froude_krylov = (waves && any(&|law| law.displaced > 0.0)).then(|| FroudeKrylov {
+    let accelerates = scene.water.as_ref().is_some_and(scene::Water::accelerates);
+    let froude_krylov = (accelerates && any(&|law| law.displaced > 0.0)).then(|| FroudeKrylov {
         normal: lump(&|law| law.displaced + law.added_normal),
         tangent: lump(&|law| law.displaced + law.added_tangent),
     });

@@ -62,6 +62,8 @@ pub struct Model {
     pub current: Option<Current>,
     /// The waves, where there are some.
     pub waves: Option<Waves>,
+    /// True if a host gives velocity and acceleration of the water at the nodes.
+    pub host_flow: bool,
     /// Points in the order of the scene.
     pub points: Vec<Point>,
     /// Lines in the order of the scene.
@@ -501,9 +503,15 @@ impl Line {
         model.points[self.ends[side]].free().is_none() && !state.released[side]
     }
 
-    /// Returns whether waves act on the line.
+    /// Returns whether waves, or the flow that a host gives, act on the line.
     pub fn heaves(&self, model: &Model) -> bool {
-        model.waves.is_some() && (self.nodes.drag.is_some() || self.nodes.froude_krylov.is_some())
+        model.water_accelerates() && (self.nodes.drag.is_some() || self.nodes.froude_krylov.is_some())
+    }
+
+    /// Returns whether a host gives the flow at the nodes of the line: where it acts on the line, or on the body of a point at an end.
+    pub fn takes_flow(&self, model: &Model) -> bool {
+        let on_end = || self.ends.iter().any(|&point| model.points[point].heaves());
+        model.host_flow && (self.heaves(model) || on_end())
     }
 
     /// Index of the node at an end.
@@ -643,6 +651,11 @@ impl Point {
             Role::Free(free) => Some(free),
             _ => None,
         }
+    }
+
+    /// Returns whether waves would act on the body of the point.
+    pub fn heaves(&self) -> bool {
+        self.body().is_some_and(|body| body.sphere.is_some())
     }
 
     /// Mass and submergence properties at the point, whether forces move it or not.

@@ -3,7 +3,8 @@
 //!
 //! Wave kinematics at the nodes are evaluated at both ends of a span of time, at the extrapolated places of the
 //! nodes, and follow cubics in between ([`Orbit::between`]). Every line and every point has a separate span. The
-//! spans are part of the state: a restored state continues to the last bit.
+//! spans are part of the state: a restored state continues to the last bit. Where a host gives the flow of the water, the
+//! spans hold that in place of waves, without an elevation.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -59,6 +60,19 @@ impl Clone for WaveSpan {
 }
 
 impl WaveSpan {
+    /// At rest in one kind of motion from a time on [s].
+    pub fn begun(time: f64, nodes: Vec<Orbit>) -> WaveSpan {
+        WaveSpan {
+            times: [time; 2],
+            ends: [nodes.clone(), nodes],
+        }
+    }
+
+    /// Length [s]; 0 where it is over as it begins.
+    pub fn length(&self) -> f64 {
+        self.times[1] - self.times[0]
+    }
+
     /// Motion at the nodes at time `t` [s]; `None` where no waves act.
     pub fn at(&self, t: f64) -> Option<WavesAlong<'_>> {
         let [before, after] = &self.ends;
@@ -132,6 +146,11 @@ impl WaterAlong<'_> {
 }
 
 impl Model {
+    /// Returns whether the water accelerates: in waves, or as a host gives it.
+    pub fn water_accelerates(&self) -> bool {
+        self.waves.is_some() || self.host_flow
+    }
+
     /// The water along a line at time `t` [s].
     pub fn water_along<'a>(&'a self, state: &'a State, line: usize, t: f64) -> WaterAlong<'a> {
         WaterAlong {

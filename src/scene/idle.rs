@@ -42,10 +42,17 @@ impl Scene {
         }
         self.idle_of_solver(&mut notes);
         let surface = self.water.as_ref().and_then(|water| water.surface);
+        let moved = self
+            .lines
+            .iter()
+            .any(|line| self.types_of(line).any(|kind| kind.diameter.is_some()));
+        let wet = |point: &Point| point.volume.is_some() || point.drag_area.is_some();
         let damped = |bed: &Seabed| bed.damping != Seabed::level(bed.depth).damping;
         rules! { &mut notes, "";
             "water" if surface.is_some() && self.all_beams() =>
                 "beams are under water throughout: `surface` changes nothing";
+            "water" if self.has_host_flow() && !moved && !self.points.iter().any(wet) =>
+                "no line has a `diameter` and no point a `volume` or `drag_area`: `flow` changes nothing";
             "seabed" if self.is_quasi_static() && self.seabed.as_ref().is_some_and(damped) =>
                 "quasi-static: `damping` changes nothing";
         }

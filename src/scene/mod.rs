@@ -104,7 +104,7 @@ pub use settings::{
 use table::{not_negative, table};
 pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
-pub use water::{Current, RegularWave, Sea, SpectrumKind, Water, WaveComponents, Waves};
+pub use water::{Current, FlowSource, RegularWave, Sea, SpectrumKind, Water, WaveComponents, Waves};
 pub(crate) use words::percent;
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
@@ -153,6 +153,11 @@ impl Scene {
     /// The current, where there is one.
     fn current(&self) -> Option<&Current> {
         self.water.as_ref()?.current.as_ref()
+    }
+
+    /// Returns whether the host gives the flow of the water.
+    fn has_host_flow(&self) -> bool {
+        self.water.as_ref().is_some_and(|water| water.flow.is_some())
     }
 
     /// The waves, where there are some.

@@ -73,6 +73,12 @@ impl Scene {
         notes
     }
 
+    /// Returns the remark on the inputs that a run without a host lacks.
+    pub fn without_host(&self) -> Option<Note> {
+        let remark = "there is no host in this run to give the flow: the water is at rest but for a current";
+        self.has_host_flow().then(|| Note::new("water.flow", remark))
+    }
+
     /// Returns suggestions for keys that are left open, and keys that cannot be left out and change nothing, which only `moorline check` prints.
     pub fn advice(&self) -> Vec<Note> {
         let mut notes = self.idle_by_need();
@@ -122,15 +128,18 @@ impl Scene {
 fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut Vec<Note>) {
     let used = scene.sections().any(|section| section.line_type == name);
     let drags = !used || scene.water.is_none() || line_type.drag_normal.is_some();
-    let (waves, current) = (scene.waves().is_some(), scene.current().is_some());
+    let (waves, flow) = (scene.waves().is_some(), scene.has_host_flow());
+    let current = scene.current().is_some() && !flow;
     let moves = scene.solver.integrator != Integrator::QuasiStatic;
     rules! { notes, &format!("line_types.{}", quoted(name));
         "" if !used => "no line uses this line type";
         "" if !drags && waves =>
             "no `drag_normal`: the waves exert no normal drag on the line, and the water does not damp it";
+        "" if !drags && flow =>
+            "no `drag_normal`: the flow exerts no normal drag on the line, and the water does not damp it";
         "" if !drags && !waves && current =>
             "no `drag_normal`: the current exerts no normal drag on the line, and the water does not damp it";
-        "" if !drags && !waves && !current && moves =>
+        "" if !drags && !waves && !flow && !current && moves =>
             "no `drag_normal`: the water does not damp the line's transverse motion";
         "" if used && scene.seabed.is_some() && scene.weight(line_type) < 0.0 =>
             "lighter than the water: it floats up from the seabed";

@@ -4,7 +4,7 @@ use toml::Value as Toml;
 
 use super::check::{Bounds, Findings, rules};
 use super::document::Node;
-use super::table::{Key, Kind, MIXED, Rule, Table, Value, choice, magnitude, positive, table, within};
+use super::table::{Key, Kind, MIXED, PLAIN, Rule, Table, Value, choice, magnitude, positive, table, within};
 use super::{SceneError, TimeFunction};
 
 table! {
@@ -17,12 +17,28 @@ table! {
         pub current: Option<Current>,
         /// Waves: one sea, or an array of seas that add up.
         pub waves: Option<Waves>,
+        /// Velocity and acceleration of the water at every node, from the host instead of from `waves`. A `current` is added to them. The surface
+        /// stays at z = 0.
+        pub flow: Option<FlowSource> => PLAIN.instead_of(&["waves"]),
         /// True if lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float up to it.
         pub surface: Option<bool>,
     }
 }
 
+choice! {
+    /// Source of the motion of the water at the nodes.
+    pub enum FlowSource {
+        /// The host that the mooring is coupled to, such as a CFD code; without a host the water is at rest.
+        Host = "host",
+    }
+}
+
 impl Water {
+    /// Returns whether the water accelerates: in waves, or as the host gives it.
+    pub fn accelerates(&self) -> bool {
+        self.waves.is_some() || self.flow.is_some()
+    }
+
     /// Still water of a density [kg/m³].
     pub fn still(density: f64) -> Water {
         Water {

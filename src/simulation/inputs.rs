@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::Simulation;
+use super::{Simulation, WaterFlow};
 use crate::dynamics::motion::rates;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, Model};
@@ -17,6 +17,7 @@ pub(super) struct Inputs {
     pub releases: Vec<bool>,
     /// Length changes of the winches, by line [m].
     pub length_changes: Vec<f64>,
+    pub flow: WaterFlow,
 }
 
 impl Inputs {
@@ -27,6 +28,7 @@ impl Inputs {
             vessels: vec![VesselInput::default(); model.vessels.len()],
             releases: vec![false; model.lines.len()],
             length_changes: vec![0.0; model.lines.len()],
+            flow: WaterFlow::still(model),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::flow;
 use super::input_error::InputRecord;
 use super::inputs::Inputs;
 use super::paths::Paths;
@@ -53,6 +54,7 @@ pub(super) fn begin(
     rest_beams(model, &mut state, time, shapes, |point| {
         beam::attitude(&held(point, time))
     })?;
+    state.waves = flow::begin(model, &state, &inputs.flow);
     let mut work = Integrators::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
@@ -67,6 +69,7 @@ pub(super) fn begin(
     Ok((
         Snapshot {
             state,
+            flow_before: inputs.flow.clone(),
             inputs,
             paths: Box::new(paths),
             follows_scene,

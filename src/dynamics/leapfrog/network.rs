@@ -107,7 +107,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
             point_numbers: free_points.clone(),
             waves: vec![
                 WaveSpan::default();
-                if model.waves.is_some() {
+                if model.water_accelerates() {
                     free_points.len()
                 } else {
                     0
@@ -136,6 +136,11 @@ impl<K: Kernel> LeapfrogNetwork<K> {
     pub fn load(&mut self, state: &State) {
         self.numbered_lines()
             .for_each(|(work, line)| work.load(&state.lines[line]));
+        if let Some(waves) = &state.waves {
+            // a state of another course may have another motion of the water in the same span of time
+            self.numbered_lines()
+                .for_each(|(work, line)| work.layout.load_waves(&waves.lines[line]));
+        }
         self.load_surroundings(state);
     }
 
@@ -225,7 +230,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
     /// Sets current and waves to those of `t` [s].
     #[inline]
     pub fn set_water(&mut self, model: &Model, t: f64) {
-        if model.waves.is_some() {
+        if model.water_accelerates() {
             self.lines.iter_mut().for_each(|line| line.layout.set_time(t));
         }
         if let Some(stream) = model.stream(t) {

@@ -16,6 +16,9 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     if let Some(waves) = scene.waves() {
         super::waves::check(scene, waves, findings);
     }
+    if scene.has_host_flow() {
+        super::waves::check_flow(scene, findings);
+    }
     if let Some(seabed) = &scene.seabed {
         check_bed(scene, seabed, findings);
     }

@@ -1,8 +1,10 @@
-//! Waves.
+//! Waves, and the flow of the water that a host gives.
 
 use super::{Findings, quantity, rules};
 use crate::scene::table::Table;
-use crate::scene::{Integrator, LineModel, PointKind, Scene, Sea, SpectrumKind, WaveComponents, Waves};
+use crate::scene::{
+    Integrator, LineModel, Point, PointKind, Scene, Sea, SpectrumKind, WaveComponents, Waves,
+};
 
 pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
     let at = "water.waves";
@@ -23,7 +25,28 @@ pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
     rules! { findings, at;
         "" if scene.gravity <= 0.0 => "without gravity there are no waves: leave one of the two out";
     }
-    check_lines(scene, findings);
+    check_lines(scene, at, ["waves move", "the waves"], findings);
+}
+
+/// Refuses what the host's flow of the water cannot act on.
+pub(super) fn check_flow(scene: &Scene, findings: &mut Findings) {
+    check_lines(scene, "water.flow", ["the flow moves", "the flow"], findings);
+    let is_alone = |point: &Point| {
+        let mut lines = scene.lines.iter();
+        is_wet(point) && !lines.any(|line| line.joins(&point.name))
+    };
+    for (i, point) in scene.points.iter().enumerate() {
+        rules! { findings, "points";
+            "[{i}]" if point.kind != PointKind::Free && is_alone(point) =>
+                "the host gives the flow at the nodes of lines, and no line ends at this point: leave out its `volume` and `drag_area`";
+        }
+    }
+}
+
+/// Returns whether water acts on the body of a point.
+fn is_wet(point: &Point) -> bool {
+    let mut sizes = [point.volume, point.drag_area].into_iter().flatten();
+    sizes.any(|size| size > 0.0)
 }
 
 /// The ways to describe a sea, of which one is taken, and the keys that belong to it.
@@ -65,11 +88,12 @@ fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
     }
 }
 
-/// Lines that cannot be modelled in waves.
-fn check_lines(scene: &Scene, findings: &mut Findings) {
-    let at = "water.waves";
+/// Lines that cannot be modelled in water that moves: what moves it, as the beginning of a sentence, and alone.
+fn check_lines(scene: &Scene, at: &str, [moves, source]: [&str; 2], findings: &mut Findings) {
     if scene.solver.integrator == Integrator::QuasiStatic {
-        let problem = "waves move no line that is quasi-static: take a dynamic integrator such as \"auto\", or leave the waves out";
+        let problem = format!(
+            "{moves} no line that is quasi-static: take a dynamic integrator such as \"auto\", or leave {source} out"
+        );
         return findings.say(at, problem);
     }
     let all_beams = scene.solver.integrator == Integrator::Beam;
@@ -80,20 +104,20 @@ fn check_lines(scene: &Scene, findings: &mut Findings) {
     if let Some((name, _)) = beam {
         let problem = format!(
             "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend too, or \
-             leave out the waves"
+             leave out {source}"
         );
         return findings.say(at, problem);
     }
     let beams = || scene.lines.iter().filter(|line| scene.is_beam(line));
     let wet = scene.points.iter().find(|point| {
-        let mut wets = [point.volume, point.drag_area].into_iter().flatten();
-        let wet = point.kind == PointKind::Free && wets.any(|value| value > 0.0);
-        wet && beams().any(|line| line.from == point.name || line.to == point.name)
+        point.kind == PointKind::Free
+            && is_wet(point)
+            && beams().any(|line| line.from == point.name || line.to == point.name)
     });
     if let Some(point) = wet {
         let problem = format!(
             "point {:?} is in the water at the end of a beam, and beams are modelled in still water only: use the cable model, or leave out \
-             the waves or the point's volume and drag area",
+             {source} or the point's volume and drag area",
             point.name
         );
         findings.say(at, problem);

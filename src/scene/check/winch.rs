@@ -65,6 +65,11 @@ fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     if scene.waves().is_some() {
         return Some("a line on a winch is not modelled in waves: leave out one of them");
     }
+    if scene.has_host_flow() {
+        return Some(
+            "the number of its nodes changes, at which the host is to give the flow of the water: leave out one of them",
+        );
+    }
     if scene.meets_surface(line) {
         return Some(
             "a line on a winch does not come out of the water: say water.surface = false to have it under water throughout",

@@ -20,7 +20,7 @@ impl Scene {
 
     /// "still water of 1025 kg/m³ that fills all space".
     fn water_in_words(&self, water: &Water) -> String {
-        let still = water.current.is_none() && water.waves.is_none();
+        let still = water.current.is_none() && !water.accelerates();
         let still = if still { "still " } else { "" };
         let mut words = format!(
             "{still}water of {} {}",
@@ -35,6 +35,16 @@ impl Scene {
         }
         if let Some(waves) = &water.waves {
             words += &format!("; {}", self.waves_in_words(waves));
+        }
+        if water.flow.is_some() {
+            let added = water
+                .current
+                .as_ref()
+                .map_or("", |_| ", to which the current is added");
+            words += &format!(
+                "; a host gives its velocity and acceleration at the nodes{added}, and without a host they are zero; drag and the force of the \
+                 accelerated water on lines and points follow them, and the surface stays level"
+            );
         }
         words
     }
@@ -78,7 +88,7 @@ impl Scene {
         if water.is_none_or(|water| water.current.is_none()) {
             absent.push("current");
         }
-        if water.is_none_or(|water| water.waves.is_none()) {
+        if water.is_none_or(|water| !water.accelerates()) {
             absent.push("waves");
         }
         match (piercing, submerged) {

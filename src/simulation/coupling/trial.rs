@@ -7,6 +7,7 @@ use super::{EndMotion, NO_RATES, joined};
 use crate::math::attitude::{Attitude, Order, angle_rates};
 use crate::math::lanes::Lanes;
 use crate::model::{Body, Role};
+use crate::simulation::flow::Course;
 use crate::simulation::paths::{Paths, is_coupled};
 use crate::simulation::prescribed::MotionSource;
 use crate::simulation::{Simulation, Snapshot};
@@ -35,6 +36,8 @@ pub(super) struct Trial {
     simulation: Simulation,
     start: Snapshot,
     paths: Box<Paths>,
+    /// Flow of the water over the step, where a host gives it.
+    flow: Course,
     /// Length of the step [s].
     pub length: f64,
 }
@@ -57,6 +60,7 @@ impl Trial {
             simulation: simulation.clone(),
             start: begun.snapshot.clone(),
             paths: simulation.snapshot.paths.clone(),
+            flow: Course::Given,
             length: begun.step,
         }))
     }
@@ -95,6 +99,7 @@ impl Trial {
             simulation: simulation.clone(),
             start,
             paths,
+            flow: Course::Continued,
             length,
         })
     }
@@ -134,6 +139,7 @@ impl Trial {
         }
         simulation.paths = paths;
         simulation.take_paths(length);
+        simulation.extend_flow(self.length, self.flow);
         simulation.integrate(length).map_err(|e| e.to_string())?;
         Ok(simulation)
     }

@@ -1,0 +1,324 @@
+//! Flow of the water at the nodes of the lines, as a host gives it in place of waves.
+//!
+//! The host gives velocity u and acceleration a of the water at the places of the nodes, once for every communication step. With
+//! `input_reconstruction = "interpolate"` these hold for the end t + h of the coming step and for the places r + h v, where the nodes will be if
+//! they keep their velocities. Over the step the velocity follows the cubic between both ends with the slopes a, and the acceleration the
+//! parabola through its last three values, of errors h⁴u⁗/384 and h³a‴/16. Built-in waves differ in the acceleration alone: their cubic has the
+//! exact slopes.
+//!
+//! Otherwise they hold for the start t of the step and for the present places. With the values before, h₀ earlier, the flow at the end is
+//! predicted as
+//!
+//! û = u + h (u − u₋)/h₀ + ½h (h + h₀) j,   â = a + h j,   j = (a − a₋)/h₀,
+//!
+//! with errors h³u‴/2 and h²a″ on equal steps. Over the step velocity and acceleration follow cubics from their last predictions to these, with
+//! the slopes â and j, so that neither jumps. The difference of the velocities, rather than a, is extrapolated, since it includes the change of u
+//! by the motion of the node through the water. Without values before, at the start or where the step has more than doubled, û = u + h a and
+//! â = a.
+//!
+//! A point moves in the flow of the first line end that is attached to it. Source: derived here.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::Simulation;
+use crate::dynamics::{StepError, StepFailure};
+use crate::model::{End, Model, Point, State, WaveSpan, WaveSpans};
+use crate::physics::airy::Orbit;
+use crate::scene::{Reconstruction, SceneError};
+
+/// Components of the flow at a node: velocity along x, y, z [m/s], then acceleration [m/s²].
+pub const FLOW_COMPONENTS: [&str; 6] = ["vx", "vy", "vz", "ax", "ay", "az"];
+/// Greatest velocity [m/s], that of a current in a scene, and acceleration [m/s²], a thousand times that of gravity.
+const LIMITS: [f64; 2] = [100.0, 1e4];
+/// Length of a step over that of the step before up to which rates are extrapolated from one to the other [-].
+const GROWTH_MAX: f64 = 2.0;
+
+/// Flow of the water at the nodes of the lines.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WaterFlow {
+    /// Components at the nodes from end A to end B, by line; empty where the host gives none.
+    lines: Vec<[Vec<f64>; 6]>,
+}
+
+impl Clone for WaterFlow {
+    fn clone(&self) -> Self {
+        WaterFlow {
+            lines: self.lines.clone(),
+        }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.lines.clone_from(&source.lines);
+    }
+}
+
+impl WaterFlow {
+    /// Water at rest, with room for the lines that take a flow.
+    pub fn still(model: &Model) -> WaterFlow {
+        let count = |line: &crate::model::Line| match line.takes_flow(model) {
+            true => line.segment_count() + 1,
+            false => 0,
+        };
+        let lines = model.lines.iter();
+        WaterFlow {
+            lines: lines
+                .map(|line| std::array::from_fn(|_| vec![0.0; count(line)]))
+                .collect(),
+        }
+    }
+
+    /// A component of [`FLOW_COMPONENTS`] at the nodes of a line [m/s, m/s²]; empty where the line takes no flow.
+    pub fn component(&self, line: usize, component: usize) -> &[f64] {
+        &self.lines[line][component]
+    }
+
+    /// The same, to be set.
+    pub fn component_mut(&mut self, line: usize, component: usize) -> &mut [f64] {
+        &mut self.lines[line][component]
+    }
+
+    /// Sets all to zero.
+    pub fn calm(&mut self) {
+        self.lines
+            .iter_mut()
+            .flatten()
+            .for_each(|values| values.fill(0.0));
+    }
+
+    /// Velocity [m/s] and acceleration [m/s²] at a node.
+    #[inline]
+    fn at(&self, line: usize, node: usize) -> [Vector3<f64>; 2] {
+        let [vx, vy, vz, ax, ay, az] = &self.lines[line];
+        [
+            Vector3::new(vx[node], vy[node], vz[node]),
+            Vector3::new(ax[node], ay[node], az[node]),
+        ]
+    }
+
+    /// The first line with a value beyond the limits, the component and the node.
+    fn beyond(&self) -> Option<(usize, usize, usize)> {
+        let columns = |(line, columns): (usize, &[Vec<f64>; 6])| {
+            columns.iter().enumerate().find_map(|(component, values)| {
+                let limit = LIMITS[component / 3];
+                // no number is within any limit
+                let node = values.iter().position(|value| !(value.abs() <= limit))?;
+                Some((line, component, node))
+            })
+        };
+        self.lines.iter().enumerate().find_map(columns)
+    }
+
+    /// Sentence on a value beyond the limits.
+    fn refusal(&self, model: &Model, (line, component, node): (usize, usize, usize)) -> String {
+        let (value, limit) = (self.lines[line][component][node], LIMITS[component / 3]);
+        let unit = ["m/s", "m/s²"][component / 3];
+        format!(
+            "{}.flow.{}[{}] = {value:e} {unit} is beyond {limit} {unit}",
+            model.lines[line].name,
+            FLOW_COMPONENTS[component],
+            node + 1
+        )
+    }
+
+    /// Refuses values of a start beyond the limits.
+    pub(super) fn check_start(&self, model: &Model) -> Result<(), SceneError> {
+        let beyond = self.beyond();
+        beyond.map_or(Ok(()), |at| Err(SceneError::new("", self.refusal(model, at))))
+    }
+
+    /// Refuses values of a step from a time [s] beyond the limits.
+    pub(super) fn check_step(&self, model: &Model, time: f64) -> Result<(), StepError> {
+        let Some(at @ (line, _, node)) = self.beyond() else {
+            return Ok(());
+        };
+        Err(StepError {
+            time,
+            line: model.lines[line].name.clone(),
+            node,
+            cause: StepFailure::Input(self.refusal(model, at)),
+        })
+    }
+}
+
+/// Meaning of the flow that a host gave last, for the coming step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Course {
+    /// The flow at the end or at the start of the step, as the scene says.
+    Given,
+    /// That of the step before: the host has not given the next one.
+    Continued,
+}
+
+/// The coming step of the flow.
+struct Coming<'a> {
+    model: &'a Model,
+    course: Course,
+    /// Flow that the host gives now, and the one before.
+    given: [&'a WaterFlow; 2],
+    /// Start and end [s].
+    times: [f64; 2],
+}
+
+impl Coming<'_> {
+    /// Motion at both ends of the step at a node of a line; `old` is the motion over the step before, of the length h₀ [s].
+    fn ends(&self, (line, node): (usize, usize), old: [&Orbit; 2], h0: f64) -> [Orbit; 2] {
+        let [earlier, start] = old;
+        let h = self.times[1] - self.times[0];
+        let is_known = h0 > 0.0 && h <= GROWTH_MAX * h0;
+        let orbit = |velocity, acceleration, jerk| Orbit {
+            velocity,
+            acceleration,
+            jerk,
+            ..Orbit::default()
+        };
+        let [velocity, acceleration] = self.given[0].at(line, node);
+        let interpolates = self.model.solver.input_reconstruction == Reconstruction::Interpolate;
+        match self.course {
+            Course::Continued => {
+                let acceleration = start.acceleration + h * start.jerk;
+                let mean = start.acceleration + 0.5 * h * start.jerk;
+                [*start, orbit(start.velocity + h * mean, acceleration, start.jerk)]
+            }
+            Course::Given if interpolates => {
+                let slope = (acceleration - start.acceleration) / h;
+                let bend = match is_known {
+                    true => (slope - (start.acceleration - earlier.acceleration) / h0) / (h + h0),
+                    false => Vector3::zeros(),
+                };
+                let before = Orbit {
+                    jerk: slope - h * bend,
+                    ..*start
+                };
+                [before, orbit(velocity, acceleration, slope + h * bend)]
+            }
+            Course::Given if is_known => {
+                let [velocity_before, acceleration_before] = self.given[1].at(line, node);
+                let jerk = (acceleration - acceleration_before) / h0;
+                let rate = (velocity - velocity_before) / h0 + 0.5 * (h + h0) * jerk;
+                [*start, orbit(velocity + h * rate, acceleration + h * jerk, jerk)]
+            }
+            Course::Given => {
+                let end = velocity + h * acceleration;
+                [*start, orbit(end, acceleration, Vector3::zeros())]
+            }
+        }
+    }
+
+    /// Motion over the step at some nodes of a line, after that over the step before.
+    fn extend(&self, line: usize, nodes: std::ops::Range<usize>, old: &WaveSpan, next: &mut WaveSpan) {
+        next.times = self.times;
+        let [before, after] = &mut next.ends;
+        before.clear();
+        after.clear();
+        for (node, (earlier, start)) in nodes.zip(old.ends[0].iter().zip(&old.ends[1])) {
+            let [start, end] = self.ends((line, node), [earlier, start], old.length());
+            before.push(start);
+            after.push(end);
+        }
+    }
+}
+
+/// Line and node whose flow a point moves in: the first end attached to it that is not released, else the first.
+fn source(model: &Model, state: &State, point: &Point) -> Option<(usize, usize)> {
+    let is_joined = |(line, end): &&(usize, End)| !state.lines[*line].released[*end as usize];
+    let joined = point.attached.iter().find(is_joined);
+    let (line, end) = joined.or(point.attached.first())?;
+    Some((*line, model.lines[*line].end_node(*end)))
+}
+
+/// Flow of a state from the time on at which it starts; none where no host gives one.
+pub(super) fn begin(model: &Model, state: &State, flow: &WaterFlow) -> Option<WaveSpans> {
+    if !model.host_flow {
+        return None;
+    }
+    let orbit = |line: usize, node: usize| {
+        let [velocity, acceleration] = flow.at(line, node);
+        Orbit {
+            velocity,
+            acceleration,
+            ..Orbit::default()
+        }
+    };
+    let lines = model.lines.iter().enumerate().map(|(index, line)| {
+        let nodes = match line.heaves(model) {
+            true => 0..line.segment_count() + 1,
+            false => 0..0,
+        };
+        WaveSpan::begun(state.time, nodes.map(|node| orbit(index, node)).collect())
+    });
+    let points = model.points.iter().map(|point| {
+        let at = source(model, state, point).filter(|_| point.heaves());
+        let orbits = at.map(|(line, node)| orbit(line, node));
+        WaveSpan::begun(state.time, orbits.into_iter().collect())
+    });
+    Some(WaveSpans {
+        lines: lines.collect(),
+        points: points.collect(),
+    })
+}
+
+impl Simulation {
+    /// Sets the flow of the water that a host gives, with the shape of [`WaterFlow::still`]: at the end of the coming step where the scene says
+    /// `input_reconstruction = "interpolate"`, else now.
+    pub fn set_flow(&mut self, flow: &WaterFlow) {
+        self.snapshot.inputs.flow.clone_from(flow);
+    }
+
+    /// The flow of the water as set.
+    pub fn flow(&self) -> &WaterFlow {
+        &self.snapshot.inputs.flow
+    }
+
+    /// Place at which a host is to give the flow next for a node of a line [m]: the node's present place, or, where it is to be given for the end
+    /// of the coming step, the place then if the node keeps its velocity and the step is as long as the last; the first as the scene's interval.
+    pub fn flow_place(&self, line: usize, node: usize) -> Vector3<f64> {
+        let (model, snapshot) = (&*self.model, &self.snapshot);
+        let shape = &snapshot.state.lines[line];
+        let ahead = match model.solver.input_reconstruction {
+            Reconstruction::Interpolate if snapshot.last_step == 0.0 => model.interval,
+            Reconstruction::Interpolate => snapshot.last_step,
+            _ => 0.0,
+        };
+        shape.position[node] + ahead * shape.velocity[node]
+    }
+
+    /// Lays out the flow over the next communication step [s]; that of the snapshot stays as it is.
+    pub(super) fn extend_flow(&mut self, step: f64, course: Course) {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let Some(old) = state.waves.as_ref().filter(|_| model.host_flow) else {
+            return;
+        };
+        let next = self.next_flow.get_or_insert_with(|| old.clone());
+        let coming = Coming {
+            model,
+            course,
+            given: [&self.snapshot.inputs.flow, &self.snapshot.flow_before],
+            times: [state.time, state.time + step],
+        };
+        for (line, (old, next)) in old.lines.iter().zip(&mut next.lines).enumerate() {
+            coming.extend(line, 0..old.ends[1].len(), old, next);
+        }
+        let points = old.points.iter().zip(&mut next.points);
+        for ((old, next), point) in points.zip(&model.points) {
+            if let Some((line, node)) = source(model, state, point) {
+                coming.extend(line, node..node + 1, old, next);
+            }
+        }
+    }
+
+    /// Exchanges the flow of the state with the one laid out for the next step.
+    pub(super) fn swap_flow(&mut self) {
+        if self.model.host_flow {
+            std::mem::swap(&mut self.snapshot.state.waves, &mut self.next_flow);
+        }
+    }
+
+    /// Keeps the flow that the host gave, where the next step needs it.
+    pub(super) fn keep_flow(&mut self) {
+        if self.model.host_flow && self.model.solver.input_reconstruction != Reconstruction::Interpolate {
+            let snapshot = &mut self.snapshot;
+            snapshot.flow_before.clone_from(&snapshot.inputs.flow);
+        }
+    }
+}
