@@ -4,6 +4,7 @@
 mod common;
 
 mod current;
+mod flow;
 mod points;
 mod seabed;
 mod surface;
