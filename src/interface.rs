@@ -4,11 +4,12 @@
 //! that they always agree. The value reference of a variable is its position in the table, counted from 1.
 //!
 //! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
-//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene requests them. Releases and
-//! winches have their rows between vessels and lines.
+//! solver's outputs, the calculated parameters, the parameters, the flow of the water where a host gives it, and the profiles where the scene
+//! requests them. Releases and winches have their rows between vessels and lines.
 
 mod coupling;
 mod dependencies;
+mod flow;
 mod parameters;
 mod profile;
 mod results;
@@ -20,6 +21,7 @@ use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
 use crate::simulation::{Simulation, reference_catenary};
 
+pub use flow::range;
 pub use parameters::{Parameter, Place};
 pub use results::{LineResult, SolverResult};
 
@@ -197,6 +199,24 @@ pub enum Binding {
         /// The line.
         line: usize,
     },
+    /// A component of the flow of the water at each node of a line from end A to end B.
+    Flow {
+        /// The line.
+        line: usize,
+        /// Component, in the order of [`crate::simulation::FLOW_COMPONENTS`].
+        component: usize,
+        /// The only node, counted from 0; all where absent.
+        node: Option<usize>,
+    },
+    /// A coordinate of the place at which a host is to give the flow next, for each node of a line from end A to end B [m].
+    FlowPlace {
+        /// The line.
+        line: usize,
+        /// Axis: x, y, z, 0 to 2.
+        axis: usize,
+        /// The only node, counted from 0; all where absent.
+        node: Option<usize>,
+    },
     /// A result of a line.
     Line {
         /// The line.
@@ -340,6 +360,7 @@ impl Interface {
             check_name(name, &format!("line_types.{name}"))?;
         }
         variables.extend(parameters::variables(scene));
+        flow::push(&mut variables, model, layout);
         if scene.output.profile.is_given() {
             profile::push(&mut variables, model, layout);
         }
@@ -398,6 +419,12 @@ impl Interface {
             }
             Binding::Release { line } => values[0] = f64::from(u8::from(simulation.release(line))),
             Binding::LengthChange { line } => values[0] = simulation.length_change(line),
+            Binding::Flow {
+                line,
+                component,
+                node,
+            } => flow::read(simulation, line, component, node, values),
+            Binding::FlowPlace { line, axis, node } => flow::read_place(simulation, line, axis, node, values),
             Binding::Solver(result) => values[0] = result.read(simulation, 0).ok_or(NO_BALANCE)?,
             Binding::Profile { line, quantity, node } => {
                 profile::read(simulation, line, quantity, node, values)

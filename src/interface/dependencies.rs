@@ -25,7 +25,10 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
         .filter(|(_, variable)| {
             matches!(
                 variable.binding,
-                Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Parameter(_)
+                Binding::Displacement { .. }
+                    | Binding::LengthChange { .. }
+                    | Binding::Flow { .. }
+                    | Binding::Parameter(_)
             )
         })
         .map(|(index, variable)| Known {
@@ -37,26 +40,30 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
             },
         })
         .collect();
-    let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
+    let mut known_scopes: BTreeMap<(BTreeSet<usize>, Quantity), Vec<u32>> = BTreeMap::new();
     for variable in variables {
-        let (lines, closed_form) = match &variable.binding {
+        let (lines, quantity) = match &variable.binding {
             Binding::EndForce { body, .. } | Binding::Interface { body, .. } => {
-                (networks_of(model, attached_to(*body)), false)
+                (networks_of(model, attached_to(*body)), Quantity::Force)
             }
-            Binding::Line { line, result } if result.is_catenary() => (BTreeSet::from([*line]), true),
+            Binding::Line { line, result } if result.is_catenary() => {
+                (BTreeSet::from([*line]), Quantity::ClosedForm)
+            }
             Binding::Line { line, .. } | Binding::Profile { line, .. } => {
-                (networks_of(model, [*line]), false)
+                (networks_of(model, [*line]), Quantity::Force)
             }
+            Binding::FlowPlace { line, .. } => (networks_of(model, [*line]), Quantity::Place),
             _ => continue,
         };
         variable.initial_dependencies = known_scopes
-            .entry((lines, closed_form))
-            .or_insert_with_key(|(lines, closed_form)| {
+            .entry((lines, quantity))
+            .or_insert_with_key(|(lines, quantity)| {
                 let scope = Scope {
                     scene,
                     model,
                     lines,
-                    closed_form: *closed_form,
+                    closed_form: *quantity == Quantity::ClosedForm,
+                    is_place: *quantity == Quantity::Place,
                 };
                 let of_scope = knowns.iter().filter(|known| scope.depends_on(known));
                 of_scope.map(|known| known.reference).collect()
@@ -100,6 +107,17 @@ fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSe
         .collect()
 }
 
+/// Kind of a result, by its dependencies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Quantity {
+    /// Of the equilibrium, with the load on the end of a line.
+    Force,
+    /// A place in equilibrium.
+    Place,
+    /// Of the closed-form catenary.
+    ClosedForm,
+}
+
 /// A variable that a host may set before the simulation starts.
 struct Known {
     reference: u32,
@@ -114,6 +132,8 @@ struct Scope<'a> {
     model: &'a Model,
     lines: &'a BTreeSet<usize>,
     closed_form: bool,
+    /// True of places, which no flow changes at rest.
+    is_place: bool,
 }
 
 impl Scope<'_> {
@@ -123,6 +143,7 @@ impl Scope<'_> {
                 !self.closed_form && known.moves.iter().any(|line| self.lines.contains(line))
             }
             Binding::LengthChange { line } => !self.closed_form && self.lines.contains(line),
+            Binding::Flow { line, .. } => !self.closed_form && !self.is_place && self.lines.contains(line),
             Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
             _ => false,
         }

@@ -1,7 +1,7 @@
 //! Node positions and tensions of a line as variables.
 
-use super::rows::{AXES, row};
-use super::{Binding, Causality, Layout, ProfileQuantity, Unit, Variable};
+use super::rows::{AXES, at_nodes, row};
+use super::{Binding, Causality, Layout, ProfileQuantity, Unit, Variable, range};
 use crate::model::Model;
 use crate::scene::Axis;
 use crate::simulation::Simulation;
@@ -12,23 +12,11 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
         let (nodes, owner) = (built.nodes_max(), &built.name);
         for (label, meaning, unit, quantity) in quantities(built.bends()) {
             let name = format!("{owner}.profile.{label}");
-            let row = |name, place: String, node| {
+            at_nodes(variables, (layout, nodes), &name, |name, place, node| {
                 let description = format!("{owner}: {meaning} at {place} from end A");
                 let binding = Binding::Profile { line, quantity, node };
                 row(name, description, Causality::Output, unit, binding)
-            };
-            match layout {
-                Layout::Arrays => {
-                    let mut array = row(name, "the nodes".into(), None);
-                    array.description += " to end B";
-                    array.dimension = Some(nodes);
-                    variables.push(array);
-                }
-                Layout::Scalars => variables.extend((0..nodes).map(|node| {
-                    let number = node + 1;
-                    row(format!("{name}[{number}]"), format!("node {number}"), Some(node))
-                })),
-            }
+            });
         }
     }
 }
@@ -72,7 +60,7 @@ pub(super) fn read(
     node: Option<usize>,
     values: &mut [f64],
 ) {
-    let range = node.map_or(0..values.len(), |node| node..node + 1);
+    let range = range(node, values.len());
     match quantity {
         ProfileQuantity::Position(axis) => {
             let axis = axis as usize;

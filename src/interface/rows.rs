@@ -1,6 +1,6 @@
 //! The rows of the table, one function for each part of a scene.
 
-use super::{Binding, Causality, Kind, SolverResult, Unit, Variability, Variable};
+use super::{Binding, Causality, Kind, Layout, SolverResult, Unit, Variability, Variable};
 use crate::model::Body;
 use crate::scene;
 use crate::scene::table::Choice;
@@ -34,6 +34,28 @@ pub(super) fn row(
         range: [is_magnitude.then_some(0.0), None],
         initial_dependencies: Vec::new(),
         binding,
+    }
+}
+
+/// Adds a quantity at a number of nodes: an array, or a scalar for each node. `row` makes the variable of a name from the words for its place,
+/// with which the description ends but for "from end A", and from its only node.
+pub(super) fn at_nodes(
+    variables: &mut Vec<Variable>,
+    (layout, count): (Layout, usize),
+    name: &str,
+    row: impl Fn(String, String, Option<usize>) -> Variable,
+) {
+    match layout {
+        Layout::Arrays => {
+            let mut array = row(name.to_string(), "the nodes".into(), None);
+            array.description += " to end B";
+            array.dimension = Some(count);
+            variables.push(array);
+        }
+        Layout::Scalars => variables.extend((0..count).map(|node| {
+            let number = node + 1;
+            row(format!("{name}[{number}]"), format!("node {number}"), Some(node))
+        })),
     }
 }
 

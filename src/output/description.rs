@@ -402,7 +402,8 @@ fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
     for (key, limit) in ["min", "max"].into_iter().zip(variable.range) {
         attributes.extend(limit.map(|limit| (key, text(limit))));
     }
-    attributes.extend(variable.start.map(|start| ("start", text(start))));
+    let start = |start| vec![text(start); variable.size()].join(" ");
+    attributes.extend(variable.start.map(|value| ("start", start(value))));
     attributes
 }
 

@@ -92,11 +92,14 @@ impl Recorder {
     }
 }
 
-/// Inputs and outputs, without profiles: these have a file of their own.
+/// Inputs and outputs, without values at nodes: profiles have a file of their own, and a run has no host that gives a flow.
 pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
     interface.variables().iter().filter(|variable| {
         matches!(variable.causality, Causality::Input | Causality::Output)
-            && !matches!(variable.binding, Binding::Profile { .. })
+            && !matches!(
+                variable.binding,
+                Binding::Profile { .. } | Binding::Flow { .. } | Binding::FlowPlace { .. }
+            )
     })
 }
 
