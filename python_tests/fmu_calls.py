@@ -222,9 +222,11 @@ class Slave:
                          (c_double * n)(*values))
 
     def set(self, name, value):
+        """Sets a scalar, or an array to its values or to one number throughout."""
         variable = self.library.description.variables[name]
         kind = "integer" if variable["type"] in ("Integer", "Int32") else "real"
-        return self.set_references([variable["reference"]], [value], kind)
+        values = [*value] if hasattr(value, "__len__") else [value] * variable["size"]
+        return self.set_references([variable["reference"]], values, kind)
 
     def get(self, name):
         variable = self.library.description.variables[name]

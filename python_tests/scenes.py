@@ -46,6 +46,9 @@ CURRENT = CHAIN.replace("density = 1025.0", "density = 1025.0\ncurrent = { veloc
 CURRENT_ALONE = CURRENT.replace("mass = 113.35", "weight = 975.0").replace("[seabed]\ndepth = 200.0\n", "").replace(
     "length = 835.35", "length = 820.0")
 
+# The host gives the flow of the water at the nodes, and an acceleration of added mass.
+HOSTED = CHAIN.replace("density = 1025.0", 'density = 1025.0\nflow = "host"')
+
 SWELL = table("water.waves", "regular = { height = 6.0, period = 10.0, direction = 0.3, phase = 0.7 }")
 WAVES = CHAIN.replace("[seabed]", f"{SWELL}\n[seabed]")
 

@@ -66,6 +66,34 @@ def test_both_versions_give_the_same_bits(library):
     assert same(*rows)
 
 
+def stream(label, node, time):
+    """A flow that differs at every node."""
+    size = {"v": 0.8, "a": 0.3}[label[0]]
+    return size * math.sin(0.6 * time + 0.2 * node + ord(label[1]))
+
+
+def test_arrays_of_the_flow_in_fmpy_are_its_scalars_to_the_last_bit(package):
+    """FMI 3.0 takes the flow of the water as arrays, FMI 2.0 as scalars, both from FMPy's input table."""
+    time = np.linspace(0.0, 5.0, 101)
+    labels = ["vx", "vy", "vz", "ax", "ay", "az"]
+    tables = {
+        2: [(f"line1.flow.{label}[{node + 1}]", float, [stream(label, node, t) for t in time])
+            for label in labels for node in range(21)],
+        3: [(f"line1.flow.{label}", (float, 21), [[stream(label, node, t) for node in range(21)] for t in time])
+            for label in labels],
+    }
+    outputs, rows = ["fairlead.fx", "fairlead.fy", "fairlead.fz", "line1.tension_b"], []
+    for version, columns in tables.items():
+        signals = np.zeros(len(time), dtype=[("time", float), *((name, kind) for name, kind, _ in columns)])
+        signals["time"] = time
+        for name, _, values in columns:
+            signals[name] = values
+        result = fmpy.simulate_fmu(str(package("HOSTED", version)), stop_time=5.0, output_interval=0.05, input=signals,
+                                   output=outputs)
+        rows.append(np.array([result[name] for name in outputs]))
+    assert np.array_equal(*rows) and np.ptp(rows[0][1]) > 100.0
+
+
 def test_initial_outputs_are_the_static_forces_where_the_host_put_the_fairlead(slave):
     one = slave()
     one.expect(one.enter())

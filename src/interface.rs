@@ -4,8 +4,8 @@
 //! that they always agree. The value reference of a variable is its position in the table, counted from 1.
 //!
 //! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
-//! solver's outputs, the calculated parameters, the parameters, the flow of the water where a host gives it, and the profiles where the scene
-//! requests them. Releases and winches have their rows between vessels and lines.
+//! solver's outputs, the calculated parameters, the parameters, the flow of the water where a host gives it, and the profiles where the
+//! scene requests them. Releases and winches have their rows between vessels and lines.
 
 mod coupling;
 mod dependencies;
@@ -19,9 +19,8 @@ use std::collections::BTreeSet;
 
 use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
-use crate::simulation::{Simulation, reference_catenary};
+use crate::simulation::{Simulation, WaterFlow, reference_catenary};
 
-pub use flow::range;
 pub use parameters::{Parameter, Place};
 pub use results::{LineResult, SolverResult};
 
@@ -199,22 +198,22 @@ pub enum Binding {
         /// The line.
         line: usize,
     },
-    /// A component of the flow of the water at each node of a line from end A to end B.
+    /// Velocity [m/s] or acceleration [m/s²] of the water at a node of a line, or at all from end A to end B.
     Flow {
         /// The line.
         line: usize,
-        /// Component, in the order of [`crate::simulation::FLOW_COMPONENTS`].
+        /// Component of [`crate::simulation::FLOW_COMPONENTS`].
         component: usize,
-        /// The only node, counted from 0; all where absent.
+        /// The node; all where absent.
         node: Option<usize>,
     },
-    /// A coordinate of the place at which a host is to give the flow next, for each node of a line from end A to end B [m].
+    /// Coordinate of the place of a node of a line for which the next flow is due, or of all from end A to end B [m].
     FlowPlace {
         /// The line.
         line: usize,
         /// Axis: x, y, z, 0 to 2.
         axis: usize,
-        /// The only node, counted from 0; all where absent.
+        /// The node; all where absent.
         node: Option<usize>,
     },
     /// A result of a line.
@@ -252,6 +251,13 @@ pub enum InterfaceQuantity {
     Stiffness,
     /// Quasi-static force per displacement, with the opposite sign.
     StaticStiffness,
+}
+
+impl InterfaceQuantity {
+    /// Returns whether the quantity follows from the coming step.
+    fn is_of_a_step(self) -> bool {
+        !matches!(self, InterfaceQuantity::Mass | InterfaceQuantity::StaticStiffness)
+    }
 }
 
 /// Quantity of a profile.
@@ -315,6 +321,7 @@ impl Variable {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interface {
     variables: Vec<Variable>,
+    still_water: WaterFlow,
 }
 
 impl Interface {
@@ -366,7 +373,44 @@ impl Interface {
         }
         check_unique(&variables)?;
         dependencies::fill(&mut variables, scene, model);
-        Ok(Interface { variables })
+        Ok(Interface {
+            variables,
+            still_water: WaterFlow::still(model),
+        })
+    }
+
+    /// The flow of the water before the host gives one.
+    pub fn still_water(&self) -> &WaterFlow {
+        &self.still_water
+    }
+
+    /// Refuses a model with other numbers of nodes than the table has, which parameters may cause.
+    ///
+    /// # Errors
+    /// Such a model, with the first variable and its line.
+    pub fn check_nodes(&self, model: &Model) -> Result<(), String> {
+        for variable in &self.variables {
+            let (line, count, fits) = match variable.binding {
+                Binding::Profile { line, node, .. } => {
+                    let count = model.lines[line].nodes_max();
+                    let fits = variable.dimension.is_none_or(|length| length == count);
+                    (line, count, fits && node.is_none_or(|node| node < count))
+                }
+                Binding::Flow { line, .. } => {
+                    let count = model.lines[line].flow_count(model);
+                    (line, count, count == self.still_water.node_count(line))
+                }
+                _ => continue,
+            };
+            if !fits {
+                return Err(format!(
+                    "with these parameters {} would have {count} nodes, which the interface cannot follow: \
+                     give the sections of the line their number of elements in the scene",
+                    model.lines[line].name
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Rows in their order.
@@ -419,17 +463,15 @@ impl Interface {
             }
             Binding::Release { line } => values[0] = f64::from(u8::from(simulation.release(line))),
             Binding::LengthChange { line } => values[0] = simulation.length_change(line),
-            Binding::Flow {
-                line,
-                component,
-                node,
-            } => flow::read(simulation, line, component, node, values),
             Binding::FlowPlace { line, axis, node } => flow::read_place(simulation, line, axis, node, values),
             Binding::Solver(result) => values[0] = result.read(simulation, 0).ok_or(NO_BALANCE)?,
             Binding::Profile { line, quantity, node } => {
                 profile::read(simulation, line, quantity, node, values)
             }
-            Binding::Displacement { .. } | Binding::Velocity { .. } | Binding::Parameter(_) => {
+            Binding::Displacement { .. }
+            | Binding::Velocity { .. }
+            | Binding::Flow { .. }
+            | Binding::Parameter(_) => {
                 unreachable!("inputs and parameters are kept by the caller")
             }
         }

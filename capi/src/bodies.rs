@@ -188,3 +188,38 @@ pub unsafe extern "C" fn moorline_node_tensions(
         copy(&value, unsafe { edge::slice_mut(tensions, count) }?)
     })
 }
+
+/// Gives x, y, z of the places for which the flow of the water is due next, for the nodes of a line from end A to end B [m]: three values a node. These
+/// are the places of the nodes now or, where inputs hold for the end of the step, the places they are expected to reach. From start on.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn moorline_flow_places(
+    simulation: moorline_simulation,
+    line: usize,
+    places: *mut f64,
+    count: usize,
+) -> c_int {
+    edge::call(simulation, "moorline_flow_places", |session| {
+        let value = session.flow_places(line)?;
+        // SAFETY: an array of `count` values.
+        copy(value.as_flattened(), unsafe {
+            edge::slice_mut(places, count)
+        }?)
+    })
+}
+
+/// Sets the velocity [m/s] and the acceleration [m/s2] of the water at those places, three values a node, in a scene with `flow = "host"` in [water].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn moorline_set_flow(
+    simulation: moorline_simulation,
+    line: usize,
+    velocities: *const f64,
+    accelerations: *const f64,
+    count: usize,
+) -> c_int {
+    edge::call(simulation, "moorline_set_flow", |session| {
+        // SAFETY: two arrays of `count` values.
+        let (velocities, accelerations) =
+            unsafe { (edge::slice(velocities, count)?, edge::slice(accelerations, count)?) };
+        session.set_flow(line, velocities, accelerations)
+    })
+}

@@ -8,14 +8,14 @@ use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json};
 use moorline::scene::{LoadError, Scene};
-use moorline::simulation::{self, Simulation, Snapshot};
+use moorline::simulation::{self, Simulation, Snapshot, WaterFlow};
 use moorline_decks::load;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::codes::*;
 
-/// Greatest magnitude of an input [m, rad, m/s, rad/s]: beyond this, squares and cubes of it would overflow.
+/// Greatest magnitude of an input [m, rad, m/s, rad/s, m/s²]: beyond this, squares and cubes of it would overflow.
 const INPUT_MAX: f64 = 1e12;
 
 /// Failure with its code and a sentence.
@@ -57,6 +57,7 @@ struct Inputs {
     releases: Vec<bool>,
     /// Length changes of the winches, by line [m].
     length_changes: Vec<f64>,
+    flow: WaterFlow,
 }
 
 /// All that changes.
@@ -109,6 +110,7 @@ impl Session {
             bodies: vec![BodyInput::default(); scene.points.len() + scene.vessels.len()],
             releases: vec![false; scene.lines.len()],
             length_changes: vec![0.0; scene.lines.len()],
+            flow: interface.still_water().clone(),
         };
         Ok(Session {
             moved: moved(&scene, &model),
@@ -232,6 +234,11 @@ impl Session {
             }
             Binding::Release { line } => Ok(f64::from(u8::from(self.inputs.releases[*line]))),
             Binding::LengthChange { line } => Ok(self.inputs.length_changes[*line]),
+            Binding::Flow {
+                line,
+                component,
+                node,
+            } => Ok(self.inputs.flow.component(*line, *component)[node.unwrap_or(0)]),
             Binding::Parameter(parameter) => parameter.value(&self.scene).ok_or_else(|| {
                 Failure::new(MOORLINE_NOT_AVAILABLE, format!("{} has no value", variable.name))
             }),
@@ -271,6 +278,11 @@ impl Session {
                 }
                 Binding::Release { line } => inputs.releases[*line] = value != 0.0,
                 Binding::LengthChange { line } => inputs.length_changes[*line] = value,
+                Binding::Flow {
+                    line,
+                    component,
+                    node,
+                } => inputs.flow.component_mut(*line, *component)[node.unwrap_or(0)] = value,
                 Binding::Parameter(parameter) => {
                     self.expect_not_started("a parameter")?;
                     let scene = scene.get_or_insert_with(|| self.scene.clone());
@@ -286,7 +298,8 @@ impl Session {
             }
         }
         if let Some(scene) = scene {
-            Model::new(&scene).map_err(scene_error)?;
+            let model = Model::new(&scene).map_err(scene_error)?;
+            self.interface.check_nodes(&model).map_err(Failure::argument)?;
             self.scene = scene;
         }
         self.inputs = inputs;
@@ -315,16 +328,7 @@ impl Session {
     pub(crate) fn move_body(&mut self, index: usize, place: &[f64], velocity: Option<&[f64]>) -> Outcome {
         let body = self.body(index)?.clone();
         check_lengths(body.size, place.len())?;
-        let given = place.iter().chain(velocity.unwrap_or(&[]));
-        if let Some(value) = given
-            .into_iter()
-            .find(|value| value.is_nan() || value.abs() > INPUT_MAX)
-        {
-            return Err(Failure::argument(format!(
-                "{}: {value} cannot be used; nothing was set",
-                body.name
-            )));
-        }
+        check_numbers(&body.name, place.iter().chain(velocity.unwrap_or(&[])))?;
         let slot = self.slot(body.body);
         let input = &mut self.inputs.bodies[slot];
         input.displacement[..body.size].copy_from_slice(place);
@@ -387,6 +391,39 @@ impl Session {
         Ok(profile
             .map(|node| ([node.x, node.y, node.z], node.tension))
             .collect())
+    }
+
+    /// Places of the nodes of a line from end A to end B for which the next flow of the water is due [m].
+    pub(crate) fn flow_places(&self, index: usize) -> Outcome<Vec<[f64; 3]>> {
+        let count = self.flow_count(index)?;
+        let simulation = self.simulation()?;
+        let place = |node| simulation.flow_place(index, node).into();
+        Ok((0..count).map(place).collect())
+    }
+
+    /// Sets velocity [m/s] and acceleration [m/s²] of the water at the nodes of a line from end A to end B, three values a node.
+    pub(crate) fn set_flow(&mut self, index: usize, velocities: &[f64], accelerations: &[f64]) -> Outcome {
+        let count = self.flow_count(index)?;
+        check_lengths(3 * count, velocities.len())?;
+        check_numbers(self.line(index)?, velocities.iter().chain(accelerations))?;
+        let (velocities, _) = velocities.as_chunks();
+        let (accelerations, _) = accelerations.as_chunks();
+        for (node, (&velocity, &acceleration)) in velocities.iter().zip(accelerations).enumerate() {
+            self.inputs.flow.set(index, node, velocity, acceleration);
+        }
+        Ok(())
+    }
+
+    /// Number of nodes of a line at which the host gives the flow.
+    fn flow_count(&self, index: usize) -> Outcome<usize> {
+        let line = self.line(index)?;
+        match self.interface.still_water().node_count(index) {
+            0 => Err(Failure::new(
+                MOORLINE_NOT_AVAILABLE,
+                format!("{line}: it takes no flow of the water: that needs `flow = \"host\"` in [water], and a `diameter` of its line type"),
+            )),
+            count => Ok(count),
+        }
     }
 
     /// The equilibrium as `moorline statics --json` writes it.
@@ -516,6 +553,17 @@ fn check_lengths(wanted: usize, given: usize) -> Outcome {
     }
 }
 
+/// Refuses numbers that no input can be.
+fn check_numbers<'v>(name: &str, values: impl IntoIterator<Item = &'v f64>) -> Outcome {
+    let mut values = values.into_iter();
+    match values.find(|value| value.is_nan() || value.abs() > INPUT_MAX) {
+        None => Ok(()),
+        Some(value) => Err(Failure::argument(format!(
+            "{name}: {value} cannot be used; nothing was set"
+        ))),
+    }
+}
+
 fn scene_error(error: moorline::scene::SceneError) -> Failure {
     Failure::new(MOORLINE_SCENE_ERROR, error.to_string())
 }
@@ -551,6 +599,7 @@ fn equilibrium(scene: &Scene, time: f64, inputs: &Inputs) -> Outcome<Simulation>
     for (line, &change) in inputs.length_changes.iter().enumerate() {
         simulation.set_length_change(line, change);
     }
+    simulation.set_flow(&inputs.flow);
     simulation.restart(time).map_err(building_error)?;
     Ok(simulation)
 }
@@ -567,4 +616,5 @@ fn hand_over(inputs: &Inputs, simulation: &mut Simulation) {
     for (line, &change) in inputs.length_changes.iter().enumerate() {
         simulation.set_length_change(line, change);
     }
+    simulation.set_flow(&inputs.flow);
 }

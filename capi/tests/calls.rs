@@ -5,7 +5,7 @@ use std::ptr::{null, null_mut, without_provenance_mut};
 
 use moorline::math::random::Random;
 use moorline::scene::Scene;
-use moorline::simulation::Simulation;
+use moorline::simulation::{Simulation, WaterFlow};
 use moorline_c::codes::*;
 
 type Handle = *mut c_void;
@@ -48,6 +48,14 @@ unsafe extern "C" {
     fn moorline_stiffness(simulation: Handle, body: usize, stiffness: *mut f64, count: usize) -> c_int;
     fn moorline_node_count(simulation: Handle, line: usize, count: *mut usize) -> c_int;
     fn moorline_node_positions(simulation: Handle, line: usize, positions: *mut f64, count: usize) -> c_int;
+    fn moorline_flow_places(simulation: Handle, line: usize, places: *mut f64, count: usize) -> c_int;
+    fn moorline_set_flow(
+        simulation: Handle,
+        line: usize,
+        velocities: *const f64,
+        accelerations: *const f64,
+        count: usize,
+    ) -> c_int;
 }
 
 /// A line from an anchor to a vessel, and one to a coupled point.
@@ -67,6 +75,11 @@ lines = [
     { name = \"two\", from = \"right\", to = \"bow\", sections = [{ type = \"chain\", length = 115.0, elements = 6 }] },
 ]
 ";
+
+/// The same, whose host gives the flow of the water.
+fn hosted() -> String {
+    SCENE.replace("water.density", "water.flow = \"host\"\nwater.density")
+}
 
 fn read(text: &str) -> Handle {
     let (text, mut handle) = (CString::new(text).unwrap(), null_mut());
@@ -225,6 +238,49 @@ fn a_state_goes_on_bit_for_bit_also_in_another_simulation() {
 }
 
 #[test]
+fn the_flow_of_the_water_acts_as_in_the_library_in_rust_and_is_that_of_its_inputs() {
+    let simulation = read(&hosted());
+    let mut mooring = Simulation::new(&Scene::from_toml(&hosted()).unwrap()).unwrap();
+    let mut flow = WaterFlow::still(mooring.model());
+    let mut places = [[0.0; 3]; 7];
+    // SAFETY: arrays of three values for each of the seven nodes.
+    unsafe {
+        assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK, "{}", message());
+        for _ in 0..20 {
+            let place = places.as_mut_ptr().cast();
+            assert_eq!(moorline_flow_places(simulation, 0, place, 21), MOORLINE_OK);
+            let velocities = places.map(|[x, _, z]| [0.02 * x, 0.01 * z, 0.1]);
+            let accelerations = places.map(|[x, _, z]| [0.01 * z, 0.0, 0.01 * x]);
+            let values = [&velocities, &accelerations].map(|vectors| vectors.as_ptr().cast());
+            let given = moorline_set_flow(simulation, 0, values[0], values[1], 21);
+            assert_eq!(given, MOORLINE_OK, "{}", message());
+            for node in 0..7 {
+                assert_eq!(places[node], <[f64; 3]>::from(mooring.flow_place(0, node)));
+                flow.set(0, node, velocities[node], accelerations[node]);
+            }
+            mooring.set_flow(&flow);
+            mooring.advance(0.1).unwrap();
+            assert_eq!(moorline_step(simulation, 0.1), MOORLINE_OK, "{}", message());
+        }
+        let (mut force, mut value) = ([0.0; 3], 0.0);
+        assert_eq!(moorline_force(simulation, 0, force.as_mut_ptr(), 3), MOORLINE_OK);
+        assert_eq!(force, mooring.end_force(3));
+        let reference = find(simulation, "one.flow.az[4]");
+        assert_eq!(moorline_get(simulation, &raw const reference, &raw mut value, 1), MOORLINE_OK);
+        assert_eq!(value, flow.component(0, 5)[3]);
+        let slower = 0.5 * value;
+        assert_eq!(moorline_set(simulation, &raw const reference, &raw const slower, 1), MOORLINE_OK);
+        flow.component_mut(0, 5)[3] = slower;
+        mooring.set_flow(&flow);
+        mooring.advance(0.1).unwrap();
+        assert_eq!(moorline_step(simulation, 0.1), MOORLINE_OK, "{}", message());
+        assert_eq!(moorline_force(simulation, 0, force.as_mut_ptr(), 3), MOORLINE_OK);
+        assert_eq!(force, mooring.end_force(3));
+        moorline_close(simulation);
+    }
+}
+
+#[test]
 fn what_cannot_be_used_has_its_code_and_a_sentence() {
     let mut handle = null_mut();
     let refused = |code: c_int, expected: c_int, words: &str| {
@@ -287,6 +343,24 @@ fn what_cannot_be_used_has_its_code_and_a_sentence() {
             MOORLINE_NOT_AVAILABLE,
             "buoy",
         );
+        refused(
+            moorline_flow_places(one, 0, force.as_mut_ptr(), 6),
+            MOORLINE_NOT_AVAILABLE,
+            "`flow = \"host\"`",
+        );
+        let flowing = read(&hosted());
+        let (still, wild) = ([0.0; 21], [f64::NAN; 21]);
+        refused(
+            moorline_set_flow(flowing, 0, still.as_ptr(), wild.as_ptr(), 21),
+            MOORLINE_INVALID_ARGUMENT,
+            "one: NaN",
+        );
+        refused(
+            moorline_set_flow(flowing, 0, still.as_ptr(), wild.as_ptr(), 7),
+            MOORLINE_INVALID_ARGUMENT,
+            "21 values",
+        );
+        assert_eq!(moorline_close(flowing), MOORLINE_OK);
         assert_eq!(moorline_close(one), MOORLINE_OK);
         refused(moorline_step(one, 0.1), MOORLINE_INVALID_HANDLE, "closed");
         refused(moorline_close(one), MOORLINE_INVALID_HANDLE, "closed");
@@ -320,8 +394,9 @@ fn assert_calm(sequences: usize, seed: u64) {
     let mut random = Random::new(seed);
     let mut below = move |count: usize| (random.unit() * count as f64) as usize;
     let mut handles = vec![null_mut(), without_provenance_mut(7)];
+    let hosted = hosted();
     for _ in 0..sequences {
-        handles.push(read(SCENE));
+        handles.push(read(if below(2) == 0 { SCENE } else { &hosted }));
         for _ in 0..12 {
             let (handle, count, room) = (handles[below(handles.len())], below(8), below(64));
             let mut values = [0.01 * below(9) as f64; 64];
@@ -354,7 +429,9 @@ fn assert_calm(sequences: usize, seed: u64) {
                         room,
                         &raw mut needed,
                     ),
-                    _ => match below(4) {
+                    _ => match below(6) {
+                        4 => moorline_flow_places(handle, below(3), out, room),
+                        5 => moorline_set_flow(handle, below(3), out, values.as_ptr(), 21 + below(2)),
                         0 => moorline_reset(handle),
                         1 => moorline_time(handle, out),
                         2 => moorline_variable_count(handle, &raw mut needed),

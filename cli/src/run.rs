@@ -228,7 +228,7 @@ impl<'r> Run<'r> {
         let (scene, pace) = (&loaded.scene, course.pace);
         let mut simulation = simulate(loaded)?;
         let expense = discretisation::expense(scene, &simulation, pace.interval(scene));
-        remark_all(loaded, expense.into_iter().collect());
+        remark_all(loaded, expense.into_iter().chain(scene.without_host()).collect());
         let still = simulation.in_equilibrium().ok();
         let start = match pace {
             Pace::Scene => simulation.follow_scene(),

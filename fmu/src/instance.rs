@@ -12,7 +12,7 @@ use moorline::interface::{Binding, Interface};
 use moorline::model::Body;
 use moorline::output::description::{Description, VERSION, time_reference};
 use moorline::scene::{Note, Scene};
-use moorline::simulation::{Simulation, Watch};
+use moorline::simulation::{Simulation, WaterFlow, Watch};
 use moorline_host::{FmiVersion, Status};
 
 pub(crate) use parts::Parts;
@@ -63,6 +63,7 @@ pub(crate) struct Instance {
     releases: Vec<bool>,
     /// Length changes of the winches, by line [m].
     length_changes: Vec<f64>,
+    flow: WaterFlow,
     /// Displacements at which the statics were solved last [m].
     start_displacements: Vec<[f64; 6]>,
     /// Length changes of the winches at that time, by line [m].
@@ -106,6 +107,7 @@ impl Instance {
             releases: vec![false; scene.lines.len()],
             length_changes: vec![0.0; scene.lines.len()],
             start_length_changes: vec![0.0; scene.lines.len()],
+            flow: description.interface.still_water().clone(),
             packaged: scene.clone(),
             scene,
             interface: description.interface,
@@ -250,6 +252,7 @@ impl Instance {
         self.inputs.fill(BodyInput::default());
         self.releases.fill(false);
         self.length_changes.fill(0.0);
+        self.flow.calm();
         self.phase = Phase::Instantiated;
         self.start_time = 0.0;
         self.stop_time = None;
@@ -272,12 +275,12 @@ impl Instance {
             #[cfg(test)]
             tests::count_statics();
             let simulation = statics(
-                &self.scene,
+                (&self.scene, &self.interface),
                 self.start_time,
                 &self.start_displacements,
                 &self.start_length_changes,
+                &self.flow,
             )?;
-            self.check_lengths(simulation.model())?;
             self.simulation = Some(simulation);
         }
         Ok(self.simulation.as_mut().expect("was there or was just solved"))
@@ -348,6 +351,7 @@ impl Instance {
         for (line, &change) in self.length_changes.iter().enumerate() {
             simulation.set_length_change(line, change);
         }
+        simulation.set_flow(&self.flow);
         simulation.advance(step).map_err(|e| e.to_string())?;
         self.time = at + step; // the host's clock, so that rounding does not add up
         if !self.has_warned_of_inputs
@@ -376,6 +380,7 @@ impl Instance {
             inputs: self.inputs.clone(),
             releases: self.releases.clone(),
             length_changes: self.length_changes.clone(),
+            flow: self.flow.clone(),
             start_displacements: self.start_displacements.clone(),
             start_length_changes: self.start_length_changes.clone(),
             solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
@@ -418,10 +423,11 @@ impl Instance {
         }
         let rebuilt = match &snapshot.solver {
             Some(_) if !same_start || self.simulation.is_none() => Some(statics(
-                &scene,
+                (&scene, &self.interface),
                 snapshot.start_time,
                 &snapshot.start_displacements,
                 &snapshot.start_length_changes,
+                self.interface.still_water(), // no choice depends on the flow at the start
             )?),
             _ => None,
         };
@@ -449,6 +455,7 @@ impl Instance {
         self.inputs.clone_from(&snapshot.inputs);
         self.releases.clone_from(&snapshot.releases);
         self.length_changes.clone_from(&snapshot.length_changes);
+        self.flow.clone_from(&snapshot.flow);
         Ok(())
     }
 
@@ -461,15 +468,18 @@ impl Instance {
     }
 }
 
-/// Static equilibrium at the given displacements of the bodies [m, rad], always from the same first guess.
+/// Static equilibrium at the given displacements of the bodies [m, rad], always from the same first guess, from which the flow of the water
+/// begins to act. The nodes must be those of the interface.
 fn statics(
-    scene: &Scene,
+    (scene, interface): (&Scene, &Interface),
     start: f64,
     displacements: &[[f64; 6]],
     length_changes: &[f64],
+    flow: &WaterFlow,
 ) -> Result<Simulation, Refusal> {
     // choices that the package leaves open are not tried again: the interface has the mesh of the rules
     let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
+    interface.check_nodes(simulation.model())?;
     let bodies: Vec<Body> = simulation.model().bodies().collect();
     for (body, displacement) in bodies.into_iter().zip(displacements) {
         simulation.set_body(body, *displacement, [None; 6]);
@@ -477,6 +487,7 @@ fn statics(
     for (line, &change) in length_changes.iter().enumerate() {
         simulation.set_length_change(line, change);
     }
+    simulation.set_flow(flow);
     simulation.restart(start).map_err(|e| e.to_string())?;
     Ok(simulation)
 }
@@ -645,6 +656,55 @@ mod tests {
         let refusal = instance.set(Kind::Float64, &references, &[0.1, f64::NAN]);
         assert!(refusal.unwrap_err().0.contains("hand.y"));
         assert_eq!(real(&mut instance, "hand.x"), 0.0);
+    }
+
+    /// An instance of the scene in water whose flow the host gives, started.
+    fn hosted(version: FmiVersion) -> Instance {
+        let water = "[water]\ndensity = 1025.0\nflow = \"host\"\n[line_types.rope]\ndiameter = 0.01\ndrag_normal = 1.2\n";
+        let mut instance = instance_of(&SCENE.replace("[line_types.rope]\n", water), version);
+        instance.enter_initialization().unwrap();
+        instance.exit_initialization().unwrap();
+        instance
+    }
+
+    fn set_all(instance: &mut Instance, names: &[String], values: &[f64]) -> Outcome {
+        let references: Vec<u32> = names.iter().map(|name| reference(instance, name)).collect();
+        instance.set(Kind::Float64, &references, values)
+    }
+
+    #[test]
+    fn arrays_of_the_flow_are_its_scalars_and_are_set_whole_among_other_inputs() {
+        let (mut two, mut three) = (hosted(FmiVersion::Two), hosted(FmiVersion::Three));
+        let flow: Vec<f64> = (0..7).map(|node| 0.1 * f64::from(node)).collect();
+        let values = [&[0.02], &flow[..], &[0.01]].concat();
+        let scalars = (1..=7).map(|node| format!("rope.flow.vy[{node}]"));
+        let [x, z] = ["hand.x", "hand.z"].map(String::from);
+        let scalars: Vec<String> = [x.clone()].into_iter().chain(scalars).chain([z.clone()]).collect();
+        let arrays = [x, "rope.flow.vy".to_string(), z];
+        set_all(&mut two, &scalars, &values).unwrap();
+        set_all(&mut three, &arrays, &values).unwrap();
+        for wrong in [&values[..8], &values[..1], &[&values[..], &[0.0]].concat()] {
+            let refusal = set_all(&mut three, &arrays, wrong).unwrap_err();
+            assert!(refusal.0.contains("9 values"), "{}", refusal.0);
+        }
+        let mut broken = values.clone();
+        broken[4] = f64::NAN;
+        assert!(set_all(&mut three, &arrays, &broken).unwrap_err().0.starts_with("rope.flow.vy: NaN"));
+        let (mut found, array) = ([0.0; 7], reference(&three, "rope.flow.vy"));
+        three.get(Kind::Float64, &[array], &mut found).unwrap();
+        assert_eq!(found[..], flow);
+        let saved = three.snapshot();
+        let mut tensions = Vec::new();
+        for instance in [&mut two, &mut three] {
+            instance.do_step(0.0, 0.1).unwrap();
+            tensions.push(real(instance, "rope.tension_b"));
+        }
+        three.reset().unwrap();
+        three.get(Kind::Float64, &[array], &mut found).unwrap();
+        assert_eq!(found, [0.0; 7]);
+        three.restore(&saved).unwrap();
+        three.do_step(0.0, 0.1).unwrap();
+        assert_eq!(tensions, [real(&mut three, "rope.tension_b"); 2]);
     }
 
     #[test]

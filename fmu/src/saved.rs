@@ -3,7 +3,7 @@
 //! Bytes: mark, token of the FMU, length and SHA-256 of what follows, then the state in postcard. Bytes of another FMU
 //! or version, cut short or changed are refused before anything of them is used.
 
-use moorline::simulation;
+use moorline::simulation::{self, WaterFlow};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -67,6 +67,8 @@ pub(crate) struct Snapshot {
     pub(crate) releases: Vec<bool>,
     /// Length changes of the winches, by line [m].
     pub(crate) length_changes: Vec<f64>,
+    /// Flow of the water.
+    pub(crate) flow: WaterFlow,
     /// Displacements of every body at which the statics were solved [m, rad]: the solver's choices there, such as its
     /// step limits, are not in its state and are made again from them.
     pub(crate) start_displacements: Vec<[f64; 6]>,
@@ -127,6 +129,7 @@ mod tests {
             inputs: vec![BodyInput::default()],
             releases: vec![true, false],
             length_changes: vec![0.0, 2.5],
+            flow: WaterFlow::default(),
             start_displacements: vec![[0.0; 6]],
             start_length_changes: vec![0.0; 2],
             solver: None,

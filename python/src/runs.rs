@@ -91,6 +91,7 @@ impl<'r> Run<'r> {
             ..Rows::default()
         };
         let mut watch = Watch::new(scene, &simulation);
+        rows.note(loaded, scene.without_host().into_iter().collect());
         rows.note(loaded, watch.look(&simulation));
         Ok(Run {
             loaded,

@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{Body, End, Model};
 use moorline::scene::LoadedScene;
-use moorline::simulation::{self, Simulation as Mooring};
+use moorline::simulation::{self, Simulation as Mooring, WaterFlow};
 use nalgebra::Vector3;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
@@ -28,6 +28,7 @@ struct Given {
     releases: Vec<bool>,
     /// Length changes of the winches, by line [m].
     length_changes: Vec<f64>,
+    flow: WaterFlow,
 }
 
 impl Given {
@@ -36,6 +37,7 @@ impl Given {
             bodies: vec![([0.0; 6], [None; 6]); model.bodies().count()],
             releases: vec![false; model.lines.len()],
             length_changes: vec![0.0; model.lines.len()],
+            flow: WaterFlow::still(model),
         }
     }
 
@@ -50,6 +52,7 @@ impl Given {
         for (line, &change) in self.length_changes.iter().enumerate() {
             mooring.set_length_change(line, change);
         }
+        mooring.set_flow(&self.flow);
     }
 }
 
@@ -141,9 +144,10 @@ impl Table {
                 .map(|(row, _)| row)
                 .collect::<Vec<_>>()
         };
-        let is_input = |variable: &Variable| {
-            let is_velocity = matches!(variable.binding, Binding::Velocity { .. });
-            variable.causality == Causality::Input && (velocities || !is_velocity)
+        let is_input = |variable: &Variable| match variable.binding {
+            Binding::Velocity { .. } => velocities,
+            Binding::Flow { .. } => false, // `set_flow` gives it
+            _ => variable.causality == Causality::Input,
         };
         let names = interface.variables().iter().enumerate();
         Ok(Table {
@@ -205,6 +209,14 @@ impl Table {
             }
             (Binding::Release { line }, Some(value)) => given.releases[*line] = value != 0.0,
             (Binding::LengthChange { line }, Some(value)) => given.length_changes[*line] = value,
+            (
+                Binding::Flow {
+                    line,
+                    component,
+                    node,
+                },
+                Some(value),
+            ) => given.flow.component_mut(*line, *component)[node.unwrap_or(0)] = value,
             _ => unreachable!("inputs have no other binding"),
         }
         Ok(())
@@ -347,6 +359,18 @@ impl Simulation {
         Err(Failure::Result(name.clone(), problem))
     }
 
+    /// A line that takes a flow of the water.
+    fn line_in_flow(&self, name: &str) -> Result<usize, Failure> {
+        let line = Self::line(&self.mooring.read(), name)?;
+        match self.given.flow.node_count(line) {
+            0 => Err(Failure::of_argument(
+                name,
+                "it takes no flow of the water: that needs `flow = \"host\"` in [water], and a `diameter` of its line type",
+            )),
+            _ => Ok(line),
+        }
+    }
+
     fn line(mooring: &Mooring, name: &str) -> Result<usize, Failure> {
         let model = mooring.model();
         let lines = model.lines.iter().map(|line| line.name.as_str());
@@ -475,6 +499,11 @@ impl Simulation {
             }
             Binding::Release { line } => f64::from(u8::from(self.given.releases[*line])),
             Binding::LengthChange { line } => self.given.length_changes[*line],
+            Binding::Flow {
+                line,
+                component,
+                node,
+            } => self.given.flow.component(*line, *component)[node.unwrap_or(0)],
             Binding::Parameter(parameter) => {
                 let value = parameter.value(&self.table.loaded.scene);
                 value.expect("the table has only parameters of the scene")
@@ -539,6 +568,51 @@ impl Simulation {
         let mooring = self.mooring.read();
         let nodes = &mooring.state().lines[Self::line(&mooring, line)?].velocity;
         rows(py, nodes, out)
+    }
+
+    /// Places of the nodes of a line from end A to end B for which the flow of the water is due next [m], a row a node; written into `out` where
+    /// that is given.
+    #[pyo3(signature = (line, out=None))]
+    fn flow_places<'py>(
+        &self,
+        py: Python<'py>,
+        line: &str,
+        out: Option<Bound<'py, PyArray2<f64>>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let line = self.line_in_flow(line)?;
+        let mooring = self.mooring.read();
+        let nodes = 0..self.given.flow.node_count(line);
+        let places: Vec<_> = nodes.map(|node| mooring.flow_place(line, node)).collect();
+        rows(py, &places, out)
+    }
+
+    /// Sets velocities [m/s] and accelerations [m/s²] of the water at these places, a row a node, for the coming steps.
+    fn set_flow(
+        &mut self,
+        line: &str,
+        velocities: PyReadonlyArray2<'_, f64>,
+        accelerations: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<()> {
+        let number = self.line_in_flow(line)?;
+        let count = self.given.flow.node_count(number);
+        let given = [("velocities", &velocities), ("accelerations", &accelerations)];
+        for (name, values) in given {
+            let values = values.as_array();
+            if values.dim() != (count, 3) {
+                let problem = format!("{:?} numbers, but {line} has {count} nodes of 3", values.dim());
+                return Err(Failure::of_argument(name, problem).into());
+            }
+            if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+                return Err(Failure::Input(name.into(), format!("{value} is not a finite number")).into());
+            }
+        }
+        let [velocities, accelerations] = given.map(|(_, values)| values.as_array());
+        for node in 0..count {
+            let [velocity, acceleration] = [velocities, accelerations]
+                .map(|values| std::array::from_fn(|axis| values[[node, axis]]));
+            self.given.flow.set(number, node, velocity, acceleration);
+        }
+        Ok(())
     }
 
     /// Position, velocity and force of a point.

@@ -2,33 +2,26 @@
 //!
 //! Lines that share free points are one network; a network depends on the displacements of the coupled points that it
 //! hangs on and on the parameters that enter its equilibrium. Velocities, rotary inertia and damping do not: nothing moves. Drag does where
-//! the water flows, added mass in waves, whose load on its last half segment a line's force holds from the start. The closed-form catenary
-//! is that of the reference configuration, in still water, and so depends on no displacement.
+//! the water flows, added mass in waves, whose load on its last half segment a line's force holds from the start. So does a flow that the host
+//! gives, at that node. The closed-form catenary is that of the reference configuration, in still water, and so depends on no displacement.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Binding, Interface, Parameter, Place, Variable};
-use crate::model::{Body, Model};
+use super::{Binding, Interface, LineResult, Parameter, Place, ProfileQuantity, Variable};
+use crate::model::{Body, End, Model};
 use crate::scene::table::{Acts, Table};
 use crate::scene::{LineType, Scene, Water};
 
 /// Fills [`Variable::initial_dependencies`] of all outputs and calculated parameters.
 pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
-    let attached_to = |body: Body| -> Vec<usize> {
-        let points = (0..model.points.len()).filter(|&point| model.moves_with(point, body));
-        let attached = points.flat_map(|point| &model.points[point].attached);
-        attached.map(|(line, _)| *line).collect()
-    };
+    let attached_to = |body: Body| -> Vec<usize> { attached(model, body).map(|(line, _)| line).collect() };
     let knowns: Vec<Known> = variables
         .iter()
         .enumerate()
         .filter(|(_, variable)| {
             matches!(
                 variable.binding,
-                Binding::Displacement { .. }
-                    | Binding::LengthChange { .. }
-                    | Binding::Flow { .. }
-                    | Binding::Parameter(_)
+                Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Parameter(_)
             )
         })
         .map(|(index, variable)| Known {
@@ -40,36 +33,88 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
             },
         })
         .collect();
-    let mut known_scopes: BTreeMap<(BTreeSet<usize>, Quantity), Vec<u32>> = BTreeMap::new();
-    for variable in variables {
-        let (lines, quantity) = match &variable.binding {
+    let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
+    for variable in &mut *variables {
+        let (lines, closed_form) = match &variable.binding {
             Binding::EndForce { body, .. } | Binding::Interface { body, .. } => {
-                (networks_of(model, attached_to(*body)), Quantity::Force)
+                (networks_of(model, attached_to(*body)), false)
             }
-            Binding::Line { line, result } if result.is_catenary() => {
-                (BTreeSet::from([*line]), Quantity::ClosedForm)
+            Binding::Line { line, result } if result.is_catenary() => (BTreeSet::from([*line]), true),
+            Binding::Line { line, .. } | Binding::Profile { line, .. } | Binding::FlowPlace { line, .. } => {
+                (networks_of(model, [*line]), false)
             }
-            Binding::Line { line, .. } | Binding::Profile { line, .. } => {
-                (networks_of(model, [*line]), Quantity::Force)
-            }
-            Binding::FlowPlace { line, .. } => (networks_of(model, [*line]), Quantity::Place),
             _ => continue,
         };
         variable.initial_dependencies = known_scopes
-            .entry((lines, quantity))
-            .or_insert_with_key(|(lines, quantity)| {
+            .entry((lines, closed_form))
+            .or_insert_with_key(|(lines, closed_form)| {
                 let scope = Scope {
                     scene,
                     model,
                     lines,
-                    closed_form: *quantity == Quantity::ClosedForm,
-                    is_place: *quantity == Quantity::Place,
+                    closed_form: *closed_form,
                 };
                 let of_scope = knowns.iter().filter(|known| scope.depends_on(known));
                 of_scope.map(|known| known.reference).collect()
             })
             .clone();
     }
+    add_flow(variables, model);
+}
+
+/// Adds the flow of the water that a host gives: at rest it acts on the last half segment, whose load a force at the end holds, and in the coming
+/// step on whole networks.
+fn add_flow(variables: &mut [Variable], model: &Model) {
+    let flow = |(index, variable): (usize, &Variable)| match variable.binding {
+        Binding::Flow { line, node, .. } => Some((Interface::reference(index), line, node)),
+        _ => None,
+    };
+    let flows: Vec<_> = variables.iter().enumerate().filter_map(flow).collect();
+    let last = |line: usize, end: End| (line, Some(model.lines[line].end_node(end)));
+    let both = |line: usize| [last(line, End::A), last(line, End::B)];
+    for variable in variables {
+        // lines with a node, or all of it
+        let reached: Vec<(usize, Option<usize>)> = match variable.binding {
+            Binding::EndForce { body, .. } => {
+                attached(model, body).map(|(line, end)| last(line, end)).collect()
+            }
+            Binding::Interface { body, quantity, .. } if quantity.is_of_a_step() => {
+                let lines = networks_of(model, attached(model, body).map(|(line, _)| line));
+                lines.into_iter().map(|line| (line, None)).collect()
+            }
+            Binding::Line { line, result } => match result {
+                LineResult::TensionA => vec![last(line, End::A)],
+                LineResult::TensionB => vec![last(line, End::B)],
+                LineResult::TensionMax => both(line).into(),
+                _ => continue,
+            },
+            Binding::Profile {
+                line,
+                quantity: ProfileQuantity::Tension,
+                node,
+            } => {
+                let of_node = both(line).into_iter();
+                of_node
+                    .filter(|(_, end)| node.is_none() || node == *end)
+                    .collect()
+            }
+            _ => continue,
+        };
+        let reaches = |line: usize, node: Option<usize>| {
+            let mut reached = reached.iter();
+            reached.any(|&(of, end)| of == line && (end.is_none() || node.is_none() || end == node))
+        };
+        let known = flows.iter().filter(|(_, line, node)| reaches(*line, *node));
+        variable
+            .initial_dependencies
+            .extend(known.map(|(reference, ..)| reference));
+    }
+}
+
+/// Lines that end at the points of a body, with these ends.
+fn attached(model: &Model, body: Body) -> impl Iterator<Item = (usize, End)> {
+    let points = (0..model.points.len()).filter(move |&point| model.moves_with(point, body));
+    points.flat_map(|point| model.points[point].attached.iter().copied())
 }
 
 impl Interface {
@@ -107,17 +152,6 @@ fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSe
         .collect()
 }
 
-/// Kind of a result, by its dependencies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Quantity {
-    /// Of the equilibrium, with the load on the end of a line.
-    Force,
-    /// A place in equilibrium.
-    Place,
-    /// Of the closed-form catenary.
-    ClosedForm,
-}
-
 /// A variable that a host may set before the simulation starts.
 struct Known {
     reference: u32,
@@ -132,8 +166,6 @@ struct Scope<'a> {
     model: &'a Model,
     lines: &'a BTreeSet<usize>,
     closed_form: bool,
-    /// True of places, which no flow changes at rest.
-    is_place: bool,
 }
 
 impl Scope<'_> {
@@ -143,7 +175,6 @@ impl Scope<'_> {
                 !self.closed_form && known.moves.iter().any(|line| self.lines.contains(line))
             }
             Binding::LengthChange { line } => !self.closed_form && self.lines.contains(line),
-            Binding::Flow { line, .. } => !self.closed_form && !self.is_place && self.lines.contains(line),
             Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
             _ => false,
         }

@@ -1,7 +1,7 @@
 //! Node positions and tensions of a line as variables.
 
-use super::rows::{AXES, at_nodes, row};
-use super::{Binding, Causality, Layout, ProfileQuantity, Unit, Variable, range};
+use super::rows::{AXES, at_nodes, range, row};
+use super::{Binding, Causality, Layout, ProfileQuantity, Unit, Variable};
 use crate::model::Model;
 use crate::scene::Axis;
 use crate::simulation::Simulation;

@@ -1,5 +1,7 @@
 //! The rows of the table, one function for each part of a scene.
 
+use std::ops::Range;
+
 use super::{Binding, Causality, Kind, Layout, SolverResult, Unit, Variability, Variable};
 use crate::model::Body;
 use crate::scene;
@@ -57,6 +59,11 @@ pub(super) fn at_nodes(
             row(format!("{name}[{number}]"), format!("node {number}"), Some(node))
         })),
     }
+}
+
+/// Nodes of a quantity at a number of nodes: the only one, or all.
+pub(super) fn range(node: Option<usize>, count: usize) -> Range<usize> {
+    node.map_or(0..count, |node| node..node + 1)
 }
 
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];

@@ -508,10 +508,13 @@ impl Line {
         model.water_accelerates() && (self.nodes.drag.is_some() || self.nodes.froude_krylov.is_some())
     }
 
-    /// Returns whether a host gives the flow at the nodes of the line: where it acts on the line, or on the body of a point at an end.
-    pub fn takes_flow(&self, model: &Model) -> bool {
+    /// Number of nodes at which a host gives the flow [-]: all where it acts on the line, or on the body of a point at an end, else none.
+    pub fn flow_count(&self, model: &Model) -> usize {
         let on_end = || self.ends.iter().any(|&point| model.points[point].heaves());
-        model.host_flow && (self.heaves(model) || on_end())
+        match model.host_flow && (self.heaves(model) || on_end()) {
+            true => self.segment_count() + 1,
+            false => 0,
+        }
     }
 
     /// Index of the node at an end.

@@ -37,7 +37,7 @@ const GROWTH_MAX: f64 = 2.0;
 /// Flow of the water at the nodes of the lines.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaterFlow {
-    /// Components at the nodes from end A to end B, by line; empty where the host gives none.
+    /// Components at the nodes from end A to end B, by line, empty where the host gives none; no line where it gives none at all.
     lines: Vec<[Vec<f64>; 6]>,
 }
 
@@ -56,19 +56,20 @@ impl Clone for WaterFlow {
 impl WaterFlow {
     /// Water at rest, with room for the lines that take a flow.
     pub fn still(model: &Model) -> WaterFlow {
-        let count = |line: &crate::model::Line| match line.takes_flow(model) {
-            true => line.segment_count() + 1,
-            false => 0,
-        };
-        let lines = model.lines.iter();
+        let lines = model.lines.iter().filter(|_| model.host_flow);
         WaterFlow {
             lines: lines
-                .map(|line| std::array::from_fn(|_| vec![0.0; count(line)]))
+                .map(|line| std::array::from_fn(|_| vec![0.0; line.flow_count(model)]))
                 .collect(),
         }
     }
 
-    /// A component of [`FLOW_COMPONENTS`] at the nodes of a line [m/s, m/s²]; empty where the line takes no flow.
+    /// Number of the nodes of a line at which a host gives the flow [-]; 0 where the line takes none.
+    pub fn node_count(&self, line: usize) -> usize {
+        self.lines.get(line).map_or(0, |[vx, ..]| vx.len())
+    }
+
+    /// A component of [`FLOW_COMPONENTS`] at the nodes of a line [m/s, m/s²].
     pub fn component(&self, line: usize, component: usize) -> &[f64] {
         &self.lines[line][component]
     }
@@ -76,6 +77,14 @@ impl WaterFlow {
     /// The same, to be set.
     pub fn component_mut(&mut self, line: usize, component: usize) -> &mut [f64] {
         &mut self.lines[line][component]
+    }
+
+    /// Sets velocity [m/s] and acceleration [m/s²] at a node.
+    pub fn set(&mut self, line: usize, node: usize, velocity: [f64; 3], acceleration: [f64; 3]) {
+        let values = velocity.into_iter().chain(acceleration);
+        for (column, value) in self.lines[line].iter_mut().zip(values) {
+            column[node] = value;
+        }
     }
 
     /// Sets all to zero.

@@ -12,7 +12,7 @@ use moorline::model::{Body, Role};
 use moorline::output::channels::Channels;
 use moorline::scene::keys;
 use moorline::scene::{LoadedScene, Note, SceneError, load};
-use moorline::simulation::{Error, Simulation};
+use moorline::simulation::{Error, Simulation, WaterFlow};
 use toml::{Table, Value};
 
 const VALUES: &str = include_str!("values.toml");
@@ -181,9 +181,16 @@ fn outcome(folder: &Path, scene: &Value) -> Result<Outcome, Refusal> {
     Ok(found)
 }
 
-/// Moves, releases and pays out everything that a host can.
+/// Moves, releases and pays out everything that a host can, in a flow that it gives.
 fn drive(simulation: &mut Simulation, t: f64) {
     let model = simulation.model().clone();
+    let mut flow = WaterFlow::still(&model);
+    for line in 0..model.lines.len() {
+        for node in 0..flow.node_count(line) {
+            flow.set(line, node, [2.0 * t, 0.4, 0.1], [2.0, 0.0, 0.3]);
+        }
+    }
+    simulation.set_flow(&flow);
     let pose = [0.3 * t, 0.1 * t * t, 0.5 * t * t, 0.1 * t, 0.02 * t, 0.2 * t];
     for body in model.bodies() {
         let moved = match body {

@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use moorline::model::End;
 use moorline::physics::catenary::is_laid_from_b;
 use moorline::scene::{
-    Current, Friction, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
+    Current, FlowSource, Friction, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
     PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Threads, TimeFunction,
     Water, WaveComponents, Waves,
 };
@@ -436,6 +436,15 @@ fn without_wave_height(base: &Base) -> Option<(Scene, Gap)> {
     )
 }
 
+/// A flow from a host that gives none, beside the current.
+fn without_flow(base: &Base) -> Option<(Scene, Gap)> {
+    limit_of_water(
+        base,
+        |water| water.waves = None,
+        |water| (water.waves, water.flow) = (None, Some(FlowSource::Host)),
+    )
+}
+
 fn every_type(scene: &mut Scene, change: impl Fn(&mut LineType)) {
     scene.line_types.values_mut().for_each(change);
 }
@@ -528,10 +537,11 @@ fn without_motion(base: &Base) -> Option<(Scene, Gap)> {
 }
 
 /// Limits of size zero, each with its bound.
-const LIMITS: [(&str, Relation, f64); 9] = [
+const LIMITS: [(&str, Relation, f64); 10] = [
     ("density", without_density, 1e-9),
     ("current", without_current, 1e-9),
     ("height of waves", without_wave_height, 1e-9),
+    ("flow of a host", without_flow, 1e-9),
     ("bending stiffness", without_bending_stiffness, 1e-9),
     ("friction", without_friction, 1e-9),
     ("slope", without_slope, 1e-9),

@@ -69,14 +69,12 @@ impl Host {
     fn give(&mut self, simulation: &mut Simulation, time: f64) {
         self.waves.turn_to(time, &mut self.instant);
         for line in 0..simulation.model().lines.len() {
-            for node in 0..self.flow.component(line, 0).len() {
+            for node in 0..self.flow.node_count(line) {
                 let orbit = self
                     .waves
                     .orbit(simulation.flow_place(line, node), &mut self.instant);
-                for axis in 0..3 {
-                    self.flow.component_mut(line, axis)[node] = orbit.velocity[axis];
-                    self.flow.component_mut(line, 3 + axis)[node] = orbit.acceleration[axis];
-                }
+                self.flow
+                    .set(line, node, orbit.velocity.into(), orbit.acceleration.into());
             }
         }
         simulation.set_flow(&self.flow);
@@ -307,8 +305,8 @@ fn a_steady_uniform_flow_is_a_current_of_its_velocity_and_adds_to_one() {
         let mut simulation = start(&scene);
         let mut flow = WaterFlow::still(simulation.model());
         for line in 0..2 {
-            for axis in 0..3 {
-                flow.component_mut(line, axis).fill(velocity[axis]);
+            for node in 0..flow.node_count(line) {
+                flow.set(line, node, velocity, [0.0; 3]);
             }
         }
         simulation.set_flow(&flow);

@@ -1,7 +1,7 @@
 //! Access to the variables of an instance: the host reads results, and sets inputs and parameters.
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
-use moorline::model::{Body, Model};
+use moorline::model::Body;
 use moorline::scene::Scene;
 
 use super::{Instance, Outcome, Refusal};
@@ -61,6 +61,15 @@ impl Instance {
             Binding::Velocity { body, axis } => self.inputs[slot(&self.scene, *body)].velocity[*axis],
             Binding::Release { line } => f64::from(u8::from(self.releases[*line])),
             Binding::LengthChange { line } => self.length_changes[*line],
+            Binding::Flow {
+                line,
+                component,
+                node,
+            } => {
+                let given = self.flow.component(*line, *component);
+                values.copy_from_slice(node.map_or(given, |node| &given[node..=node]));
+                return Ok(());
+            }
             Binding::Parameter(parameter) => {
                 let value = parameter.value(&self.scene);
                 value.expect("the table has only parameters of the scene")
@@ -143,14 +152,20 @@ impl Instance {
         if self.time_reference.is_some_and(|time| references.contains(&time)) {
             return Err("time is not to be set".into());
         }
-        if references.len() != values.len() {
-            return Err(self.wrong_count(references, values.len())); // whatever may be set has one value
-        }
+        let (count, mut rest) = (values.len(), values);
         let mut has_parameters = false;
-        for (&reference, &value) in references.iter().zip(values) {
+        for &reference in references {
             let variable = Self::typed(&self.interface, kind, reference)?;
-            self.check_settable(variable, value)?;
+            let split = rest.split_at_checked(variable.size());
+            let (own, others) = split.ok_or_else(|| self.wrong_count(references, count))?;
+            for &value in own {
+                self.check_settable(variable, value)?;
+            }
+            rest = others;
             has_parameters |= variable.causality == Causality::Parameter;
+        }
+        if !rest.is_empty() {
+            return Err(self.wrong_count(references, count));
         }
         if has_parameters {
             self.set_parameters(references, values)?;
@@ -161,10 +176,9 @@ impl Instance {
     /// Sets the parameters among some variables.
     fn set_parameters(&mut self, references: &[u32], values: &[f64]) -> Outcome {
         let mut scene = self.scene.clone();
-        for (&reference, &value) in references.iter().zip(values) {
-            let variable = Self::variable(&self.interface, reference)?;
+        for (variable, own) in with_values(&self.interface, references, values) {
             if let Binding::Parameter(parameter) = &variable.binding {
-                let set = parameter.set(&mut scene, value);
+                let set = parameter.set(&mut scene, own[0]);
                 set.map_err(|problem| format!("{}: {problem}", variable.name))?;
             }
         }
@@ -177,28 +191,40 @@ impl Instance {
 
     /// Sets the inputs among some variables; the statics are solved again where they are given during initialization.
     fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Outcome {
-        for (&reference, &value) in references.iter().zip(values) {
-            match Self::variable(&self.interface, reference)?.binding {
+        for (variable, own) in with_values(&self.interface, references, values) {
+            match variable.binding {
                 Binding::Displacement { body, axis } => {
                     let input = &mut self.inputs[slot(&self.scene, body)];
-                    let before = std::mem::replace(&mut input.displacement[axis], value);
+                    let before = std::mem::replace(&mut input.displacement[axis], own[0]);
                     match self.phase {
-                        Phase::Step | Phase::Intermediate => input.has_moved[axis / 3] |= value != before,
+                        Phase::Step | Phase::Intermediate => input.has_moved[axis / 3] |= own[0] != before,
                         Phase::Initialization => self.simulation = None,
                         _ => {}
                     }
                 }
                 Binding::Velocity { body, axis } => {
                     let input = &mut self.inputs[slot(&self.scene, body)];
-                    input.velocity[axis] = value;
+                    input.velocity[axis] = own[0];
                     // Hosts write the start value 0 of every input: that is not yet a velocity.
                     let steps = matches!(self.phase, Phase::Step | Phase::Intermediate);
-                    input.has_velocity[axis] |= steps || value != 0.0;
-                    input.has_speed[axis / 3] |= value != 0.0;
+                    input.has_velocity[axis] |= steps || own[0] != 0.0;
+                    input.has_speed[axis / 3] |= own[0] != 0.0;
                 }
-                Binding::Release { line } => self.releases[line] = value != 0.0,
+                Binding::Release { line } => self.releases[line] = own[0] != 0.0,
                 Binding::LengthChange { line } => {
-                    self.length_changes[line] = value;
+                    self.length_changes[line] = own[0];
+                    if self.phase == Phase::Initialization {
+                        self.simulation = None;
+                    }
+                }
+                Binding::Flow {
+                    line,
+                    component,
+                    node,
+                } => {
+                    let given = self.flow.component_mut(line, component);
+                    let first = node.unwrap_or(0);
+                    given[first..first + own.len()].copy_from_slice(own);
                     if self.phase == Phase::Initialization {
                         self.simulation = None;
                     }
@@ -244,27 +270,9 @@ impl Instance {
         Refusal(format!("{}: {problem}", variable.name))
     }
 
-    /// The parameters leave the arrays of the interface as long as they are.
-    pub(super) fn check_lengths(&self, model: &Model) -> Outcome {
-        for variable in self.interface.variables() {
-            if let Binding::Profile { line, node, .. } = variable.binding {
-                let nodes = model.lines[line].nodes_max();
-                if variable.dimension.is_some_and(|length| length != nodes)
-                    || node.is_some_and(|node| node >= nodes)
-                {
-                    return Err(Refusal(format!(
-                        "with these parameters {} would have {nodes} nodes, which the interface cannot follow: \
-                         give the sections of the line their number of elements in the scene",
-                        model.lines[line].name
-                    )));
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// Time derivatives of inputs (FMI 2.0). The first derivative of a displacement is its velocity; that of a velocity
-    /// is taken note of and not used, since the path through the communication points has its own.
+    /// is taken note of and not used, since the path through the communication points has its own. Neither are those of the flow of the water,
+    /// whose accelerations are inputs.
     pub(crate) fn set_input_derivatives(
         &mut self,
         references: &[u32],
@@ -304,6 +312,21 @@ impl Instance {
         }
         Ok(())
     }
+}
+
+/// Variables with their values, when the numbers of both are checked.
+fn with_values<'a>(
+    interface: &'a Interface,
+    references: &'a [u32],
+    values: &'a [f64],
+) -> impl Iterator<Item = (&'a Variable, &'a [f64])> {
+    let mut rest = values;
+    references.iter().map(move |&reference| {
+        let variable = interface.variable(reference).expect("checked before");
+        let (own, others) = rest.split_at(variable.size());
+        rest = others;
+        (variable, own)
+    })
 }
 
 /// Place of a body among the inputs: all points, then all vessels.

@@ -1,7 +1,8 @@
 //! Communication steps in parts: between them a host of FMI 3.0 reads outputs and sets inputs, and may end the step.
 //!
 //! Source: FMI 3.0.2 section 4.2.2, intermediate update mode and early return. A step longer than the interval of the scene is divided into equal
-//! parts no longer than it. The host must have announced all displacements: a body that it did not move between would stand still there.
+//! parts no longer than it. The host must have announced all displacements, and the flow of the water where it gives that: a body that it did
+//! not move between would stand still there.
 //! Where inputs hold for the end of the step, nothing is to be given within it.
 
 use moorline::interface::{Binding, Interface};
@@ -38,13 +39,15 @@ impl Parts {
 }
 
 impl Instance {
-    /// Keeps which variables the host accesses within steps; it is called there if it announces all displacements.
+    /// Keeps which variables the host accesses within steps; it is called there if it announces all displacements and all of the flow.
     pub(crate) fn announce(&mut self, references: &[u32]) {
         let mut rows = self.interface.variables().iter().enumerate();
         self.is_updated = !references.is_empty()
             && rows.all(|(index, variable)| {
-                !matches!(variable.binding, Binding::Displacement { .. })
-                    || references.contains(&Interface::reference(index))
+                !matches!(
+                    variable.binding,
+                    Binding::Displacement { .. } | Binding::Flow { .. }
+                ) || references.contains(&Interface::reference(index))
             });
     }
 

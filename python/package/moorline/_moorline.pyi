@@ -116,6 +116,11 @@ class Simulation:
         """Positions of the nodes of a line from end A to end B [m], a row a node; written into `out` where that is given."""
     def velocities(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Velocities of the nodes of a line from end A to end B [m/s], a row a node; written into `out` where that is given."""
+    def flow_places(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Places of the nodes of a line from end A to end B for which the flow of the water is due next [m], a row a node; written into `out` where
+        that is given."""
+    def set_flow(self, line: str, velocities: NDArray[np.float64], accelerations: NDArray[np.float64]) -> None:
+        """Sets velocities [m/s] and accelerations [m/s²] of the water at these places, a row a node, for the coming steps."""
     def point(self, name: str) -> PointState:
         """Position, velocity and force of a point."""
     def end_forces(self, line: str) -> NDArray[np.float64]:
