@@ -38,7 +38,7 @@ use results::Reactions;
 use scale::Scale;
 
 pub use coupling::{EndMotion, Impedance};
-pub use flow::{FLOW_COMPONENTS, WaterFlow};
+pub use flow::{FLOW_COMPONENTS, NO_FLOW, WaterFlow};
 pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
 pub use watch::Watch;

@@ -201,9 +201,7 @@ pub unsafe extern "C" fn moorline_flow_places(
     edge::call(simulation, "moorline_flow_places", |session| {
         let value = session.flow_places(line)?;
         // SAFETY: an array of `count` values.
-        copy(value.as_flattened(), unsafe {
-            edge::slice_mut(places, count)
-        }?)
+        copy(value.as_flattened(), unsafe { edge::slice_mut(places, count) }?)
     })
 }
 
@@ -218,8 +216,12 @@ pub unsafe extern "C" fn moorline_set_flow(
 ) -> c_int {
     edge::call(simulation, "moorline_set_flow", |session| {
         // SAFETY: two arrays of `count` values.
-        let (velocities, accelerations) =
-            unsafe { (edge::slice(velocities, count)?, edge::slice(accelerations, count)?) };
+        let (velocities, accelerations) = unsafe {
+            (
+                edge::slice(velocities, count)?,
+                edge::slice(accelerations, count)?,
+            )
+        };
         session.set_flow(line, velocities, accelerations)
     })
 }

@@ -8,7 +8,7 @@ use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json};
 use moorline::scene::{LoadError, Scene};
-use moorline::simulation::{self, Simulation, Snapshot, WaterFlow};
+use moorline::simulation::{self, NO_FLOW, Simulation, Snapshot, WaterFlow};
 use moorline_decks::load;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -418,10 +418,7 @@ impl Session {
     fn flow_count(&self, index: usize) -> Outcome<usize> {
         let line = self.line(index)?;
         match self.interface.still_water().node_count(index) {
-            0 => Err(Failure::new(
-                MOORLINE_NOT_AVAILABLE,
-                format!("{line}: it takes no flow of the water: that needs `flow = \"host\"` in [water], and a `diameter` of its line type"),
-            )),
+            0 => Err(Failure::new(MOORLINE_NOT_AVAILABLE, format!("{line}: {NO_FLOW}"))),
             count => Ok(count),
         }
     }

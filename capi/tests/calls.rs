@@ -266,10 +266,16 @@ fn the_flow_of_the_water_acts_as_in_the_library_in_rust_and_is_that_of_its_input
         assert_eq!(moorline_force(simulation, 0, force.as_mut_ptr(), 3), MOORLINE_OK);
         assert_eq!(force, mooring.end_force(3));
         let reference = find(simulation, "one.flow.az[4]");
-        assert_eq!(moorline_get(simulation, &raw const reference, &raw mut value, 1), MOORLINE_OK);
+        assert_eq!(
+            moorline_get(simulation, &raw const reference, &raw mut value, 1),
+            MOORLINE_OK
+        );
         assert_eq!(value, flow.component(0, 5)[3]);
         let slower = 0.5 * value;
-        assert_eq!(moorline_set(simulation, &raw const reference, &raw const slower, 1), MOORLINE_OK);
+        assert_eq!(
+            moorline_set(simulation, &raw const reference, &raw const slower, 1),
+            MOORLINE_OK
+        );
         flow.component_mut(0, 5)[3] = slower;
         mooring.set_flow(&flow);
         mooring.advance(0.1).unwrap();
@@ -281,12 +287,45 @@ fn the_flow_of_the_water_acts_as_in_the_library_in_rust_and_is_that_of_its_input
 }
 
 #[test]
+fn a_flow_that_is_not_asked_for_or_cannot_be_used_has_its_code_and_a_sentence() {
+    let (still, flowing) = (read(SCENE), read(&hosted()));
+    let (calm, wild, mut places) = ([0.0; 21], [f64::NAN; 21], [0.0; 21]);
+    // SAFETY: arrays of the lengths that are said.
+    unsafe {
+        refused(
+            moorline_set_flow(still, 0, calm.as_ptr(), calm.as_ptr(), 21),
+            MOORLINE_NOT_AVAILABLE,
+            "`flow = \"host\"`",
+        );
+        refused(
+            moorline_flow_places(flowing, 0, places.as_mut_ptr(), 21),
+            MOORLINE_WRONG_PHASE,
+            "start first",
+        );
+        refused(
+            moorline_set_flow(flowing, 0, calm.as_ptr(), wild.as_ptr(), 21),
+            MOORLINE_INVALID_ARGUMENT,
+            "one: NaN",
+        );
+        refused(
+            moorline_set_flow(flowing, 0, calm.as_ptr(), calm.as_ptr(), 7),
+            MOORLINE_INVALID_ARGUMENT,
+            "21 values",
+        );
+        moorline_close(still);
+        moorline_close(flowing);
+    }
+}
+
+/// Claims the code of a call, and words of its sentence.
+fn refused(code: c_int, expected: c_int, words: &str) {
+    assert_eq!(code, expected, "{}", message());
+    assert!(message().contains(words), "{}", message());
+}
+
+#[test]
 fn what_cannot_be_used_has_its_code_and_a_sentence() {
     let mut handle = null_mut();
-    let refused = |code: c_int, expected: c_int, words: &str| {
-        assert_eq!(code, expected, "{}", message());
-        assert!(message().contains(words), "{}", message());
-    };
     // SAFETY: texts, numbers, null pointers that are refused, and handles that may be anything.
     unsafe {
         assert_eq!(moorline_abi_version(), MOORLINE_ABI_VERSION);
@@ -343,24 +382,6 @@ fn what_cannot_be_used_has_its_code_and_a_sentence() {
             MOORLINE_NOT_AVAILABLE,
             "buoy",
         );
-        refused(
-            moorline_flow_places(one, 0, force.as_mut_ptr(), 6),
-            MOORLINE_NOT_AVAILABLE,
-            "`flow = \"host\"`",
-        );
-        let flowing = read(&hosted());
-        let (still, wild) = ([0.0; 21], [f64::NAN; 21]);
-        refused(
-            moorline_set_flow(flowing, 0, still.as_ptr(), wild.as_ptr(), 21),
-            MOORLINE_INVALID_ARGUMENT,
-            "one: NaN",
-        );
-        refused(
-            moorline_set_flow(flowing, 0, still.as_ptr(), wild.as_ptr(), 7),
-            MOORLINE_INVALID_ARGUMENT,
-            "21 values",
-        );
-        assert_eq!(moorline_close(flowing), MOORLINE_OK);
         assert_eq!(moorline_close(one), MOORLINE_OK);
         refused(moorline_step(one, 0.1), MOORLINE_INVALID_HANDLE, "closed");
         refused(moorline_close(one), MOORLINE_INVALID_HANDLE, "closed");

@@ -12,7 +12,7 @@ use moorline::interface::{Binding, Interface};
 use moorline::model::Body;
 use moorline::output::description::{Description, VERSION, time_reference};
 use moorline::scene::{Note, Scene};
-use moorline::simulation::{Simulation, WaterFlow, Watch};
+use moorline::simulation::{Simulation, Watch, WaterFlow};
 use moorline_host::{FmiVersion, Status};
 
 pub(crate) use parts::Parts;
@@ -679,7 +679,11 @@ mod tests {
         let values = [&[0.02], &flow[..], &[0.01]].concat();
         let scalars = (1..=7).map(|node| format!("rope.flow.vy[{node}]"));
         let [x, z] = ["hand.x", "hand.z"].map(String::from);
-        let scalars: Vec<String> = [x.clone()].into_iter().chain(scalars).chain([z.clone()]).collect();
+        let scalars: Vec<String> = [x.clone()]
+            .into_iter()
+            .chain(scalars)
+            .chain([z.clone()])
+            .collect();
         let arrays = [x, "rope.flow.vy".to_string(), z];
         set_all(&mut two, &scalars, &values).unwrap();
         set_all(&mut three, &arrays, &values).unwrap();
@@ -689,7 +693,12 @@ mod tests {
         }
         let mut broken = values.clone();
         broken[4] = f64::NAN;
-        assert!(set_all(&mut three, &arrays, &broken).unwrap_err().0.starts_with("rope.flow.vy: NaN"));
+        assert!(
+            set_all(&mut three, &arrays, &broken)
+                .unwrap_err()
+                .0
+                .starts_with("rope.flow.vy: NaN")
+        );
         let (mut found, array) = ([0.0; 7], reference(&three, "rope.flow.vy"));
         three.get(Kind::Float64, &[array], &mut found).unwrap();
         assert_eq!(found[..], flow);

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{Body, End, Model};
 use moorline::scene::LoadedScene;
-use moorline::simulation::{self, Simulation as Mooring, WaterFlow};
+use moorline::simulation::{self, NO_FLOW, Simulation as Mooring, WaterFlow};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -363,10 +363,7 @@ impl Simulation {
     fn line_in_flow(&self, name: &str) -> Result<usize, Failure> {
         let line = Self::line(&self.mooring.read(), name)?;
         match self.given.flow.node_count(line) {
-            0 => Err(Failure::of_argument(
-                name,
-                "it takes no flow of the water: that needs `flow = \"host\"` in [water], and a `diameter` of its line type",
-            )),
+            0 => Err(Failure::of_argument(name, NO_FLOW)),
             _ => Ok(line),
         }
     }
@@ -608,8 +605,8 @@ impl Simulation {
         }
         let [velocities, accelerations] = given.map(|(_, values)| values.as_array());
         for node in 0..count {
-            let [velocity, acceleration] = [velocities, accelerations]
-                .map(|values| std::array::from_fn(|axis| values[[node, axis]]));
+            let [velocity, acceleration] =
+                [velocities, accelerations].map(|values| std::array::from_fn(|axis| values[[node, axis]]));
             self.given.flow.set(number, node, velocity, acceleration);
         }
         Ok(())

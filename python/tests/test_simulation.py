@@ -70,6 +70,58 @@ def test_a_simulation_starts_in_equilibrium_at_its_inputs(chain):
     assert here["line1.tension_b"] == pytest.approx(chain.statics().lines[0].end_b.tension, rel=1e-12)
 
 
+def stream(simulation, count, give):
+    """Steps in a flow that `give` sets from the places where it is due and the time, and returns all outputs of every step."""
+    rows = []
+    for _ in range(count):
+        x, _, z = simulation.flow_places("line1").T
+        velocity = np.stack([0.5 + 0.002 * x, 0.01 * z, np.full(21, 0.1 * simulation.time)], axis=1)
+        give(velocity, 0.1 * velocity[:, ::-1])
+        simulation.advance({"fairlead.x": 0.2 * simulation.time}, 0.1)
+        rows.append(simulation.outputs())
+    return np.array(rows)
+
+
+def test_a_flow_given_as_arrays_is_that_of_its_inputs_by_name_and_is_saved(chain):
+    hosted = chain.to_dict()
+    hosted["water"]["flow"] = "host"
+    hosted = moorline.Scene.from_dict(hosted)
+    arrays, named = moorline.Simulation(hosted), moorline.Simulation(hosted)
+    assert arrays.input_names == ["fairlead.x", "fairlead.y", "fairlead.z"], "a flow has a method of its own"
+
+    def by_name(*flow):
+        values = {f"line1.flow.{kind}{axis}[{node + 1}]": values[node, column] for kind, values in zip("va", flow)
+                  for column, axis in enumerate("xyz") for node in range(21)}
+        named.advance(values, 0.0)
+
+    def whole(velocity, acceleration):
+        arrays.set_flow("line1", velocity, acceleration)
+
+    rows = stream(arrays, 20, whole)
+    assert np.array_equal(rows, stream(named, 20, by_name))
+    assert np.array_equal(arrays.flow_places("line1"), arrays.positions("line1"))
+    state = arrays.save()
+    rows = stream(arrays, 5, whole)
+    arrays.restore(state)
+    assert np.array_equal(rows, stream(arrays, 5, whole))
+    still = stream(moorline.Simulation(hosted), 5, lambda *_: None)
+    assert np.ptp(rows - still) > 100.0
+
+
+def test_a_flow_that_cannot_be_used_is_refused_and_changes_nothing(chain):
+    with pytest.raises(moorline.InputError, match='flow = "host"'):
+        moorline.Simulation(chain).flow_places("line1")
+    hosted = moorline.Simulation(moorline.Scene.from_toml(chain.to_toml().replace("[water]", '[water]\nflow = "host"')))
+    flow, short, wild = np.ones((21, 3)), np.ones((20, 3)), np.full((21, 3), np.nan)
+    for velocity, acceleration, said in [(short, flow, "velocities"), (flow, wild, "accelerations")]:
+        with pytest.raises(moorline.InputError, match=said):
+            hosted.set_flow("line1", velocity, acceleration)
+    assert hosted["line1.flow.vx[1]"] == 0.0
+    hosted.set_flow("line1", 1000.0 * flow, flow)
+    with pytest.raises(moorline.StepError, match="line1.flow.vx"):
+        hosted.advance(None, 0.1)
+
+
 def test_a_restored_simulation_replays_to_the_last_bit(chain):
     simulation = moorline.Simulation(chain)
     steps(simulation, 40)

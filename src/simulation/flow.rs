@@ -29,6 +29,8 @@ use crate::scene::{Reconstruction, SceneError};
 
 /// Components of the flow at a node: velocity along x, y, z [m/s], then acceleration [m/s²].
 pub const FLOW_COMPONENTS: [&str; 6] = ["vx", "vy", "vz", "ax", "ay", "az"];
+/// Reason for which a host cannot give the flow along a line.
+pub const NO_FLOW: &str = "it takes no flow of the water: that needs `flow = \"host\"` in [water], and a `diameter` of its line type";
 /// Greatest velocity [m/s], that of a current in a scene, and acceleration [m/s²], a thousand times that of gravity.
 const LIMITS: [f64; 2] = [100.0, 1e4];
 /// Length of a step over that of the step before up to which rates are extrapolated from one to the other [-].

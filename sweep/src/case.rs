@@ -36,7 +36,10 @@ impl Base {
     pub fn load(path: &Path, supplement: &Supplement) -> Result<Base, LoadError> {
         let mut loaded = load_with(path, supplement)?;
         let without_host = loaded.scene.without_host();
-        let without_host: Vec<Note> = without_host.into_iter().map(|note| loaded.locate_note(note)).collect();
+        let without_host: Vec<Note> = without_host
+            .into_iter()
+            .map(|note| loaded.locate_note(note))
+            .collect();
         loaded.notes.extend(without_host);
         let text = match loaded.format {
             TOML => loaded.text.clone(),

@@ -19,9 +19,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use moorline::model::End;
 use moorline::physics::catenary::is_laid_from_b;
 use moorline::scene::{
-    Current, FlowSource, Friction, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
-    PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Threads, TimeFunction,
-    Water, WaveComponents, Waves,
+    Current, FlowSource, Friction, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath,
+    Point, PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Threads,
+    TimeFunction, Water, WaveComponents, Waves,
 };
 use moorline::simulation::Simulation;
 use nalgebra::{Rotation3, Vector3};

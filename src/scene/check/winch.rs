@@ -67,7 +67,7 @@ fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     }
     if scene.has_host_flow() {
         return Some(
-            "the number of its nodes changes, at which the host is to give the flow of the water: leave out one of them",
+            "a winch changes the number of nodes, at which the host gives the flow of the water: leave out one of them",
         );
     }
     if scene.meets_surface(line) {
