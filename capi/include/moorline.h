@@ -104,6 +104,20 @@ int moorline_node_positions(moorline_simulation simulation, size_t line, double 
 // Gives the effective tension at every node of a line, from end A to end B [N].
 int moorline_node_tensions(moorline_simulation simulation, size_t line, double *tensions, size_t count);
 
+// Gives x, y, z of the places for which the flow of the water is due next, for the nodes of a line from end A to end B [m]: three values a node. These
+// are the places of the nodes now or, where inputs hold for the end of the step, the places they are expected to reach. From start on.
+int moorline_flow_places(moorline_simulation simulation,
+                         size_t line,
+                         double *places,
+                         size_t count);
+
+// Sets the velocity [m/s] and the acceleration [m/s2] of the water at those places, three values a node, in a scene with `flow = "host"` in [water].
+int moorline_set_flow(moorline_simulation simulation,
+                      size_t line,
+                      const double *velocities,
+                      const double *accelerations,
+                      size_t count);
+
 // Returns the version of this interface; it is MOORLINE_ABI_VERSION of the header that the library was built with.
 uint32_t moorline_abi_version(void);
 

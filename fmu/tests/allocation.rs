@@ -3,8 +3,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use moorline::scene::{Integrator, Scene, Threads};
-use moorline::simulation::Simulation;
+use moorline::scene::{FlowSource, Integrator, Reconstruction, Scene, Threads};
+use moorline::simulation::{Simulation, WaterFlow};
 
 struct Counting;
 
@@ -39,29 +39,59 @@ fn a_step_of_a_beam_allocates_nothing() {
     assert_eq!(COUNT.with(Cell::get) - before, 0);
 }
 
+/// Integrators of cables.
+const INTEGRATORS: [Integrator; 4] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+    Integrator::Bossak,
+];
+
+/// Allocations in steps that a host drives, which also gives a flow of the water where the scene asks for it.
+fn allocations_of_a_host(scene: &Scene) -> usize {
+    let mut simulation = Simulation::new(scene).unwrap();
+    let fairlead = simulation.model().point_index("fairlead").unwrap();
+    let mut flow = WaterFlow::still(simulation.model());
+    let mut drive = |steps: std::ops::Range<u32>| {
+        for step in steps {
+            let time = 0.05 * f64::from(step);
+            simulation.set_displacement(fairlead, [3.0 * (0.5 * time).sin(), 0.0, 0.0]);
+            for node in 0..flow.node_count(0) {
+                flow.set(0, node, [time.sin(), 0.0, 0.0], [time.cos(), 0.0, 0.0]);
+            }
+            simulation.set_flow(&flow);
+            simulation.advance(0.05).unwrap();
+        }
+    };
+    drive(0..5); // buffers grow to their sizes
+    let before = COUNT.with(Cell::get);
+    drive(5..200);
+    COUNT.with(Cell::get) - before
+}
+
 #[test]
 fn a_step_allocates_nothing() {
-    for integrator in [
-        Integrator::Leapfrog,
-        Integrator::AxialImplicit,
-        Integrator::GeneralisedAlpha,
-        Integrator::Bossak,
-    ] {
+    for integrator in INTEGRATORS {
         let mut scene = Scene::from_toml(include_str!("../../scenes/oc4_chain.toml")).unwrap();
         scene.solver.integrator = integrator;
-        let mut simulation = Simulation::new(&scene).unwrap();
-        let fairlead = simulation.model().point_index("fairlead").unwrap();
-        let mut drive = |steps: std::ops::Range<u32>| {
-            for step in steps {
-                let time = 0.05 * f64::from(step);
-                simulation.set_displacement(fairlead, [3.0 * (0.5 * time).sin(), 0.0, 0.0]);
-                simulation.advance(0.05).unwrap();
-            }
-        };
-        drive(0..5); // buffers grow to their sizes
-        let before = COUNT.with(Cell::get);
-        drive(5..200);
-        assert_eq!(COUNT.with(Cell::get) - before, 0, "{integrator:?}");
+        assert_eq!(allocations_of_a_host(&scene), 0, "{integrator:?}");
+    }
+}
+
+#[test]
+fn a_step_in_the_flow_of_a_host_allocates_nothing() {
+    for integrator in INTEGRATORS {
+        for reconstruction in [Reconstruction::Smooth, Reconstruction::Interpolate] {
+            let mut scene = Scene::from_toml(include_str!("../../scenes/oc4_chain.toml")).unwrap();
+            scene.solver.integrator = integrator;
+            scene.solver.input_reconstruction = reconstruction;
+            scene.water.as_mut().unwrap().flow = Some(FlowSource::Host);
+            assert_eq!(
+                allocations_of_a_host(&scene),
+                0,
+                "{integrator:?}, {reconstruction:?}"
+            );
+        }
     }
 }
 

@@ -42,7 +42,7 @@ impl Scene {
         }
         self.idle_of_solver(&mut notes);
         let surface = self.water.as_ref().and_then(|water| water.surface);
-        let moved = self
+        let pushed = self
             .lines
             .iter()
             .any(|line| self.types_of(line).any(|kind| kind.diameter.is_some()));
@@ -51,7 +51,7 @@ impl Scene {
         rules! { &mut notes, "";
             "water" if surface.is_some() && self.all_beams() =>
                 "beams are under water throughout: `surface` changes nothing";
-            "water" if self.has_host_flow() && !moved && !self.points.iter().any(wet) =>
+            "water" if self.has_host_flow() && !pushed && !self.points.iter().any(wet) =>
                 "no line has a `diameter` and no point a `volume` or `drag_area`: `flow` changes nothing";
             "seabed" if self.is_quasi_static() && self.seabed.as_ref().is_some_and(damped) =>
                 "quasi-static: `damping` changes nothing";

@@ -35,12 +35,8 @@ impl Base {
     /// The reason why it cannot be read, or all mistakes in it.
     pub fn load(path: &Path, supplement: &Supplement) -> Result<Base, LoadError> {
         let mut loaded = load_with(path, supplement)?;
-        let without_host = loaded.scene.without_host();
-        let without_host: Vec<Note> = without_host
-            .into_iter()
-            .map(|note| loaded.locate_note(note))
-            .collect();
-        loaded.notes.extend(without_host);
+        let note = loaded.scene.without_host().map(|note| loaded.locate_note(note));
+        loaded.notes.extend(note);
         let text = match loaded.format {
             TOML => loaded.text.clone(),
             _ => loaded.scene.to_toml(),

@@ -87,6 +87,39 @@ fn notes_speak_of_what_is_unused_or_strange() {
 }
 
 #[test]
+fn a_flow_from_the_host_is_described_and_noted_where_no_host_gives_it_or_it_acts_on_nothing() {
+    let hosted = |text: &str| {
+        let text = text.replace("density = 1025.0", "density = 1025.0\nflow = \"host\"");
+        Scene::from_toml(&text).unwrap()
+    };
+    let scene = hosted(SCENE);
+    let words = in_words(&scene);
+    assert_says(
+        &words,
+        &["a host gives its velocity and acceleration at the nodes"],
+    );
+    assert!(
+        !words.contains("still water") && !words.contains("to which the current"),
+        "{words}"
+    );
+    let remark = scene.without_host().unwrap().to_string();
+    assert!(
+        remark.starts_with("water.flow: there is no host in this run"),
+        "{remark}"
+    );
+    assert!(scene.notes().iter().all(|note| note.at != "water"));
+    let thin = SCENE
+        .replace("mass = 100.0\ndiameter = 0.1\n", "weight = 900.0\n")
+        .replace("drag_normal = 1.2\n", "")
+        .replace("[seabed]\ndepth = 50.0\n", "");
+    let notes: String = hosted(&thin).notes().iter().map(ToString::to_string).collect();
+    assert_says(
+        &notes,
+        &["water: no line has a `diameter` and no point a `volume` or `drag_area`: `flow` changes nothing"],
+    );
+}
+
+#[test]
 fn rows_that_look_written_twice_or_closed_by_mistake_are_noted() {
     let rope = "line_types.rope = { mass = 1.0, axial_stiffness = 1e4 }";
     let ends = draft(rope)

@@ -187,6 +187,30 @@ fn a_run_of_hours_and_a_line_that_breaks_at_once_are_noted_before_the_run() {
     assert!(!folder.done("check scene.toml").contains("hours on one thread"));
 }
 
+#[test]
+fn a_run_whose_water_a_host_would_move_is_one_in_still_water_and_says_so_once() {
+    let folder = folder();
+    let rope = "[line_types.rope]\ndiameter = 0.01\ndrag_normal = 1.2";
+    let still = format!(
+        "water.density = 1025.0\n{}",
+        SCENE.replace("[line_types.rope]", rope)
+    );
+    folder.write("still.toml", &still);
+    folder.write("hosted.toml", format!("water.flow = \"host\"\n{still}"));
+    let said = folder.remarks("run hosted.toml -o hosted");
+    let note = "note: hosted.toml:1: water.flow: there is no host in this run to give the flow: the water is at rest";
+    assert_eq!(said.matches(note).count(), 1, "{said}");
+    assert!(!folder.remarks("run still.toml -o still").contains("flow"));
+    let results = |name: &str| {
+        let (names, rows) = table(&folder.path(&format!("{name}/results.csv")));
+        (names, rows.into_iter().flatten().collect::<Vec<f64>>())
+    };
+    let ((names, hosted), (wanted, still)) = (results("hosted"), results("still"));
+    assert_eq!(names, wanted);
+    let apart = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * b.abs().max(1.0);
+    assert!(hosted.len() == still.len() && hosted.iter().zip(&still).all(apart));
+}
+
 /// Source: span and sag of the inextensible wire as in `tests/statics/quasi_static.rs`.
 #[test]
 fn the_command_line_draws_the_collar_out_too() {
