@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Binding, Interface, LineResult, Parameter, Place, ProfileQuantity, Variable};
-use crate::model::{Body, End, Model};
+use crate::model::{Body, End, Line, Model};
 use crate::scene::table::{Acts, Table};
 use crate::scene::{LineType, Scene, Water};
 
@@ -66,25 +66,28 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
 /// step on whole networks.
 fn add_flow(variables: &mut [Variable], model: &Model) {
     let flow = |(index, variable): (usize, &Variable)| match variable.binding {
-        Binding::Flow { line, node, .. } => Some((Interface::reference(index), line, node)),
+        Binding::Flow {
+            line,
+            component,
+            node,
+        } => Some((Interface::reference(index), line, (component, node))),
         _ => None,
     };
     let flows: Vec<_> = variables.iter().enumerate().filter_map(flow).collect();
-    let last = |line: usize, end: End| (line, Some(model.lines[line].end_node(end)));
-    let both = |line: usize| [last(line, End::A), last(line, End::B)];
+    let both = |line: usize| [End::A, End::B].map(|end| (line, Some(end)));
     for variable in variables {
-        // lines with a node, or all of it
-        let reached: Vec<(usize, Option<usize>)> = match variable.binding {
-            Binding::EndForce { body, .. } => {
-                attached(model, body).map(|(line, end)| last(line, end)).collect()
-            }
+        // ends of lines, or whole lines
+        let reached: Vec<(usize, Option<End>)> = match variable.binding {
+            Binding::EndForce { body, .. } => attached(model, body)
+                .map(|(line, end)| (line, Some(end)))
+                .collect(),
             Binding::Interface { body, quantity, .. } if quantity.is_of_a_step() => {
                 let lines = networks_of(model, attached(model, body).map(|(line, _)| line));
                 lines.into_iter().map(|line| (line, None)).collect()
             }
             Binding::Line { line, result } => match result {
-                LineResult::TensionA => vec![last(line, End::A)],
-                LineResult::TensionB => vec![last(line, End::B)],
+                LineResult::TensionA => vec![(line, Some(End::A))],
+                LineResult::TensionB => vec![(line, Some(End::B))],
                 LineResult::TensionMax => both(line).into(),
                 _ => continue,
             },
@@ -93,22 +96,27 @@ fn add_flow(variables: &mut [Variable], model: &Model) {
                 quantity: ProfileQuantity::Tension,
                 node,
             } => {
-                let of_node = both(line).into_iter();
-                of_node
-                    .filter(|(_, end)| node.is_none() || node == *end)
-                    .collect()
+                let is_there = |end: End| node.is_none_or(|node| node == model.lines[line].end_node(end));
+                let ends = both(line).into_iter();
+                ends.filter(|(_, end)| end.is_some_and(is_there)).collect()
             }
             _ => continue,
         };
-        let reaches = |line: usize, node: Option<usize>| {
-            let mut reached = reached.iter();
-            reached.any(|&(of, end)| of == line && (end.is_none() || node.is_none() || end == node))
+        let reaches = |line: usize, at: (usize, Option<usize>)| {
+            let mut reached = reached.iter().filter(|(of, _)| *of == line);
+            reached.any(|(_, end)| end.is_none_or(|end| acts_at(&model.lines[line], end, at)))
         };
-        let known = flows.iter().filter(|(_, line, node)| reaches(*line, *node));
-        variable
-            .initial_dependencies
-            .extend(known.map(|(reference, ..)| reference));
+        let known = flows.iter().filter(|(_, line, at)| reaches(*line, *at));
+        let references = known.map(|(reference, ..)| reference);
+        variable.initial_dependencies.extend(references);
     }
+}
+
+/// Returns whether a component of the flow at a node, or at all, is in the force at an end of a line: the drag of a half node whose load is linear
+/// follows from two velocities.
+fn acts_at(line: &Line, end: End, (component, node): (usize, Option<usize>)) -> bool {
+    let count = 1 + usize::from(component < 3 && line.linear_load[end as usize]);
+    node.is_none_or(|node| node.abs_diff(line.end_node(end)) < count)
 }
 
 /// Lines that end at the points of a body, with these ends.

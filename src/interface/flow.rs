@@ -32,8 +32,9 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
         for (axis, label) in AXES.into_iter().enumerate() {
             let name = format!("{owner}.flow.{label}");
             at_nodes(variables, (layout, count), &name, |name, place, node| {
-                let of =
-                    format!("{owner}: global {label} for which the next flow is due, of {place} from end A");
+                let of = format!(
+                    "{owner}: global {label} of the place for which the next flow is due, at {place} from end A"
+                );
                 let binding = Binding::FlowPlace { line, axis, node };
                 row(name, of, Causality::Output, Unit::METRE, binding)
             });
