@@ -24,6 +24,7 @@ pub fn water(dice: &mut Dice, size: f64, gravity: f64, moves: bool, waves: bool)
         density,
         current: (moves && dice.chance(0.4)).then(|| current(dice, size)),
         waves: (waves && gravity > 0.0 && dice.chance(0.35)).then(|| self::waves(dice, size)),
+        flow: None,
         surface: dice.pick(&[None, None, None, Some(true), Some(false)]),
     }
 }
