@@ -112,8 +112,8 @@ impl WaterFlow {
         let columns = |(line, columns): (usize, &[Vec<f64>; 6])| {
             columns.iter().enumerate().find_map(|(component, values)| {
                 let limit = LIMITS[component / 3];
-                // no number is within any limit
-                let node = values.iter().position(|value| !(value.abs() <= limit))?;
+                let is_beyond = |value: &f64| value.is_nan() || value.abs() > limit;
+                let node = values.iter().position(is_beyond)?;
                 Some((line, component, node))
             })
         };
