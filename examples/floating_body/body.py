@@ -22,6 +22,7 @@ PLACES = tuple(a + ("" if len(a + b) == 2 else "_") + b for a in AXES for b in A
 RADIUS = 0.8  # spectral radius of the integration at infinite frequency [-]
 MEMORY = 40.0  # length of the retardation function that is kept [s]
 RAMP = 20.0  # time over which waves begin [s]
+LAST, EXTRAPOLATED, COMING = "last", "extrapolated", "coming"  # forces of the mooring with which the body makes a step
 
 
 @dataclass(frozen=True)
@@ -103,9 +104,11 @@ class Hydrodynamics:
         self.excitation = np.zeros((len(table), 6), dtype=complex)
         self.excitation[:, [0, 2, 4]] = table[:, 11::2] + 1j * table[:, 12::2]
 
-    def force(self, omega: np.ndarray) -> np.ndarray:
-        """Excitation at frequencies within the table, linear in between [N/m, N]."""
-        return np.array([np.interp(omega, self.omega, column) for column in self.excitation.T]).T
+    def at(self, table: np.ndarray, omega: np.ndarray | float) -> np.ndarray:
+        """A table at frequencies within it, linear in between."""
+        i = np.clip(np.searchsorted(self.omega, omega) - 1, 0, len(table) - 2)
+        part = (omega - self.omega[i]) / (self.omega[i + 1] - self.omega[i])
+        return table[i] + (part * (table[i + 1] - table[i]).T).T
 
     def retardation(self, times: np.ndarray) -> np.ndarray:
         """K(t) = (2/π) ∫ B(ω) cos ωt dω over the table, by the trapezoidal rule [N/m, N, N m]; times are short beside 2π/Δω = 126 s."""
@@ -142,11 +145,11 @@ class Body:
 
     def __init__(self, name: str, step: float, rest: np.ndarray, waves: Waves = Waves()) -> None:
         """`rest`: force [N] and moment [N m] of the mooring at rest."""
-        shape, self.data = BODIES[name](), Hydrodynamics(name)
+        self.shape, self.data = BODIES[name](), Hydrodynamics(name)
         self.step, self.rest, self.time = step, np.asarray(rest, dtype=float), 0.0
-        mass, self.stiffness, self.point_mass = mass_and_stiffness(shape, -self.rest[2])
+        mass, self.stiffness, self.point_mass = mass_and_stiffness(self.shape, -self.rest[2])
         self.mass = mass + self.data.infinite
-        surge, heave, yaw = shape.damping
+        surge, heave, yaw = self.shape.damping
         self.damping = np.diag([surge, surge, heave, 0.0, 0.0, yaw])
         count = round(MEMORY / step)
         kernel = step * self.data.retardation(step * np.arange(count + 1))
@@ -154,7 +157,7 @@ class Body:
         self.present, self.past = kernel[0], np.hstack(list(kernel[1:]))
         self.history, self.newest = np.zeros((2 * count, 6)), count  # velocities, newest first, from `newest` on
         self.omega, amplitude = waves.components()
-        self.wave_force = self.data.force(self.omega) * amplitude[:, None]
+        self.wave_force = self.data.at(self.data.excitation, self.omega) * amplitude[:, None]
         self.x, self.v, self.a = np.zeros(6), np.zeros(6), None
 
     def load(self, time: float) -> np.ndarray:
@@ -175,13 +178,13 @@ class Body:
         self.newest -= 1
         self.history[self.newest] = self.v
 
-    def advance(self, force: np.ndarray, coming: tuple[np.ndarray, ...] | None = None) -> None:
-        """Makes a step with the force of the mooring at its start, which is taken to stay; or with the force of the coming step,
-        (free, mass, damping, stiffness): F = free − damping v − stiffness x − mass a, `force` then being without inertia."""
+    def advance(self, force: np.ndarray, at_end: np.ndarray, by_motion: tuple[np.ndarray, ...] | None = None) -> None:
+        """Makes a step with the force of the mooring at its start, and `at_end` at its end. `by_motion`: mass, damping and stiffness of the
+        mooring for the force at the end, at_end − mass a − damping v − stiffness x; `force` is then without inertia."""
         h, x, v = self.step, self.x, self.v
         alpha_m, alpha_f = (2 * RADIUS - 1) / (RADIUS + 1), RADIUS / (RADIUS + 1)
         gamma, beta = 0.5 - alpha_m + alpha_f, 0.25 * (1 - alpha_m + alpha_f) ** 2
-        free, mass, damping, stiffness = coming or (force, 0.0, 0.0, 0.0)
+        mass, damping, stiffness = by_motion or (0.0, 0.0, 0.0)
         mass, own = self.mass + mass, self.damping + self.present
         start = self.load(self.time) + force - self.remembered() - own @ v - self.stiffness @ x
         if self.a is None:
@@ -190,7 +193,7 @@ class Body:
         damping, stiffness = own + damping, self.stiffness + stiffness
         x = x + h * v + h * h * (0.5 - beta) * self.a
         v = v + h * (1 - gamma) * self.a
-        end = self.load(self.time + h) + free - self.remembered() - damping @ v - stiffness @ x
+        end = self.load(self.time + h) + at_end - self.remembered() - damping @ v - stiffness @ x
         matrix = (1 - alpha_m) * mass + (1 - alpha_f) * (h * gamma * damping + h * h * beta * stiffness)
         self.a = np.linalg.solve(matrix, (1 - alpha_f) * end + alpha_f * start - alpha_m * (mass @ self.a))
         self.x, self.v = x + beta * h * h * self.a, v + gamma * h * self.a
@@ -198,7 +201,6 @@ class Body:
 
     def dynamic_stiffness(self, omega: float) -> np.ndarray:
         """C − ω²(M + A(ω)) − iω(D + B(ω)), by which the response to a force F e^(−iωt) is F over it, without mooring [N/m, N, N m]."""
-        added, radiated = (np.array([[np.interp(omega, self.data.omega, table[:, i, j]) for j in range(6)] for i in range(6)])
-                           for table in (self.data.added_mass, self.data.damping))
-        mass = self.mass - self.data.infinite + added
+        mass = self.mass + self.data.at(self.data.added_mass, omega) - self.data.infinite
+        radiated = self.data.at(self.data.damping, omega)
         return self.stiffness - omega**2 * mass - 1j * omega * (self.damping + radiated)

@@ -8,24 +8,25 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from body import AXES, FORCE, FREE, MOTION, PLACES, Waves
+from body import AXES, COMING, FORCE, FREE, LAST, MOTION, PLACES, Waves
 
 HERE = pathlib.Path(__file__).resolve().parent
 MOORLINE = os.environ.get("MOORLINE", str(HERE.parents[1] / "target" / "release" / "moorline"))
 LINES = tuple(f"line{i}.tension_b" for i in (1, 2, 3))
 ENERGY = ("solver.energy_error", "solver.power_residual")
-COMING = FREE + tuple(f"{matrix}_{place}" for matrix in ("mass", "damping", "stiffness") for place in PLACES)
+IMPEDANCE = FREE + tuple(f"{matrix}_{place}" for matrix in ("mass", "damping", "stiffness") for place in PLACES)
 RESULTS = ("time",) + MOTION + FORCE + LINES + ENERGY  # columns of a run
 
 
 @dataclass(frozen=True)
 class Case:
-    """A moored run. `coming_step`: with the force of the coming step, else with the last force, both FMUs at once (Jacobi)."""
+    """A moored run. Both FMUs step at once (Jacobi), with the last force of the mooring or with the last two, extrapolated; with the force of
+    the coming step the body steps first."""
 
     body: str = "spar"  # or barge
     step: float = 0.1  # communication step [s]
     duration: float = 600.0  # [s]
-    coming_step: bool = False
+    coupling: str = LAST  # or EXTRAPOLATED, COMING
     waves: Waves = Waves()
     start: tuple[float, ...] = (0.0,) * 6  # displacement at the start [m, rad]
 
@@ -62,11 +63,11 @@ class Moorings:
 
     def fmu(self, case: Case) -> pathlib.Path:
         """The mooring's FMU, with energy balance; for the coming step with the keys of docs/coupling.md."""
-        name = f"{case.body}_{'coming' if case.coming_step else 'last'}_{case.step}"
+        name = f"{case.body}_{'impedance' if case.coupling == COMING else 'force'}_{case.step}"
         path = self.folder / f"{name}.fmu"
         if not path.exists():
             changes = {"energy_balance = false": "energy_balance = true", "interval = 0.05": f"interval = {case.step}"}
-            if case.coming_step:
+            if case.coupling == COMING:
                 changes['input_reconstruction = "smooth"'] = 'input_reconstruction = "interpolate"'
                 changes['force = "total"'] = 'interface = "impedance"\nforce = "without_inertia"'
             text = self.scene(case.body).read_text()
@@ -93,7 +94,7 @@ class Moorings:
         reals = {"step": case.step, "wave_height": case.waves.height, "wave_period": case.waves.period}
         reals |= dict(zip(("rest_" + name for name in FORCE), self.statics(case.body)[0]))
         reals |= dict(zip(("start_" + name for name in AXES), case.start))
-        others = {"body": case.body, "coming_step": case.coming_step, "wave_seed": case.waves.seed}
+        others = {"body": case.body, "coupling": case.coupling, "wave_seed": case.waves.seed}
         return others | {name: float(value) for name, value in reals.items()}
 
 
@@ -108,7 +109,7 @@ class Fmu:
         self.number = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.slave = FMU2Slave(guid=description.guid, unzipDirectory=extract(str(path)), instanceName=name,
                                modelIdentifier=description.coSimulation.modelIdentifier)
-        self.slave.instantiate(loggingOn=True)  # without, pythonfmu keeps its errors to itself
+        self.slave.instantiate(loggingOn=name == "body")  # pythonfmu has no other way to say what is wrong
         self.slave.setupExperiment(startTime=0.0)
 
     def references(self, names: Iterable[str], prefix: str = "") -> list[int]:
@@ -126,7 +127,7 @@ class Fmu:
 def in_fmpy(case: Case, moorings: Moorings) -> dict[str, np.ndarray]:
     """Runs a case in a loop over FMPy; columns RESULTS, a row a communication point."""
     body, mooring = Fmu(moorings.body_fmu(), "body"), Fmu(moorings.fmu(case), "mooring")
-    loads = FORCE + (COMING if case.coming_step else ())
+    loads = FORCE + (IMPEDANCE if case.coupling == COMING else ())
     motion_out, motion_in = body.references(MOTION), mooring.references(MOTION, "body.")
     load_in, load_out = body.references(loads), mooring.references(loads, "body.")
     rest = mooring.references(LINES + ENERGY)
@@ -140,12 +141,12 @@ def in_fmpy(case: Case, moorings: Moorings) -> dict[str, np.ndarray]:
         load, motion = mooring.slave.getReal(load_out), body.slave.getReal(motion_out)
         rows.append([k * case.step, *motion, *load[:6], *mooring.slave.getReal(rest)])
         body.slave.setReal(load_in, load)
-        if case.coming_step:  # the body first; the mooring then has the motion at the end of the step
+        if case.coupling == COMING:  # the body first; the mooring then has the motion at the end of the step
             body.slave.doStep(k * case.step, case.step)
             motion = body.slave.getReal(motion_out)
         mooring.slave.setReal(motion_in, motion)
         mooring.slave.doStep(k * case.step, case.step)
-        if not case.coming_step:
+        if case.coupling != COMING:
             body.slave.doStep(k * case.step, case.step)
     for fmu in (body, mooring):
         fmu.slave.terminate()

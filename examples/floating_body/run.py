@@ -1,0 +1,207 @@
+"""A floating body in waves on three mooring lines: `python run.py [-o FOLDER]` makes all figures and the table of docs/floating-body.md."""
+
+import argparse
+import dataclasses
+import pathlib
+
+import numpy as np
+from body import AXES, COMING, EXTRAPOLATED, GRAVITY, DENSITY, LAST, MOTION, Body, Hydrodynamics, Waves
+from hosts import LINES, Case, Moorings, in_fmpy, in_libcosim
+
+Run = dict[str, np.ndarray]
+SEAS = {"spar": Waves(6.0, 10.0, 1), "barge": Waves(2.0, 8.0, 1)}
+UNITS = {"x": "surge [m]", "z": "heave [m]", "pitch": "pitch [°]"}
+
+
+def unmoored(case: Case, moorings: Moorings) -> Run:
+    """Runs a case without mooring: its force at rest stays."""
+    rest, _ = moorings.statics(case.body)
+    body = Body(case.body, case.step, rest, case.waves)
+    body.x, rows = np.array(case.start), []
+    for k in range(round(case.duration / case.step) + 1):
+        rows.append([k * case.step, *body.x, *body.v])
+        body.advance(rest, rest)
+    return dict(zip(("time",) + MOTION, np.array(rows).T))
+
+
+def surge_mode(name: str, moorings: Moorings) -> tuple[float, np.ndarray]:
+    """Period [s] and shape of the slowest mode in surge of the moored body, from the stiffness of the mooring, hydrostatics and A(ω)."""
+    rest, stiffness = moorings.statics(name)
+    body, period = Body(name, 1.0, rest), 100.0
+    for _ in range(5):
+        mass = body.mass + body.data.at(body.data.added_mass, 2 * np.pi / period) - body.data.infinite
+        squares, shapes = np.linalg.eig(np.linalg.solve(mass, body.stiffness + stiffness))
+        surge = np.argmax(np.abs(shapes[0]) * (np.abs(shapes[1]) < 1e-3))
+        period = 2 * np.pi / np.sqrt(squares[surge].real)
+    return period, shapes[:, surge].real / shapes[0, surge].real
+
+
+def period_of(run: Run, name: str) -> float:
+    """Mean time between upward crossings of zero [s]."""
+    t, x = run["time"], run[name]
+    up = np.flatnonzero((x[:-1] < 0) & (x[1:] >= 0))
+    return np.diff(t[up] - x[up] * (t[up + 1] - t[up]) / (x[up + 1] - x[up])).mean()
+
+
+def amplitude(run: Run, name: str, omega: float) -> float:
+    """Amplitude at a frequency [rad/s] over the last 20 periods, beside a mean and a drift."""
+    last = run["time"] > run["time"][-1] - 40 * np.pi / omega
+    t = run["time"][last]
+    fit = np.c_[np.cos(omega * t), np.sin(omega * t), np.ones_like(t), t - t[0]]
+    return np.hypot(*np.linalg.lstsq(fit, run[name][last], rcond=None)[0][:2])
+
+
+def rao(name: str, omega: float, moorings: Moorings, moored: bool) -> np.ndarray:
+    """Response to a unit wave in the frequency domain [m/m, rad/m]; with the quasi-static stiffness of the mooring, where moored."""
+    rest, stiffness = moorings.statics(name)
+    body = Body(name, 1.0, rest)
+    matrix = body.dynamic_stiffness(omega) + moored * stiffness
+    return np.linalg.solve(matrix, body.data.at(body.data.excitation, omega))
+
+
+def ogilvie(name: str) -> float:
+    """Greatest difference of A∞ − ∫K sin ωt dt/ω and ∫K cos ωt dt from A(ω) and B(ω), in surge, heave and pitch at 0.2 to 2 rad/s, over the
+    greatest A and ωA of the axis [-] (Ogilvie 1964)."""
+    data, t = Hydrodynamics(name), np.arange(0.0, 40.025, 0.05)
+    kernel, worst = data.retardation(t), 0.0
+    for omega, added, damping in zip(data.omega[3:40], data.added_mass[3:40], data.damping[3:40]):
+        sine, cosine = (np.trapezoid(f(omega * t)[:, None, None] * kernel, t, axis=0) for f in (np.sin, np.cos))
+        error = np.maximum(np.abs(data.infinite - sine / omega - added), np.abs(cosine - damping) / omega)
+        worst = max(worst, *(np.diag(error) / np.diag(data.added_mass.max(axis=0)))[[0, 2, 4]])
+    return worst
+
+
+def difference(run: Run, reference: Run, name: str) -> tuple[float, float]:
+    """RMS difference over the RMS and over the standard deviation of the reference, whose steps are a whole part of the run's [%]."""
+    each = round((reference["time"].size - 1) / (run["time"].size - 1))
+    other = reference[name][::each]
+    rms = 100 * np.sqrt(np.mean((run[name] - other) ** 2))
+    return rms / np.sqrt(np.mean(other**2)), rms / other.std()
+
+
+class Report:
+    """Figures by matplotlib and rows of a Markdown table, in a folder."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        matplotlib.rcParams.update({"font.size": 8, "svg.hashsalt": "moorline", "lines.linewidth": 1.0, "axes.grid": True, "grid.alpha": 0.3})
+        self.folder, self.rows = folder, ["| case | figure |", "|---|---|"]
+
+    def say(self, case: str, figure: str) -> None:
+        """Prints and keeps a row."""
+        print(f"{case}: {figure}", flush=True)
+        self.rows.append(f"| {case} | {figure} |")
+        (self.folder / "table.md").write_text("\n".join(self.rows) + "\n")
+
+    def draw(self, name: str, panels: int, xlabel: str) -> tuple:
+        """Panels side by side, with the function that writes them."""
+        import matplotlib.pyplot as plt
+
+        figure, axes = plt.subplots(1, panels, figsize=(9, 2.6), layout="constrained")
+        for axis in axes:
+            axis.set_xlabel(xlabel)
+
+        def write() -> None:
+            axes[0].legend()
+            for kind in ("svg", "png"):
+                figure.savefig(self.folder / f"floating_{name}.{kind}", metadata={"Date": None} if kind == "svg" else None)
+            plt.close(figure)
+
+        return axes, write
+
+
+def decays(moorings: Moorings, report: Report) -> None:
+    """Free decay of the spar in surge, heave and pitch, with and without mooring."""
+    period, mode = surge_mode("spar", moorings)
+    run = in_fmpy(Case(duration=1000.0, start=tuple(2.0 * mode)), moorings)
+    found = period_of(run, "x")
+    report.say("period of the moored spar in surge", f"{found:.2f} s; eigenvalue {period:.2f} s; {100 * (found / period - 1):+.2f} %")
+    axes, write = report.draw("decay", 3, "time [s]")
+    for axis, (name, start, duration) in zip(axes, (("x", 5.0, 600.0), ("z", 2.0, 200.0), ("pitch", np.radians(5.0), 200.0))):
+        scale = 180 / np.pi if name == "pitch" else 1.0
+        case = Case(duration=duration, start=tuple(start * (np.array(AXES) == name)))
+        for label, run in (("moored", in_fmpy(case, moorings)), ("without mooring", unmoored(case, moorings))):
+            axis.plot(run["time"], scale * run[name], label=label)
+            if (name, label) != ("x", "without mooring"):
+                report.say(f"decay of the spar in {UNITS[name].split()[0]}, {label}", f"period {period_of(run, name):.2f} s")
+        axis.set_ylabel(UNITS[name])
+    write()
+
+
+def regular(moorings: Moorings, report: Report) -> None:
+    """Regular waves of 2 m height on the spar: amplitudes over the response in the frequency domain."""
+    axes, write = report.draw("regular", 3, "period of the wave [s]")
+    omegas, line = (0.3, 0.4, 0.5, 0.6, 0.8), np.linspace(0.28, 1.0, 150)
+    for moored, colour in ((True, "C0"), (False, "C1")):
+        label, simulate = ("moored", in_fmpy) if moored else ("without mooring", unmoored)
+        runs = [simulate(Case(duration=2000.0, waves=Waves(2.0, 2 * np.pi / omega)), moorings) for omega in omegas]
+        curve, worst = np.array([rao("spar", omega, moorings, moored) for omega in line]), 0.0
+        for axis, name in zip(axes, UNITS):
+            place, scale = AXES.index(name), 180 / np.pi if name == "pitch" else 1.0
+            found = np.array([amplitude(run, name, omega) for run, omega in zip(runs, omegas)])
+            exact = np.array([abs(rao("spar", omega, moorings, moored)[place]) for omega in omegas])
+            worst = max(worst, np.max(np.abs(found / exact - 1)))
+            axis.plot(2 * np.pi / line, scale * np.abs(curve[:, place]), colour, ls="-" if moored else "--", label=f"frequency domain, {label}")
+            axis.plot(2 * np.pi / np.array(omegas), scale * found, colour + ("o" if moored else "x"), label=f"in time, {label}")
+            axis.set_ylabel(UNITS[name].replace("]", "/m]"))
+        report.say(f"regular waves of 7.9 to 20.9 s on the spar, {label}", f"greatest difference from the RAO {100 * worst:.2f} %")
+    write()
+
+
+def seas(moorings: Moorings, report: Report) -> None:
+    """An hour of an irregular sea at h = 0.1 s, with three forces of the mooring."""
+    axes, write = report.draw("sea", 2, "time [s]")
+    for axis, (name, waves) in zip(axes, SEAS.items()):
+        runs = {kind: in_fmpy(Case(name, duration=3600.0, waves=waves, coupling=kind), moorings) for kind in (COMING, LAST, EXTRAPOLATED)}
+        for kind, run in runs.items():
+            power = np.sum([run[a] * run[b] for a, b in zip(("fx", "fz", "my"), ("vx", "vz", "wy"))], axis=0)
+            energy = np.max(np.abs(run["solver.energy_error"])) / np.sum(np.abs(power) * 0.1)
+            report.say(f"an hour of the {name}, {kind}: energy error of the lines over the energy exchanged", f"{energy:.1e}")
+            shown = (run["time"] > 3000) & (run["time"] < 3100)
+            axis.plot(run["time"][shown], run[LINES[0]][shown] / 1e3, ls={COMING: "-", LAST: "--", EXTRAPOLATED: ":"}[kind], label=f"{kind} force")
+            if kind != COMING:
+                rms, deviation = difference(run, runs[COMING], LINES[0])
+                report.say(f"an hour of the {name}, {kind} against coming: tension of line 1", f"{rms:.2f} % of its RMS, {deviation:.2f} % of its deviation")
+        axis.set_ylabel(f"tension of line 1, {name} [kN]")
+    write()
+
+
+def steps(moorings: Moorings, report: Report) -> None:
+    """Error by communication step and force of the mooring, against steps of 1/160 s with the last forces extrapolated."""
+    axes, write = report.draw("steps", 2, "communication step [s]")
+    for axis, (name, waves) in zip(axes, SEAS.items()):
+        case = Case(name, 0.00625, 200.0, EXTRAPOLATED, waves)
+        reference, sizes = in_fmpy(case, moorings), (0.0125, 0.025, 0.05, 0.1)
+        for kind in (LAST, EXTRAPOLATED, COMING):
+            runs = [in_fmpy(dataclasses.replace(case, step=step, coupling=kind), moorings) for step in sizes]
+            errors = [difference(run, reference, LINES[0])[1] for run in runs]
+            axis.loglog(sizes, errors, "o-", label=f"{kind} force")
+            report.say(f"{name}, {kind}: error of the tension at h = 0.05 and 0.1 s over its deviation", f"{errors[2]:.2f} %, {errors[3]:.2f} %")
+        axis.set_ylabel(f"error of the tension, {name} [%]")
+    write()
+
+
+def bodies(moorings: Moorings, report: Report) -> None:
+    """Checks of the tables and of the weight."""
+    for name in SEAS:
+        body = Body(name, 0.1, moorings.statics(name)[0])
+        displaced = DENSITY * GRAVITY * body.shape.volume
+        limit = body.data.excitation[0, 2].real + body.data.omega[0] ** 2 * (displaced / GRAVITY + body.data.added_mass[0, 2, 2])
+        report.say(f"{name}: point mass that balances the weight", f"{body.point_mass / 1e3:.1f} t")
+        report.say(f"{name}: heave excitation in long waves over the waterplane stiffness", f"{limit / body.stiffness[2, 2]:.4f}")
+        report.say(f"{name}: greatest departure from Ogilvie's relations", f"{100 * ogilvie(name):.2f} %")
+    case = Case("barge", duration=120.0, waves=SEAS["barge"])
+    one, other = in_fmpy(case, moorings), in_libcosim(case, moorings)
+    worst = max(np.max(np.abs(one[key][1:] - other[key])) / max(np.ptp(one[key]), 1e-300) for key in (*MOTION, *LINES))
+    report.say("FMPy against libcosim, barge, 120 s: greatest difference over the range", f"{worst:.0e}")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("floating_body_out"), help="folder of figures and table")
+    output = parser.parse_args().output
+    made, written = Moorings(output), Report(output)
+    for part in (bodies, decays, regular, seas, steps):
+        part(made, written)
