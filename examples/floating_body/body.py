@@ -111,7 +111,7 @@ class Hydrodynamics:
         return table[i] + (part * (table[i + 1] - table[i]).T).T
 
     def retardation(self, times: np.ndarray) -> np.ndarray:
-        """K(t) = (2/π) ∫ B(ω) cos ωt dω over the table, by the trapezoidal rule [N/m, N, N m]; times are short beside 2π/Δω = 126 s."""
+        """K(t) = (2/π) ∫ B(ω) cos ωt dω over the table, by the trapezoidal rule [N/m, N, N m]; times are short beside 2π/Δω = 251 s."""
         spacing = self.omega[1] - self.omega[0]  # the first row is at Δω, and B(0) = 0
         weight = np.where(self.omega < self.omega[-1], spacing, spacing / 2)
         return 2 / np.pi * np.tensordot(np.cos(np.outer(times, self.omega)) * weight, self.damping, axes=1)

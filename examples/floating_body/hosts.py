@@ -29,6 +29,7 @@ class Case:
     coupling: str = LAST  # or EXTRAPOLATED, COMING
     waves: Waves = Waves()
     start: tuple[float, ...] = (0.0,) * 6  # displacement at the start [m, rad]
+    integrator: str = "auto"  # of the lines
 
 
 def moorline(*arguments: object) -> str:
@@ -63,10 +64,12 @@ class Moorings:
 
     def fmu(self, case: Case) -> pathlib.Path:
         """The mooring's FMU, with energy balance; for the coming step with the keys of docs/coupling.md."""
-        name = f"{case.body}_{'impedance' if case.coupling == COMING else 'force'}_{case.step}"
+        name = f"{case.body}_{'impedance' if case.coupling == COMING else 'force'}_{case.step}_{case.integrator}"
         path = self.folder / f"{name}.fmu"
         if not path.exists():
-            changes = {"energy_balance = false": "energy_balance = true", "interval = 0.05": f"interval = {case.step}"}
+            changes = {"interval = 0.05": f"interval = {case.step}", 'integrator = "auto"': f'integrator = "{case.integrator}"'}
+            if case.integrator == "auto":
+                changes["energy_balance = false"] = "energy_balance = true"
             if case.coupling == COMING:
                 changes['input_reconstruction = "smooth"'] = 'input_reconstruction = "interpolate"'
                 changes['force = "total"'] = 'interface = "impedance"\nforce = "without_inertia"'
@@ -130,7 +133,7 @@ def in_fmpy(case: Case, moorings: Moorings) -> dict[str, np.ndarray]:
     loads = FORCE + (IMPEDANCE if case.coupling == COMING else ())
     motion_out, motion_in = body.references(MOTION), mooring.references(MOTION, "body.")
     load_in, load_out = body.references(loads), mooring.references(loads, "body.")
-    rest = mooring.references(LINES + ENERGY)
+    rest = mooring.references(LINES + (ENERGY if case.integrator == "auto" else ()))
     body.start(moorings.parameters(case))
     mooring.start({})
     mooring.slave.setReal(motion_in, body.slave.getReal(motion_out))

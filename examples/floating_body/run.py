@@ -64,7 +64,9 @@ def ogilvie(name: str) -> float:
     greatest A and ωA of the axis [-] (Ogilvie 1964)."""
     data, t = Hydrodynamics(name), np.arange(0.0, 40.025, 0.05)
     kernel, worst = data.retardation(t), 0.0
-    for omega, added, damping in zip(data.omega[3:40], data.added_mass[3:40], data.damping[3:40]):
+    for omega, added, damping in zip(data.omega, data.added_mass, data.damping):
+        if not 0.2 <= omega <= 2.0:
+            continue
         sine, cosine = (np.trapezoid(f(omega * t)[:, None, None] * kernel, t, axis=0) for f in (np.sin, np.cos))
         error = np.maximum(np.abs(data.infinite - sine / omega - added), np.abs(cosine - damping) / omega)
         worst = max(worst, *(np.diag(error) / np.diag(data.added_mass.max(axis=0)))[[0, 2, 4]])
@@ -104,7 +106,7 @@ class Report:
             axis.set_xlabel(xlabel)
 
         def write() -> None:
-            axes[0].legend()
+            axes[0].legend(loc="lower right")
             for kind in ("svg", "png"):
                 figure.savefig(self.folder / f"floating_{name}.{kind}", metadata={"Date": None} if kind == "svg" else None)
             plt.close(figure)
@@ -115,9 +117,9 @@ class Report:
 def decays(moorings: Moorings, report: Report) -> None:
     """Free decay of the spar in surge, heave and pitch, with and without mooring."""
     period, mode = surge_mode("spar", moorings)
-    run = in_fmpy(Case(duration=1000.0, start=tuple(2.0 * mode)), moorings)
-    found = period_of(run, "x")
-    report.say("period of the moored spar in surge", f"{found:.2f} s; eigenvalue {period:.2f} s; {100 * (found / period - 1):+.2f} %")
+    for integrator in ("auto", "quasi_static"):
+        found = period_of(in_fmpy(Case(duration=1000.0, start=tuple(2.0 * mode), integrator=integrator), moorings), "x")
+        report.say(f"surge of the moored spar, lines `{integrator}`", f"{found:.2f} s; eigenvalue {period:.2f} s; {100 * (found / period - 1):+.2f} %")
     axes, write = report.draw("decay", 3, "time [s]")
     for axis, (name, start, duration) in zip(axes, (("x", 5.0, 600.0), ("z", 2.0, 200.0), ("pitch", np.radians(5.0), 200.0))):
         scale = 180 / np.pi if name == "pitch" else 1.0
@@ -179,6 +181,8 @@ def steps(moorings: Moorings, report: Report) -> None:
             errors = [difference(run, reference, LINES[0])[1] for run in runs]
             axis.loglog(sizes, errors, "o-", label=f"{kind} force")
             report.say(f"{name}, {kind}: error of the tension at h = 0.05 and 0.1 s over its deviation", f"{errors[2]:.2f} %, {errors[3]:.2f} %")
+        axis.set_xticks(sizes, map(str, sizes))
+        axis.minorticks_off()
         axis.set_ylabel(f"error of the tension, {name} [%]")
     write()
 
