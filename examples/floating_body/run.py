@@ -5,7 +5,7 @@ import dataclasses
 import pathlib
 
 import numpy as np
-from body import AXES, COMING, EXTRAPOLATED, GRAVITY, DENSITY, LAST, MOTION, Body, Hydrodynamics, Waves
+from body import AXES, COMING, DENSITY, EXTRAPOLATED, LAST, MOTION, Body, Hydrodynamics, Waves
 from hosts import LINES, Case, Moorings, in_fmpy, in_libcosim
 
 Run = dict[str, np.ndarray]
@@ -79,6 +79,19 @@ def difference(run: Run, reference: Run, name: str) -> tuple[float, float]:
     other = reference[name][::each]
     rms = 100 * np.sqrt(np.mean((run[name] - other) ** 2))
     return rms / np.sqrt(np.mean(other**2)), rms / other.std()
+
+
+def long_waves(body: Body) -> float:
+    """Heave excitation in long waves over the waterplane stiffness [-]: of the longest wave in the table, with the inertia of the water
+    that the body displaces and of its added mass."""
+    inertia = DENSITY * body.shape.volume + body.data.added_mass[0, 2, 2]
+    return (body.data.excitation[0, 2].real + body.data.omega[0] ** 2 * inertia) / body.stiffness[2, 2]
+
+
+def exchanged(run: Run) -> float:
+    """Energy that body and lines have exchanged in surge, heave and pitch, ∫|power| dt [J]."""
+    power = np.sum([run[force] * run[speed] for force, speed in zip(("fx", "fz", "my"), ("vx", "vz", "wy"))], axis=0)
+    return np.trapezoid(np.abs(power), run["time"])
 
 
 class Report:
@@ -158,8 +171,7 @@ def seas(moorings: Moorings, report: Report) -> None:
     for axis, (name, waves) in zip(axes, SEAS.items()):
         runs = {kind: in_fmpy(Case(name, duration=3600.0, waves=waves, coupling=kind), moorings) for kind in (COMING, LAST, EXTRAPOLATED)}
         for kind, run in runs.items():
-            power = np.sum([run[a] * run[b] for a, b in zip(("fx", "fz", "my"), ("vx", "vz", "wy"))], axis=0)
-            energy = np.max(np.abs(run["solver.energy_error"])) / np.sum(np.abs(power) * 0.1)
+            energy = np.max(np.abs(run["solver.energy_error"])) / exchanged(run)
             report.say(f"an hour of the {name}, {kind}: energy error of the lines over the energy exchanged", f"{energy:.1e}")
             shown = (run["time"] > 3000) & (run["time"] < 3100)
             axis.plot(run["time"][shown], run[LINES[0]][shown] / 1e3, ls={COMING: "-", LAST: "--", EXTRAPOLATED: ":"}[kind], label=f"{kind} force")
@@ -191,10 +203,8 @@ def bodies(moorings: Moorings, report: Report) -> None:
     """Checks of the tables and of the weight."""
     for name in SEAS:
         body = Body(name, 0.1, moorings.statics(name)[0])
-        displaced = DENSITY * GRAVITY * body.shape.volume
-        limit = body.data.excitation[0, 2].real + body.data.omega[0] ** 2 * (displaced / GRAVITY + body.data.added_mass[0, 2, 2])
         report.say(f"{name}: point mass that balances the weight", f"{body.point_mass / 1e3:.1f} t")
-        report.say(f"{name}: heave excitation in long waves over the waterplane stiffness", f"{limit / body.stiffness[2, 2]:.4f}")
+        report.say(f"{name}: heave excitation in long waves over the waterplane stiffness", f"{long_waves(body):.4f}")
         report.say(f"{name}: greatest departure from Ogilvie's relations", f"{100 * ogilvie(name):.2f} %")
     case = Case("barge", duration=120.0, waves=SEAS["barge"])
     one, other = in_fmpy(case, moorings), in_libcosim(case, moorings)
