@@ -5,10 +5,10 @@ Water is infinitely deep. Both bodies look alike from x and from y, so A22 = A11
 """
 
 import pathlib
-from collections.abc import Callable
 
 import capytaine as cpt
 import numpy as np
+from capytaine.bem.airy_waves import froude_krylov_force
 
 DENSITY, GRAVITY = 1025.0, 9.80665  # [kg/m³], [m/s²]
 HERE = pathlib.Path(__file__).resolve().parent
@@ -53,12 +53,12 @@ def write(name: str, mesh: cpt.Mesh, frequencies: np.ndarray) -> None:
         radiation = {dof: solver.solve(cpt.RadiationProblem(omega=omega, radiating_dof=dof, **common)) for dof in DOFS}
         row = [omega, *(radiation[a].added_masses[b] for a, b in PAIRS)]
         row += [0.0 if omega == np.inf else radiation[a].radiation_dampings[b] for a, b in PAIRS]
-        forces: Callable[[str], complex] = lambda dof: 0.0
+        wave = np.zeros(3, dtype=complex)
         if omega < np.inf:
-            diffraction = cpt.DiffractionProblem(omega=omega, wave_direction=0.0, **common)
-            total, undisturbed = solver.solve(diffraction).forces, cpt.bem.airy_waves.froude_krylov_force(diffraction)
-            forces = lambda dof: total[dof] + undisturbed[dof]  # noqa: E731
-        row += [part for dof in DOFS[:3] for part in (np.real(forces(dof)), np.imag(forces(dof)))]
+            problem = cpt.DiffractionProblem(omega=omega, wave_direction=0.0, **common)
+            diffracted, undisturbed = solver.solve(problem).forces, froude_krylov_force(problem)
+            wave = np.array([diffracted[dof] + undisturbed[dof] for dof in DOFS[:3]])
+        row += [part for force in wave for part in (force.real, force.imag)]
         rows.append(row)
         print(name, f"{omega:.3f} rad/s", flush=True)
     columns = ["omega"] + [kind + pair for kind in "AB" for pair in ("11", "33", "55", "15", "66")]

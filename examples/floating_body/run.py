@@ -10,7 +10,7 @@ from hosts import LINES, Case, Moorings, in_fmpy, in_libcosim
 
 Run = dict[str, np.ndarray]
 SEAS = {"spar": Waves(6.0, 10.0, 1), "barge": Waves(2.0, 8.0, 1)}
-UNITS = {"x": "surge [m]", "z": "heave [m]", "pitch": "pitch [°]"}
+SHOWN = {"x": ("surge", "m", 1.0), "z": ("heave", "m", 1.0), "pitch": ("pitch", "°", 180 / np.pi)}  # name, unit, scale of figures
 
 
 def unmoored(case: Case, moorings: Moorings) -> Run:
@@ -134,34 +134,32 @@ def decays(moorings: Moorings, report: Report) -> None:
         found = period_of(in_fmpy(Case(duration=1000.0, start=tuple(2.0 * mode), integrator=integrator), moorings), "x")
         report.say(f"surge of the moored spar, lines `{integrator}`", f"{found:.2f} s; eigenvalue {period:.2f} s; {100 * (found / period - 1):+.2f} %")
     axes, write = report.draw("decay", 3, "time [s]")
-    for axis, (name, start, duration) in zip(axes, (("x", 5.0, 600.0), ("z", 2.0, 200.0), ("pitch", np.radians(5.0), 200.0))):
-        scale = 180 / np.pi if name == "pitch" else 1.0
-        case = Case(duration=duration, start=tuple(start * (np.array(AXES) == name)))
-        for label, run in (("moored", in_fmpy(case, moorings)), ("without mooring", unmoored(case, moorings))):
-            axis.plot(run["time"], scale * run[name], label=label)
-            if (name, label) != ("x", "without mooring"):
-                report.say(f"decay of the spar in {UNITS[name].split()[0]}, {label}", f"period {period_of(run, name):.2f} s")
-        axis.set_ylabel(UNITS[name])
+    starts = {"x": (5.0, 600.0), "z": (2.0, 200.0), "pitch": (np.radians(5.0), 200.0)}  # displacement [m, rad], duration [s]
+    for axis, (key, (name, unit, scale)) in zip(axes, SHOWN.items()):
+        case = Case(duration=starts[key][1], start=tuple(starts[key][0] * (np.array(AXES) == key)))
+        for label, simulate in (("moored", in_fmpy), ("without mooring", unmoored)):
+            run = simulate(case, moorings)
+            axis.plot(run["time"], scale * run[key], label=label)
+            if (key, label) != ("x", "without mooring"):  # nothing brings that one back
+                report.say(f"decay of the spar in {name}, {label}", f"period {period_of(run, key):.2f} s")
+        axis.set_ylabel(f"{name} [{unit}]")
     write()
 
 
 def regular(moorings: Moorings, report: Report) -> None:
-    """Regular waves of 2 m height on the spar: amplitudes over the response in the frequency domain."""
+    """Regular waves of 2 m height on the spar: amplitudes beside the response in the frequency domain."""
     axes, write = report.draw("regular", 3, "period of the wave [s]")
-    omegas, line = (0.3, 0.4, 0.5, 0.6, 0.8), np.linspace(0.28, 1.0, 150)
-    for moored, colour in ((True, "C0"), (False, "C1")):
-        label, simulate = ("moored", in_fmpy) if moored else ("without mooring", unmoored)
+    omegas, line = np.array([0.3, 0.4, 0.5, 0.6, 0.8]), np.linspace(0.28, 1.0, 150)
+    for moored, label, simulate, style in ((True, "moored", in_fmpy, "C0-o"), (False, "without mooring", unmoored, "C1--x")):
         runs = [simulate(Case(duration=2000.0, waves=Waves(2.0, 2 * np.pi / omega)), moorings) for omega in omegas]
-        curve, worst = np.array([rao("spar", omega, moorings, moored) for omega in line]), 0.0
-        for axis, name in zip(axes, UNITS):
-            place, scale = AXES.index(name), 180 / np.pi if name == "pitch" else 1.0
-            found = np.array([amplitude(run, name, omega) for run, omega in zip(runs, omegas)])
-            exact = np.array([abs(rao("spar", omega, moorings, moored)[place]) for omega in omegas])
-            worst = max(worst, np.max(np.abs(found / exact - 1)))
-            axis.plot(2 * np.pi / line, scale * np.abs(curve[:, place]), colour, ls="-" if moored else "--", label=f"frequency domain, {label}")
-            axis.plot(2 * np.pi / np.array(omegas), scale * found, colour + ("o" if moored else "x"), label=f"in time, {label}")
-            axis.set_ylabel(UNITS[name].replace("]", "/m]"))
-        report.say(f"regular waves of 7.9 to 20.9 s on the spar, {label}", f"greatest difference from the RAO {100 * worst:.2f} %")
+        curve, exact = (np.abs([rao("spar", omega, moorings, moored) for omega in some]) for some in (line, omegas))
+        for axis, (key, (name, unit, scale)) in zip(axes, SHOWN.items()):
+            found = np.array([amplitude(run, key, omega) for run, omega in zip(runs, omegas)])
+            axis.plot(2 * np.pi / line, scale * curve[:, AXES.index(key)], style[:-1], label=f"frequency domain, {label}")
+            axis.plot(2 * np.pi / omegas, scale * found, style[:2] + style[-1], label=f"in time, {label}")
+            axis.set_ylabel(f"{name} [{unit}/m]")
+            worst = 100 * np.max(np.abs(found / exact[:, AXES.index(key)] - 1))
+            report.say(f"{name} of the spar in waves of 7.9 to 20.9 s, {label}", f"within {worst:.2f} % of the RAO")
     write()
 
 
