@@ -212,7 +212,7 @@ def bodies(moorings: Moorings, report: Report) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("floating_body_out"), help="folder of figures and table")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/floating_body"), help="folder of figures and table")
     output = parser.parse_args().output
     made, written = Moorings(output), Report(output)
     for part in (bodies, decays, regular, seas, steps):
