@@ -114,12 +114,12 @@ class Report:
         """Panels side by side, with the function that writes them."""
         import matplotlib.pyplot as plt
 
-        figure, axes = plt.subplots(1, panels, figsize=(9, 2.6), layout="constrained")
+        figure, axes = plt.subplots(1, panels, figsize=(9, 2.8), layout="constrained")
         for axis in axes:
             axis.set_xlabel(xlabel)
 
         def write() -> None:
-            axes[0].legend(loc="lower right")
+            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
             for kind in ("svg", "png"):
                 figure.savefig(self.folder / f"floating_{name}.{kind}", metadata={"Date": None} if kind == "svg" else None)
             plt.close(figure)
