@@ -1,4 +1,4 @@
-"""The body of `body.py` as an FMU (FMI 2.0), made by pythonfmu: `hosts.package_body`. Its names are those of moorline's FMU, without the vessel's."""
+"""The body of `body.py` as an FMU (FMI 2.0), made by pythonfmu: `Moorings.body_fmu` in `hosts.py`. Its names are those of moorline's FMU, without the vessel's."""
 
 import numpy as np
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Integer, Real, String
