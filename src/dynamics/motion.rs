@@ -295,11 +295,19 @@ impl AxesPath {
         (!self.rated.any_positive()).then_some(self.positions[0])
     }
 
-    /// Becomes straight segments from a time [s] over a length [s], from positions [m, rad] at velocities [m/s, rad/s].
-    pub fn glide(&mut self, [start, length]: [f64; 2], from: [Lanes; 2]) {
-        let [position, velocity] = from;
-        self.end = [position + Lanes::splat(length) * velocity, velocity];
+    /// Becomes parabolas from a time [s] over a length [s], from positions [m, rad] at velocities [m/s, rad/s] with accelerations [m/s², rad/s²].
+    pub fn glide(&mut self, [start, length]: [f64; 2], from: [Lanes; 2], acceleration: Lanes) {
+        let ([position, velocity], h) = (from, Lanes::splat(length));
+        let gained = h * acceleration;
+        let mean = velocity + Lanes::splat(0.5) * gained;
+        self.end = [position + h * mean, velocity + gained];
         self.curve = Hermites::bridge([start, length, 1.0 / length], from, self.end);
+    }
+
+    /// Mean accelerations over the present segments [m/s², rad/s²], which are `length` [s] long.
+    pub fn mean_acceleration(&self, length: f64) -> Lanes {
+        let [[_, slope, _], _] = self.curve.ends();
+        Lanes::splat(1.0 / length) * (self.end[1] - slope)
     }
 
     /// Moves the end of the present segments, which last from a time [s] over a length [s], by distances [m, rad] and velocities [m/s, rad/s].

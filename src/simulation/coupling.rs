@@ -14,8 +14,9 @@
 //!
 //! F(t+h) = F₀ − C v − K x − M a,   K = −∂F'/∂x,   C = −∂F'/∂v,   F' = F + M a,
 //!
-//! F₀ being F' + C v + K x of a trial step along the present velocity. What is left out is of second order in the distance between this
-//! prediction and the motion, h²a/2: an error of O(h⁴) in a step. A host that puts M, C and K to its own side, (m + M) a + C v + K x = f + F₀
+//! F₀ being F' + C v + K x of a trial step from the present velocity at the mean acceleration of the last step. What is left out is of second
+//! order in the distance between this prediction and the motion, O(h³), but for the share of the load of the end that depends on its acceleration
+//! ([`reaction`]), O(h). A host that puts M, C and K to its own side, (m + M) a + C v + K x = f + F₀
 //! with the Newmark or generalised-α relations between a, v and x, solves body and line together, as a Rosenbrock method solves a system; it is stable for any
 //! mass, with no iteration and no repeated step, if its own integration is. The position that it finds is then given for the true step. Interface conditions
 //! of this kind are Robin conditions (Badia, Nobile & Vergara (2008), J. Comput. Phys. 227, 7027-7051) and, where K is zero and C is Z, those of

@@ -4,6 +4,7 @@ use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::{EndMotion, NO_RATES, joined};
+use crate::dynamics::motion::AxesPath;
 use crate::math::attitude::{Attitude, Order, angle_rates};
 use crate::math::lanes::Lanes;
 use crate::model::{Body, Role};
@@ -65,7 +66,8 @@ impl Trial {
         }))
     }
 
-    /// The coming step, as long as the last one, along the present velocities of all bodies. `None` where a vessel has no unique rates.
+    /// The coming step, as long as the last one, with all bodies going on from their present velocities at their mean accelerations over
+    /// the last step. `None` where a vessel has no unique rates.
     pub(super) fn of_coming_step(simulation: &Simulation) -> Option<Trial> {
         let (model, snapshot) = (&*simulation.model, &simulation.snapshot);
         let length = match snapshot.last_step {
@@ -78,9 +80,16 @@ impl Trial {
         let mut paths = snapshot.paths.clone();
         let coupled = model.points.iter().zip(&snapshot.state.points);
         let coupled = coupled.filter(|(point, _)| is_coupled(point));
+        let given = snapshot.last_step > 0.0 && !snapshot.follows_scene;
+        let go_on = |path: &mut AxesPath, from: [Vector3<f64>; 2]| {
+            let acceleration = match given {
+                true => path.mean_acceleration(length),
+                false => Lanes::splat(0.0),
+            };
+            path.glide([time, length], from.map(lanes), acceleration);
+        };
         for (path, (_, at)) in paths.points.iter_mut().zip(coupled) {
-            path.0
-                .glide([time, length], [at.position, at.velocity].map(lanes));
+            go_on(&mut path.0, [at.position, at.velocity]);
         }
         let at = MotionSource::new(model, &snapshot.paths, snapshot.follows_scene);
         for (vessel, path) in paths.vessels.iter_mut().enumerate() {
@@ -90,8 +99,8 @@ impl Trial {
             let rates = angle_rates(data.attitude + angles, frame.attitude.spin)?;
             let place = Vector3::new(pose[0], pose[1], pose[2]);
             let [shift, turn] = &mut path.0;
-            shift.glide([time, length], [place, frame.origin.velocity].map(lanes));
-            turn.glide([time, length], [angles, rates].map(lanes));
+            go_on(shift, [place, frame.origin.velocity]);
+            go_on(turn, [angles, rates]);
         }
         let mut start = snapshot.clone();
         (start.follows_scene, start.begun) = (false, None);
