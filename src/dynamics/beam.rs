@@ -43,6 +43,8 @@ pub use measures::{BeamView, Momentum};
 
 /// Change of position over the beam's length, and of θ, that ends the iteration [-].
 const TOLERANCE: f64 = 1e-12;
+/// Sum of all further changes by the same tangent that are left out [-].
+const REMAINDER: f64 = 0.01 * TOLERANCE;
 /// Change [-] below which a change that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-7;
 /// Greatest change after which the next correction uses the same tangent [-].
@@ -163,7 +165,7 @@ impl BeamWork {
                 let reason = StuckReason::Turned;
                 return Err(Stuck { node, reason });
             }
-            if change <= TOLERANCE || (exact && change <= ROUNDING && change >= 0.5 * last) {
+            if change <= TOLERANCE || is_last(exact, [last, change]) {
                 if let Some(node) = folded(&self.now) {
                     let reason = StuckReason::Folded;
                     return Err(Stuck { node, reason });
@@ -195,8 +197,9 @@ impl BeamWork {
                 frame,
             };
             let turning = frame * state.spins[i]; // angular velocity, global axes [rad/s]
-            self.theta[i] = dt * turning;
-            self.now[i].position = shape.position[i] + dt * shape.velocity[i];
+            let (velocity, turn_rate) = split(&state.course.predict(i, dt));
+            self.theta[i] = dt * (frame * turn_rate);
+            self.now[i].position = shape.position[i] + dt * velocity;
             self.tangent[i] = cayley(0.5 * dt * turning) * frame.column(2);
             let height = shape.position[i].z + 0.5 * dt * shape.velocity[i].z;
             self.mass[i] = self.effective_mass(case, i, self.tangent[i], height);
@@ -525,7 +528,20 @@ impl BeamWork {
                 2.0 * mean - state.spins[i]
             };
             state.frames[i] = self.now[i].frame;
+            state.course.follow(i, join(moved / dt, mean), dt);
         }
+        if let Some(state) = &mut shape.beam {
+            state.course.end_step(dt);
+        }
+    }
+}
+
+/// Whether no correction is needed after two with these changes [-], the second of them with the `exact` tangent or that of the first: changes
+/// by one tangent go on to fall as the last one did, and those that do not fall are rounding.
+fn is_last(exact: bool, [before, change]: [f64; 2]) -> bool {
+    match exact {
+        true => change <= ROUNDING && change >= 0.5 * before,
+        false => change < before && change * change <= REMAINDER * (before - change),
     }
 }
 

@@ -41,6 +41,70 @@ pub struct BeamState {
     pub rest: Vec<Sextuple>,
     /// Frames of ends A and B in their points' reference attitude where they are clamped [-].
     pub carried: [Matrix3<f64>; 2],
+    /// Course of the nodes over the last steps.
+    pub course: Course,
+}
+
+/// Mean rates of the nodes of a beam over the last steps, from which the next one is predicted. The unknowns of a step are the rates over it, and a
+/// motion that alternates from step to step, as those do that a step does not resolve, is not in them.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub struct Course {
+    /// Length of the last step [s].
+    length: f64,
+    /// Mean velocity [m/s] and angular velocity along the directors [rad/s] over the last step, and their first and second backward differences.
+    rates: Vec<[Sextuple; 3]>,
+}
+
+impl Course {
+    /// Course of `nodes` nodes at rest.
+    fn at_rest(nodes: usize) -> Course {
+        Course {
+            length: 0.0,
+            rates: vec![[Sextuple::zeros(); 3]; nodes],
+        }
+    }
+
+    /// Mean rates of node `i` over a next step of a length [s], on the parabola through the last three.
+    pub fn predict(&self, i: usize, length: f64) -> Sextuple {
+        let ([rate, first, second], apart) = self.scaled(i, length);
+        rate + apart * (first + 0.5 * (apart + 1.0) * second)
+    }
+
+    /// Takes the mean rates of node `i` over a step of a length [s].
+    pub fn follow(&mut self, i: usize, rate: Sextuple, length: f64) {
+        let ([last, first, _], apart) = self.scaled(i, length);
+        let change = (rate - last) / apart;
+        self.rates[i] = [rate, change, change - first];
+    }
+
+    /// Ends a step of a length [s] that all nodes have followed.
+    pub fn end_step(&mut self, length: f64) {
+        self.length = length;
+    }
+
+    /// Rates and differences of node `i` for steps of a length [s], of which the last one and the next are apart by the second value [-].
+    fn scaled(&self, i: usize, length: f64) -> ([Sextuple; 3], f64) {
+        if self.length == 0.0 {
+            return (self.rates[i], 1.0);
+        }
+        let ([rate, first, second], ratio) = (self.rates[i], length / self.length);
+        let scaled = [rate, ratio * first, ratio * ratio * second];
+        (scaled, 0.5 + 0.5 / ratio)
+    }
+}
+
+impl Clone for Course {
+    fn clone(&self) -> Self {
+        Course {
+            length: self.length,
+            rates: self.rates.clone(),
+        }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.length = source.length;
+        self.rates.clone_from(&source.rates);
+    }
 }
 
 impl BeamState {
@@ -75,6 +139,7 @@ impl BeamState {
             rest: beam.elements.iter().enumerate().map(rest).collect(),
             carried: [0, 1].map(|end| attitude[end].transpose() * frames[end * last]),
             spins: vec![Vector3::zeros(); position.len()],
+            course: Course::at_rest(position.len()),
             frames,
         }
     }
@@ -140,6 +205,7 @@ impl Clone for BeamState {
             spins: self.spins.clone(),
             rest: self.rest.clone(),
             carried: self.carried,
+            course: self.course.clone(),
         }
     }
 
@@ -148,6 +214,7 @@ impl Clone for BeamState {
         self.spins.clone_from(&source.spins);
         self.rest.clone_from(&source.rest);
         self.carried = source.carried;
+        self.course.clone_from(&source.course);
     }
 }
 

@@ -32,7 +32,7 @@ use crate::physics::stretch_step::Spring;
 use crate::physics::viscoelastic::Viscoelastic;
 use crate::scene::{ForceOutput, InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
-pub use beam::{Beam, BeamElement, BeamState};
+pub use beam::{Beam, BeamElement, BeamState, Course};
 pub use bending::{Bending, joint, joint_of_segments};
 pub use bottom::Bottom;
 pub use build::line_shares;
