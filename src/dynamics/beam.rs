@@ -1,7 +1,7 @@
 //! Energy- and momentum-conserving steps of a geometrically exact beam.
 //!
 //! From t to t + Δt a node goes from (φ, v, Λ, W) to (φ₁, v₁, Λ₁, W₁): position, velocity, frame, angular velocity along its directors.
-//! With the unknowns φ₁ and the Cayley vector θ of its turn, Λ₁ = cay(θ) Λ,
+//! With the unknowns φ₁ and the Cayley vector θ of its turn, Λ₁ = cay(θ) Λ, which is changed by spins of Λ₁,
 //!
 //!   M̄ (v₁ − v)/Δt = f̄,            ½(v + v₁) Δt = φ₁ − φ,
 //!   (Λ₁J W₁ − ΛJ W)/Δt = m̄,       ½(W + W₁) Δt = Λᵀθ = Λ₁ᵀθ,
@@ -15,6 +15,9 @@
 //! and drag take the tangent in the middle of the step from the angular velocity before it: second order, and no part of the slopes.
 //! J is the lumped rotary inertia; held unknowns follow their points.
 //!
+//! The iteration starts from mean rates extrapolated from the last three steps ([`crate::model::Course`]) and uses a tangent again while changes fall
+//! quickly. Where that does not converge, it starts from the velocities before the step, with exact tangents.
+//!
 //! Source: Simo, Tarnow & Doblaré (1995), Int. J. Numer. Methods Eng. 38, 1431-1473 (momenta and Cayley update); Romero & Armero (2002), ibid.
 //! 54, 1683-1716, and Betsch & Steinmann (2003), Multibody Syst. Dyn. 8, 367-391 (directors, discrete gradient). Valid for turns below half a
 //! circle in a step.
@@ -22,24 +25,30 @@
 mod body;
 mod drive;
 mod measures;
+mod nodes;
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::energy_balance::Flow;
-use crate::elements::beam::{BeamEnd, Span, add_elements, add_lift, add_rise, folded};
+use crate::elements::beam::{BeamEnd, FourElements, add_elements, add_lift, add_rise, folded};
+use crate::math::lanes::LANES;
 use crate::math::pivoted_chain::PivotedChain;
-use crate::math::rotation::{cayley, cayley_vector, skew, spin_of_cayley};
+use crate::math::rotation::{cayley, cayley_vector};
+use crate::math::unit;
 use crate::model::{Beam, LineState, Nodes};
 use crate::physics::contact_step::{ContactStep, contact_step};
 use crate::physics::fading_damper::damper_reach;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::{PARTS, Part};
-use crate::physics::section::{Mixture, Section, Sextuple, StrainGradient, corrected, join, split, strain};
+use crate::physics::section::{
+    Mixture, Section, Sextuple, Station, StrainGradient, corrected, join, split, strain,
+};
 use crate::physics::slender::Slender;
 
 pub use body::Body;
 pub use drive::{Driven, attitude, drive, held};
 pub use measures::{BeamView, Momentum};
+use nodes::FourNodes;
 
 /// Change of position over the beam's length, and of θ, that ends the iteration [-].
 const TOLERANCE: f64 = 1e-12;
@@ -48,9 +57,9 @@ const REMAINDER: f64 = 0.01 * TOLERANCE;
 /// Change [-] below which a change that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-7;
 /// Greatest change after which the next correction uses the same tangent [-].
-const REUSED_MAX: f64 = 0.05;
+const REUSED_MAX: f64 = 0.1;
 /// Ratio of successive changes above which the tangent is evaluated again [-].
-const FALL: f64 = 0.05;
+const FALL: f64 = 0.1;
 /// Iterations of a step [-].
 const SOLVES_MAX: usize = 30;
 /// Largest change of θ in an iteration [-].
@@ -112,16 +121,24 @@ impl StuckReason {
     }
 }
 
+/// Guess from which the sections after a step are found: the second where the first does not lead to them.
+#[derive(Debug, Clone, Copy)]
+enum Guess {
+    /// The course of the last steps continues.
+    Course,
+    /// The velocities before the step continue; every tangent is exact.
+    Velocity,
+}
+
 /// Scratch of a beam. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]
 pub struct BeamWork {
     chain: PivotedChain,
     before: Vec<Section>,
     now: Vec<Section>,
-    mean: Vec<Section>,
     theta: Vec<Vector3<f64>>,
-    spin: Vec<Matrix3<f64>>,
-    strain_before: Vec<Sextuple>,
+    elements: Vec<FourElements>,
+    nodes: Vec<FourNodes>,
     mass: Vec<Matrix3<f64>>,
     tangent: Vec<Vector3<f64>>,
 }
@@ -137,10 +154,9 @@ impl BeamWork {
             chain: PivotedChain::new(nodes),
             before: vec![section; nodes],
             now: vec![section; nodes],
-            mean: vec![section; nodes],
             theta: vec![Vector3::zeros(); nodes],
-            spin: vec![Matrix3::identity(); nodes],
-            strain_before: vec![Sextuple::zeros(); nodes.saturating_sub(1)],
+            elements: Vec::with_capacity(nodes.div_ceil(LANES)),
+            nodes: Vec::with_capacity(nodes.div_ceil(LANES)),
             mass: vec![Matrix3::zeros(); nodes],
             tangent: vec![Vector3::zeros(); nodes],
         }
@@ -151,43 +167,55 @@ impl BeamWork {
     /// # Errors
     /// The iteration did not converge; the shape is unchanged.
     pub fn step(&mut self, case: &BeamStep, shape: &mut LineState) -> Result<(usize, Flow), Stuck> {
-        self.predict(case, shape);
+        let solves = self
+            .converge(case, shape, Guess::Course)
+            .or_else(|_| self.converge(case, shape, Guess::Velocity))?;
+        let flow = match case.energy_balance {
+            true => self.flow(case, shape),
+            false => Flow::default(),
+        };
+        self.store(case, shape);
+        Ok((solves, flow))
+    }
+
+    /// Finds the sections after the step from a guess; returns the tangents that were factorised.
+    fn converge(&mut self, case: &BeamStep, shape: &LineState, guess: Guess) -> Result<usize, Stuck> {
+        self.predict(case, shape, guess);
         let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
         let (mut last, mut solves, mut exact) = (f64::INFINITY, 0, true);
         for _ in 0..SOLVES_MAX {
             solves += usize::from(exact);
-            if !self.solve(case, shape, exact) {
+            if !self.solve(case, exact) {
                 break;
             }
-            let (node, change) = self.correct(length);
-            let turned = |theta: &Vector3<f64>| theta.norm() >= THETA_MAX;
-            if self.theta.iter().any(turned) {
-                let reason = StuckReason::Turned;
-                return Err(Stuck { node, reason });
+            let (change, turn) = self.correct(length);
+            if turn >= THETA_MAX {
+                return Err(Stuck {
+                    node: self.most_changed(length),
+                    reason: StuckReason::Turned,
+                });
             }
             if change <= TOLERANCE || is_last(exact, [last, change]) {
-                if let Some(node) = folded(&self.now) {
-                    let reason = StuckReason::Folded;
-                    return Err(Stuck { node, reason });
-                }
-                let flow = if case.energy_balance {
-                    self.flow(case, shape)
-                } else {
-                    Flow::default()
+                return match folded(&self.now) {
+                    Some(node) => Err(Stuck {
+                        node,
+                        reason: StuckReason::Folded,
+                    }),
+                    None => Ok(solves),
                 };
-                self.store(case, shape);
-                return Ok((solves, flow));
             }
-            exact = change > REUSED_MAX || (!exact && change > FALL * last);
+            let falls = exact || change <= FALL * last;
+            exact = change > REUSED_MAX || !falls || matches!(guess, Guess::Velocity);
             last = change;
         }
-        let (node, _) = self.largest_change(length);
-        let reason = StuckReason::Diverged;
-        Err(Stuck { node, reason })
+        Err(Stuck {
+            node: self.most_changed(length),
+            reason: StuckReason::Diverged,
+        })
     }
 
     /// Copies the state before the step and guesses the one after it.
-    fn predict(&mut self, case: &BeamStep, shape: &LineState) {
+    fn predict(&mut self, case: &BeamStep, shape: &LineState, guess: Guess) {
         let state = beam_state(shape);
         let dt = case.length;
         for i in 0..self.before.len() {
@@ -197,7 +225,10 @@ impl BeamWork {
                 frame,
             };
             let turning = frame * state.spins[i]; // angular velocity, global axes [rad/s]
-            let (velocity, turn_rate) = split(&state.course.predict(i, dt));
+            let (velocity, turn_rate) = match guess {
+                Guess::Course => split(&state.course.predict(i, dt)),
+                Guess::Velocity => (shape.velocity[i], state.spins[i]),
+            };
             self.theta[i] = dt * (frame * turn_rate);
             self.now[i].position = shape.position[i] + dt * velocity;
             self.tangent[i] = cayley(0.5 * dt * turning) * frame.column(2);
@@ -215,11 +246,13 @@ impl BeamWork {
                 self.theta[node] = cayley_vector(&turn);
             }
         }
-        for (i, element) in case.beam.elements.iter().enumerate() {
-            let (a, b) = (&self.before[i], &self.before[i + 1]);
-            self.strain_before[i] = strain(a, b, element.length);
-        }
-        self.turn();
+        FourElements::gather(&mut self.elements, &case.beam.elements, &state.rest, &self.before);
+        FourNodes::gather(self, case, shape);
+        self.chain.clear_right();
+        unit::of_four().dispatch(nodes::Move {
+            work: self,
+            part: 0.0,
+        });
     }
 
     /// Mass of a node and of the body there with their added mass [kg], for a tangent and a height [m].
@@ -240,50 +273,28 @@ impl BeamWork {
         }
     }
 
-    /// Frames and means that follow from positions and θ.
-    fn turn(&mut self) {
-        for i in 0..self.now.len() {
-            self.now[i].frame = cayley(self.theta[i]) * self.before[i].frame;
-            self.mean[i] = self.before[i].mean(&self.now[i]);
-            self.spin[i] = spin_of_cayley(self.theta[i]);
-        }
-    }
-
-    /// Applies the solution of the linear system; returns the node that changed most and its change [-].
-    fn correct(&mut self, length: f64) -> (usize, f64) {
-        let largest = self.largest_change(length);
-        let turned = self
-            .chain
-            .right
-            .iter()
-            .fold(0.0_f64, |most, change| most.max(split(change).1.norm()));
+    /// Applies the solution of the linear system over a beam of a length [m]; returns the greatest change [-] and the greatest |θ| [-].
+    fn correct(&mut self, length: f64) -> (f64, f64) {
+        let [moved, turned] = unit::of_four().dispatch(nodes::Changes(self)).map(f64::sqrt);
         let part = (TURN_MAX / turned).min(1.0);
-        for (i, change) in self.chain.right.iter().enumerate() {
-            let (position, theta) = split(change);
-            self.now[i].position += part * position;
-            self.theta[i] += part * theta;
-        }
-        self.turn();
-        largest
+        let turn = unit::of_four().dispatch(nodes::Move { work: self, part });
+        ((moved / length).max(turned), turn.sqrt())
     }
 
-    fn largest_change(&self, length: f64) -> (usize, f64) {
+    /// Node at which position over the length [m] or θ changed most.
+    fn most_changed(&self, length: f64) -> usize {
         let size = |change: &Sextuple| {
             let (position, theta) = split(change);
             (position.norm() / length).max(theta.norm())
         };
         let changes = self.chain.right.iter().map(size).enumerate();
-        changes.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most })
+        let greater = |most: (usize, f64), next: (usize, f64)| if next.1 > most.1 { next } else { most };
+        changes.fold((0, 0.0), greater).0
     }
 
-    /// Solves for the changes of positions and θ, with the `exact` tangent or the one before; false where there is no solution.
-    fn solve(&mut self, case: &BeamStep, shape: &LineState, exact: bool) -> bool {
-        if exact {
-            self.chain.clear();
-        } else {
-            self.chain.clear_right();
-        }
-        self.assemble(case, shape, exact);
+    /// Solves for the changes of positions and the spins, with the `exact` tangent or the one before; false where there is no solution.
+    fn solve(&mut self, case: &BeamStep, exact: bool) -> bool {
+        self.assemble(case, exact);
         if exact {
             self.chain.solve()
         } else {
@@ -291,27 +302,25 @@ impl BeamWork {
         }
     }
 
-    /// Adds the forces out of balance and, with a `tangent`, their slopes.
-    fn assemble(&mut self, case: &BeamStep, shape: &LineState, tangent: bool) {
-        let state = beam_state(shape);
-        let span = Span {
-            mean: &self.mean,
-            now: &self.now,
-            strain_before: Some(&self.strain_before),
-            spin: &self.spin,
-        };
+    /// Sets the forces out of balance and, with a `tangent`, their slopes.
+    fn assemble(&mut self, case: &BeamStep, tangent: bool) {
+        unit::of_four().dispatch(nodes::SetNodes {
+            work: self,
+            length: case.length,
+            tangent,
+        });
         add_elements(
             &mut self.chain,
-            &case.beam.elements,
-            &state.rest,
-            &span,
+            &self.elements,
+            &self.now,
             mixture(case.length),
             tangent,
         );
-        for i in 0..self.now.len() {
-            self.add_translation(case, shape, i);
-            self.add_rotation(case, state.spins[i], i);
-            self.add_surroundings(case, i);
+        if case.nodes.drag.is_some() {
+            (0..self.now.len()).for_each(|i| self.add_drag(case, tangent, i));
+        }
+        for i in [0, self.now.len() - 1] {
+            self.add_body(case, tangent, i);
         }
         if case.nodes.contact.is_some() {
             self.add_seabed(case, tangent);
@@ -329,54 +338,33 @@ impl BeamWork {
         }
     }
 
-    /// Translational inertia, weight and mass damping of a node.
-    fn add_translation(&mut self, case: &BeamStep, shape: &LineState, i: usize) {
-        let dt = case.length;
-        let moved = self.now[i].position - self.before[i].position;
-        let acceleration = 2.0 / dt * (moved / dt - shape.velocity[i]);
-        let mut force = -self.mass[i] * acceleration - case.nodes.weight[i] * Vector3::z();
-        let mut slope = 2.0 / (dt * dt) * self.mass[i];
-        if let Some(damping) = &case.nodes.mass_damping {
-            force -= damping[i] / dt * moved;
-            slope += Matrix3::from_diagonal_element(damping[i] / dt);
+    /// Adds the drag of a node.
+    fn add_drag(&mut self, case: &BeamStep, tangent: bool, i: usize) {
+        let Some(k) = drag_of(case.nodes, i) else {
+            return;
+        };
+        let velocity = (self.now[i].position - self.before[i].position) / case.length;
+        let slope = || drag_slope(k, velocity, self.tangent[i]) / case.length;
+        let (force, slope) = (drag(k, velocity, self.tangent[i]), tangent.then(slope));
+        self.add_at_node(i, force, slope);
+    }
+
+    /// Adds the forces on the body at a node.
+    fn add_body(&mut self, case: &BeamStep, tangent: bool, i: usize) {
+        if let Some(body) = self.body(case, i) {
+            let step = body.over(self.places(i), case.length);
+            self.add_at_node(i, step.force(), tangent.then_some(step.slope));
         }
+    }
+
+    /// Adds a force [N] on a node and minus its slope with the position there [N/m].
+    fn add_at_node(&mut self, i: usize, force: Vector3<f64>, slope: Option<Matrix3<f64>>) {
         let mut right = self.chain.right[i].fixed_rows_mut::<3>(0);
         right += force;
-        let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(0, 0);
-        block += slope;
-    }
-
-    /// Rotary inertia of a node.
-    fn add_rotation(&mut self, case: &BeamStep, spin_before: Vector3<f64>, i: usize) {
-        let dt = case.length;
-        let inertia = Matrix3::from_diagonal(&case.beam.rotary_inertia[i]);
-        let (before, now) = (self.before[i].frame, self.now[i].frame);
-        let spin_now = 2.0 / dt * before.tr_mul(&self.theta[i]) - spin_before;
-        let momentum = now * inertia * spin_now;
-        let change = momentum - before * inertia * spin_before;
-        let slope = 2.0 / dt * now * inertia * before.transpose() - skew(momentum) * self.spin[i];
-        let mut right = self.chain.right[i].fixed_rows_mut::<3>(3);
-        right -= change / dt;
-        let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(3, 3);
-        block += slope / dt;
-    }
-
-    /// Adds the forces of water on a node, and those on the body there.
-    fn add_surroundings(&mut self, case: &BeamStep, i: usize) {
-        let dt = case.length;
-        if let Some(k) = drag_of(case.nodes, i) {
-            let velocity = (self.now[i].position - self.before[i].position) / dt;
-            let mut right = self.chain.right[i].fixed_rows_mut::<3>(0);
-            right += drag(k, velocity, self.tangent[i]);
-            let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(0, 0);
-            block += drag_slope(k, velocity, self.tangent[i]) / dt;
-        }
-        if let Some(body) = self.body(case, i) {
-            let step = body.over(self.places(i), dt);
-            let mut right = self.chain.right[i].fixed_rows_mut::<3>(0);
-            right += step.force();
-            let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(0, 0);
-            block += step.slope;
+        for (row, column) in (0..9).map(|k| (k % 3, k / 3)) {
+            if let Some(slope) = &slope {
+                self.chain.diagonal[i][(row, column)] += slope[(row, column)];
+            }
         }
     }
 
@@ -421,8 +409,8 @@ impl BeamWork {
         let (dt, last) = (case.length, self.now.len() - 1);
         for (i, element) in case.beam.elements.iter().enumerate() {
             let after = strain(&self.now[i], &self.now[i + 1], element.length);
-            let plain = [&self.strain_before[i], &after];
-            let [start, end] = plain.map(|strain| corrected(strain, element.length));
+            let before = strain(&self.before[i], &self.before[i + 1], element.length);
+            let [start, end] = [before, after].map(|strain| corrected(&strain, element.length));
             let rate = (end - start) / dt;
             let damping = element.damping.diagonal();
             flow.dissipation += dt * element.length * rate.dot(&damping.component_mul(&rate));
@@ -453,9 +441,11 @@ impl BeamWork {
         let i = end * (case.beam.elements.len() - 1);
         let (element, rest) = (&case.beam.elements[i], &beam_state(shape).rest[i]);
         let after = strain(&self.now[i], &self.now[i + 1], element.length);
-        let step = element.over_step([&self.strain_before[i], &after], rest, mixture(case.length));
-        let gradient = StrainGradient::new(&self.mean[i], &self.mean[i + 1], element.length);
-        element.length * gradient.tr_mul(&step.stress())[end]
+        let before = strain(&self.before[i], &self.before[i + 1], element.length);
+        let step = element.over_step([&before, &after], rest, mixture(case.length));
+        let [a, b] = [i, i + 1].map(|node| Station::from(&self.before[node]).mean(&(&self.now[node]).into()));
+        let [force, moment] = StrainGradient::new(&a, &b).tr_times(step.stress())[end];
+        join(force, moment)
     }
 
     /// Work of the loads on the free unknowns of an end, and of the prescribed motion of the held ones [J].

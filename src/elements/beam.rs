@@ -5,18 +5,24 @@
 //!
 //!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact.
 //!
-//! The elements of a step in time are the same with the gradient at the mean of both of its ends (`Span`).
+//! The elements of a step in time are the same with the gradient at the mean of both of its ends. Four elements are computed side by
+//! side.
 //!
 //! A beam whose ends do not prevent its rotation about its axis has no resistance to it: its first node then resists
 //! a turn about d₃, which changes the iteration but not the equilibrium.
 
-use nalgebra::{Matrix3, Matrix6, Vector3};
+use nalgebra::{Matrix3, Vector3};
+use pulp::NullaryFnOnce;
 
-use crate::math::pivoted_chain::PivotedChain;
+use crate::math::lanes::{LANES, Lanes, Vectors};
+use crate::math::pivoted_chain::{Block, BlockLanes, PivotedChain};
+use crate::math::triad::{Triad, each};
+use crate::math::unit;
 use crate::model::{BeamElement, FreePoint, Point};
 use crate::physics::seabed::{PARTS, Part};
 use crate::physics::section::{
-    GeometricStiffness, Mixture, Section, Sextuple, StrainGradient, join, split, strain,
+    Mixture, Pair, Section, SectionLaw, Sextuple, Station, StepStrain, Stiffness, StrainGradient, join,
+    split, strain_between,
 };
 
 /// Constraints and loads of an end of a beam.
@@ -151,26 +157,21 @@ pub(crate) struct Energy {
 }
 
 impl BeamCase<'_> {
-    /// Sets the system of a beam at `sections` under a part of its loads: tangent J, right-hand side −R. `unit` holds one identity per node.
+    /// Sets the system of a beam at `sections` under a part of its loads: tangent J, right-hand side −R. `four` is scratch.
     pub(crate) fn assemble(
         &self,
         chain: &mut PivotedChain,
         sections: &[Section],
         share: LoadShare,
-        unit: &[Matrix3<f64>],
+        four: &mut Vec<FourElements>,
     ) {
         chain.clear();
-        let span = Span {
-            mean: sections,
-            now: sections,
-            strain_before: None,
-            spin: unit,
-        };
         let still = Mixture {
             share: 1.0,
             rate: 0.0,
         };
-        add_elements(chain, &self.elements, &self.rest, &span, still, true);
+        FourElements::gather(four, &self.elements, &self.rest, sections);
+        add_elements(chain, four, sections, still, true);
         for (i, weight) in self.weight.iter().enumerate() {
             chain.right[i].z -= share.force * weight;
         }
@@ -207,8 +208,9 @@ impl BeamCase<'_> {
             let element = &self.elements[0];
             let axis: Vector3<f64> = sections[0].frame.column(2).into_owned();
             let brake = element.law.torsion / element.length * axis * axis.transpose();
-            let mut turn = chain.diagonal[0].fixed_view_mut::<3, 3>(3, 3);
-            turn += brake;
+            for (row, column) in (0..9).map(|k| (k % 3, k / 3)) {
+                chain.diagonal[0][(3 + row, 3 + column)] += brake[(row, column)];
+            }
         }
         for (node, end) in [0, sections.len() - 1].into_iter().zip(&self.ends) {
             (0..6)
@@ -259,60 +261,243 @@ pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
     sections.windows(2).position(|pair| cosine(pair) < COSINE_MIN)
 }
 
-/// Sections of a beam at the mean of a step and after it; both are the same in statics.
-pub(crate) struct Span<'a> {
-    pub mean: &'a [Section],
-    pub now: &'a [Section],
-    /// Plain strains before the step; `None` in statics.
-    pub strain_before: Option<&'a [Sextuple]>,
-    /// T of every node: spin over change of its rotational unknown.
-    pub spin: &'a [Matrix3<f64>],
+/// The indices of four items from `first` on, the last of them again beyond it.
+#[inline(always)]
+pub(crate) fn four(first: usize, last: usize) -> [usize; LANES] {
+    each!(i in [first, first + 1, first + 2, first + 3] => i.min(last))
 }
 
-/// Subtracts the forces of all elements from the right-hand side and, with a `tangent`, adds their slopes to the matrix.
+/// Items at four indices.
+#[inline(always)]
+pub(crate) fn items<T>(of: &[T], [a, b, c, d]: [usize; LANES]) -> [&T; LANES] {
+    [&of[a], &of[b], &of[c], &of[d]]
+}
+
+/// Numbers of four items side by side.
+macro_rules! numbers {
+    ($item:ident in $items:expr => $value:expr) => {{
+        let [a, b, c, d] = $items;
+        Lanes::new(each!($item in [a, b, c, d] => $value))
+    }};
+}
+pub(crate) use numbers;
+
+/// Vectors of four items side by side.
+macro_rules! vectors {
+    ($item:ident in $items:expr => $value:expr) => {{
+        let [a, b, c, d] = $items;
+        Vectors::new(each!($item in [a, b, c, d] => $value))
+    }};
+}
+pub(crate) use vectors;
+
+/// Columns of four matrices.
+#[inline(always)]
+pub(crate) fn triads(matrices: [&Matrix3<f64>; LANES]) -> Triad<Vectors> {
+    Triad(each!(j in [0, 1, 2] => {
+        vectors!(m in matrices => Vector3::new(m[(0, j)], m[(1, j)], m[(2, j)]))
+    }))
+}
+
+/// Four sections.
+#[inline(always)]
+pub(crate) fn stations(sections: &[Section], at: [usize; LANES]) -> Station<Vectors> {
+    let [a, b, c, d] = items(sections, at);
+    Station {
+        position: vectors!(section in [a, b, c, d] => section.position),
+        directors: triads([&a.frame, &b.frame, &c.frame, &d.frame]),
+    }
+}
+
+/// Four strains, or forces and moments.
+#[inline(always)]
+pub(crate) fn pairs(strains: &[Sextuple], at: [usize; LANES]) -> Pair<Vectors> {
+    let strains = items(strains, at);
+    each!(k in [0, 3] => vectors!(strain in strains => Vector3::new(strain[k], strain[k + 1], strain[k + 2])))
+}
+
+/// Numbers that multiply the strains of four elements by a law, as [`SectionLaw::diagonal`].
+#[inline(always)]
+fn laws(laws: [&SectionLaw; LANES]) -> Pair<Vectors> {
+    let shear = numbers!(law in laws => law.shear);
+    let bending = numbers!(law in laws => law.bending);
+    [
+        Vectors {
+            x: shear,
+            y: shear,
+            z: numbers!(law in laws => law.axial),
+        },
+        Vectors {
+            x: bending,
+            y: bending,
+            z: numbers!(law in laws => law.torsion),
+        },
+    ]
+}
+
+/// Four elements side by side, as they are before a step, or at rest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FourElements {
+    length: Lanes,
+    laws: [Pair<Vectors>; 2],
+    rest: Pair<Vectors>,
+    sections: [Station<Vectors>; 2],
+    strain: Pair<Vectors>,
+}
+
+impl FourElements {
+    /// Replaces `into` by all elements, between the sections before a step; at rest those are the sections themselves.
+    pub(crate) fn gather(
+        into: &mut Vec<FourElements>,
+        elements: &[BeamElement],
+        rest: &[Sextuple],
+        sections: &[Section],
+    ) {
+        into.clear();
+        let firsts = (0..elements.len()).step_by(LANES);
+        into.extend(firsts.map(|first| {
+            let at = four(first, elements.len() - 1);
+            let [p, q, r, s] = items(elements, at);
+            let [i, j, k, l] = at;
+            let sections = [at, [i + 1, j + 1, k + 1, l + 1]].map(|at| stations(sections, at));
+            let length = numbers!(element in [p, q, r, s] => element.length);
+            FourElements {
+                length,
+                laws: [
+                    laws([&p.law, &q.law, &r.law, &s.law]),
+                    laws([&p.damping, &q.damping, &r.damping, &s.damping]),
+                ],
+                rest: pairs(rest, at),
+                strain: strain_between(&sections[0], &sections[1], length),
+                sections,
+            }
+        }));
+    }
+}
+
+/// What [`add_elements`] does to a chain.
+struct AddElements<'a> {
+    chain: &'a mut PivotedChain,
+    elements: &'a [FourElements],
+    now: &'a [Section],
+    mixture: Mixture,
+    tangent: bool,
+}
+
+/// Subtracts the forces of all elements, with the sections `now` after a step or at rest, from the right-hand side and, with a `tangent`, adds
+/// their slopes with positions and spins to the matrix, where the blocks beside the diagonal are set.
 pub(crate) fn add_elements(
     chain: &mut PivotedChain,
-    elements: &[BeamElement],
-    rest: &[Sextuple],
-    span: &Span,
+    elements: &[FourElements],
+    now: &[Section],
     mixture: Mixture,
     tangent: bool,
 ) {
-    for (i, element) in elements.iter().enumerate() {
-        let (now, mean) = (
-            [&span.now[i], &span.now[i + 1]],
-            [&span.mean[i], &span.mean[i + 1]],
-        );
-        let after = strain(now[0], now[1], element.length);
-        let before = span.strain_before.map_or(after, |strains| strains[i]);
-        let step = element.over_step([&before, &after], &rest[i], mixture);
-        let (stress, gradient) = (
-            step.stress(),
-            StrainGradient::new(mean[0], mean[1], element.length),
-        );
-        for (node, action) in [i, i + 1].into_iter().zip(gradient.tr_mul(&stress)) {
-            chain.right[node] -= element.length * action;
-        }
-        if tangent {
-            let after = StrainGradient::new(now[0], now[1], element.length);
-            let material = gradient.stiffness(&step.slope(), &after);
-            let geometric = GeometricStiffness::new(mean, now, &stress, mixture.share);
-            let block = |row: usize, column: usize| {
-                let (material, geometric) = (material.block(row, column), geometric.block(row, column));
-                let spin = &span.spin[i + column];
-                let mut whole = Matrix6::zeros();
-                for part in 0..2 {
-                    let shift = element.length * material[part][0] + geometric[part][0];
-                    let turn = (element.length * material[part][1] + geometric[part][1]) * spin;
-                    whole.fixed_view_mut::<3, 3>(3 * part, 0).copy_from(&shift);
-                    whole.fixed_view_mut::<3, 3>(3 * part, 3).copy_from(&turn);
-                }
-                whole
-            };
-            chain.diagonal[i] += block(0, 0);
-            chain.diagonal[i + 1] += block(1, 1);
-            chain.upper[i] = block(0, 1);
-            chain.lower[i] = block(1, 0);
+    unit::of_four().dispatch(AddElements {
+        chain,
+        elements,
+        now,
+        mixture,
+        tangent,
+    });
+}
+
+impl NullaryFnOnce for AddElements<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        for (k, four) in self.elements.iter().enumerate() {
+            self.add_four(LANES * k, four);
         }
     }
+}
+
+impl AddElements<'_> {
+    /// Adds four elements from the element `first` on.
+    #[inline(always)]
+    fn add_four(&mut self, first: usize, elements: &FourElements) {
+        let last = self.now.len() - 2;
+        let [i, j, k, l] = four(first, last);
+        let ends = [[i, j, k, l], [i + 1, j + 1, k + 1, l + 1]];
+        let now = each!(end in [0, 1] => stations(self.now, ends[end]));
+        let mean = each!(end in [0, 1] => elements.sections[end].mean(&now[end]));
+        let length = elements.length;
+        let step = StepStrain {
+            laws: elements.laws,
+            length,
+            strains: [elements.strain, strain_between(&now[0], &now[1], length)],
+            rest: elements.rest,
+            mixture: self.mixture,
+        };
+        let (stress, gradient) = (step.stress(), StrainGradient::new(&mean[0], &mean[1]));
+        let count = LANES.min(last + 1 - first);
+        subtract_actions(&mut self.chain.right[first..], count, &gradient.tr_times(stress));
+        if self.tangent {
+            let end = StrainGradient::new(&now[0], &now[1]);
+            let mut stiffness = gradient.stiffness(&step.slope(), &end, length);
+            let ([a, b], [c, d]) = (&mean, &now);
+            stiffness.add_geometric([a, b], [c, d], stress, self.mixture.share);
+            self.add_stiffness(first, count, &stiffness);
+        }
+    }
+
+    /// Adds the tangent of `count` elements from the element `first` on.
+    #[inline(always)]
+    fn add_stiffness(&mut self, first: usize, count: usize, stiffness: &Stiffness<Vectors>) {
+        let Stiffness {
+            shift,
+            pulled,
+            swept,
+            turned,
+        } = stiffness;
+        let minus = Lanes::splat(-1.0);
+        let back = shift.scaled(minus);
+        let pulled_back = each!(y in [0, 1] => pulled[y].scaled(minus));
+        let swept_back = each!(x in [0, 1] => swept[x].scaled(minus));
+        let at_a = blocks([shift, &pulled_back[0], &swept_back[0], &turned[0][0]]);
+        let at_b = blocks([shift, &pulled[1], &swept[1], &turned[1][1]]);
+        let upper = blocks([&back, &pulled_back[1], &swept[0], &turned[0][1]]);
+        let lower = blocks([&back, &pulled[0], &swept_back[1], &turned[1][0]]);
+        add_blocks(self.chain, first, count, &[at_a, at_b, upper, lower]);
+    }
+}
+
+/// Subtracts forces and moments of elements from those on their nodes. As a call, it does not break the vectors of the caller into numbers.
+#[inline(never)]
+fn subtract_actions(right: &mut [Sextuple], count: usize, actions: &[Pair<Vectors>; 2]) {
+    for (side, [force, moment]) in actions.iter().enumerate() {
+        for (lane, right) in right[side..].iter_mut().take(count).enumerate() {
+            *right -= join(force.get(lane), moment.get(lane));
+        }
+    }
+}
+
+/// Adds the blocks of `count` elements from the element `first` on, as [`subtract_actions`] does forces.
+#[inline(never)]
+fn add_blocks(
+    chain: &mut PivotedChain,
+    first: usize,
+    count: usize,
+    [at_a, at_b, upper, lower]: &[BlockLanes; 4],
+) {
+    for lane in 0..count {
+        let i = first + lane;
+        chain.diagonal[i] += Block::of_lane(at_a, lane);
+        chain.diagonal[i + 1] += Block::of_lane(at_b, lane);
+        chain.upper[i] = Block::of_lane(upper, lane);
+        chain.lower[i] = Block::of_lane(lower, lane);
+    }
+}
+
+/// Blocks [[a, b], [c, d]] of four nodes.
+#[inline(always)]
+pub(crate) fn blocks([a, b, c, d]: [&Triad<Vectors>; 4]) -> BlockLanes {
+    let [[a0, a1, a2], [b0, b1, b2]] = each!(columns in [[a, c], [b, d]] => {
+        each!(j in [0, 1, 2] => {
+            let (upper, lower) = (columns[0].0[j], columns[1].0[j]);
+            [upper.x, upper.y, upper.z, lower.x, lower.y, lower.z]
+        })
+    });
+    [a0, a1, a2, b0, b1, b2]
 }

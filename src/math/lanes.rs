@@ -260,6 +260,16 @@ impl Vectors {
         }
     }
 
+    /// Four vectors.
+    #[inline(always)]
+    pub fn new([a, b, c, d]: [Vector3<f64>; LANES]) -> Vectors {
+        Vectors {
+            x: Lanes([a.x, b.x, c.x, d.x]),
+            y: Lanes([a.y, b.y, c.y, d.y]),
+            z: Lanes([a.z, b.z, c.z, d.z]),
+        }
+    }
+
     /// The vector in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vector3<f64> {

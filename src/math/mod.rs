@@ -18,4 +18,5 @@ pub mod striped_tridiagonal;
 pub mod striping;
 #[cfg(test)]
 pub(crate) mod tests;
+pub mod triad;
 pub mod unit;

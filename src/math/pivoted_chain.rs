@@ -1,192 +1,313 @@
-//! Block-tridiagonal systems of 6×6 blocks, with row exchanges inside the blocks.
+//! Block-tridiagonal systems of 6×6 blocks, with exchanges of rows inside of the blocks that need them.
 //!
 //! Row i reads L_{i−1} x_{i−1} + D_i x_i + U_i x_{i+1} = b_i; blocks need not be symmetric. Elimination runs from the first node
-//! to the last: D_i ← D_i − L_{i−1} D_{i−1}⁻¹ U_{i−1}, each D_i by LU factors with partial pivoting.
+//! to the last: D_i ← D_i − L_{i−1} D_{i−1}⁻¹ U_{i−1}. A block is inverted in place on its diagonal, in vectors, and where a pivot there is small
+//! against its column, by LU factors with partial pivoting. An inverse takes a right-hand side in one product, where factors take two
+//! substitutions of dependent steps.
 //!
 //! Source: block Thomas algorithm, e.g. Golub & Van Loan, Matrix Computations, section 4.5. Valid where all leading block minors
 //! are regular: chains held from either end, and chains with mass, are of that kind.
 
-use nalgebra::{Matrix6, Vector6};
+use std::ops::{AddAssign, Index, IndexMut};
+
+use nalgebra::Vector6;
+use pulp::NullaryFnOnce;
+
+use super::lanes::{LANES, Lanes};
+use super::triad::each;
+use super::unit;
+
+/// Greatest multiple of a pivot row that is subtracted from another before rows are exchanged [-].
+const MULTIPLE_MAX: f64 = 1e3;
 
 /// A system, and after [`PivotedChain::solve`] its solution.
 #[derive(Debug, Clone, Default)]
 pub struct PivotedChain {
-    /// D: blocks of every node on itself.
-    pub diagonal: Vec<Matrix6<f64>>,
+    /// D: blocks of every node on itself, then their inverses.
+    pub diagonal: Vec<Block>,
     /// U: in the row of a node, the column of the next one.
-    pub upper: Vec<Matrix6<f64>>,
+    pub upper: Vec<Block>,
     /// L: in the row of the next node, the column of the one before.
-    pub lower: Vec<Matrix6<f64>>,
+    pub lower: Vec<Block>,
     /// Right-hand side, then solution.
     pub right: Vec<Vector6<f64>>,
-    factors: Vec<Lu6>,
 }
 
-/// LU factors of a 6×6 block with row exchanges.
-#[derive(Debug, Clone, Copy, Default)]
-struct Lu6 {
-    /// Rows of the factors: L below the diagonal, the inverse pivots on it, U above.
-    rows: [[f64; 6]; 6],
-    /// Rows of the block in the order of the factors.
-    order: [usize; 6],
-}
+/// Six numbers in two vectors, of which the last two lanes are 0.
+type Column = [Lanes; 2];
 
-impl Lu6 {
-    /// Factors of a block; `None` where it is singular.
-    fn new(block: &Matrix6<f64>) -> Option<Lu6> {
-        let mut rows = rows(block);
-        let mut order = [0, 1, 2, 3, 4, 5];
+/// A 6×6 block by columns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block([Column; 6]);
+
+/// Four 6×6 blocks side by side, by columns.
+pub type BlockLanes = [[Lanes; 6]; 6];
+
+impl Block {
+    /// Block of zeros.
+    pub fn zeros() -> Block {
+        Block([[Lanes::splat(0.0); 2]; 6])
+    }
+
+    /// The block of one lane of [`BlockLanes`].
+    #[inline(always)]
+    pub fn of_lane(columns: &BlockLanes, lane: usize) -> Block {
+        Block(each!(j in [0, 1, 2, 3, 4, 5] => {
+            let [a, b, c, d, e, f] = each!(i in [0, 1, 2, 3, 4, 5] => columns[j][i][lane]);
+            [Lanes::new([a, b, c, d]), Lanes::new([e, f, 0.0, 0.0])]
+        }))
+    }
+
+    /// Product with a column of numbers.
+    #[inline(always)]
+    fn times(&self, x: &Column) -> Column {
+        let [a, b, c, d, e, f] = each!(j in [0, 1, 2, 3, 4, 5] => {
+            let factor = Lanes::splat(x[j / LANES][j % LANES]);
+            [self.0[j][0] * factor, self.0[j][1] * factor]
+        });
+        each!(half in [0, 1] => {
+            ((a[half] + b[half]) + (c[half] + d[half])) + (e[half] + f[half])
+        })
+    }
+
+    #[inline(always)]
+    fn product(&self, other: &Block) -> Block {
+        Block(each!(j in [0, 1, 2, 3, 4, 5] => self.times(&other.0[j])))
+    }
+
+    /// Inverse; `None` where the block is singular.
+    #[inline(always)]
+    fn inverse(&self) -> Option<Block> {
+        let mut inverse = *self;
+        let mut multiple = Lanes::splat(0.0);
+        let mut is_sound = inverse.pivot::<0>(&mut multiple);
+        is_sound &= inverse.pivot::<1>(&mut multiple);
+        is_sound &= inverse.pivot::<2>(&mut multiple);
+        is_sound &= inverse.pivot::<3>(&mut multiple);
+        is_sound &= inverse.pivot::<4>(&mut multiple);
+        is_sound &= inverse.pivot::<5>(&mut multiple);
+        let is_small = (Lanes::splat(MULTIPLE_MAX) - multiple).all_positive();
+        if is_sound && is_small {
+            return Some(inverse);
+        }
+        self.inverse_with_exchanges()
+    }
+
+    /// Step `K` of the inversion in place; raises `multiple` to the numbers below the pivot over it. Returns whether the pivot has an inverse.
+    #[inline(always)]
+    fn pivot<const K: usize>(&mut self, multiple: &mut Lanes) -> bool {
+        let inverse = 1.0 / self.0[K][K / LANES][K % LANES];
+        let factor = Lanes::splat(inverse);
+        let mut pivot = [self.0[K][0] * factor, self.0[K][1] * factor];
+        for (half, scaled) in pivot.iter().enumerate() {
+            let below = Lanes::new(each!(lane in [0, 1, 2, 3] => {
+                if LANES * half + lane > K { scaled[lane] } else { 0.0 }
+            }));
+            *multiple = multiple.max(below.abs());
+        }
+        pivot[K / LANES][K % LANES] = inverse;
+        for j in (0..6).filter(|&j| j != K) {
+            let column = &mut self.0[j];
+            let share = column[K / LANES][K % LANES];
+            let lanes = Lanes::splat(share);
+            *column = [column[0] - pivot[0] * lanes, column[1] - pivot[1] * lanes];
+            column[K / LANES][K % LANES] = -share * inverse;
+        }
+        self.0[K] = pivot;
+        inverse.is_finite()
+    }
+
+    /// Inverse by LU factors with partial pivoting; `None` where the block is singular.
+    #[cold]
+    #[inline(never)]
+    fn inverse_with_exchanges(&self) -> Option<Block> {
+        let mut rows: [[f64; 12]; 6] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                if j < 6 {
+                    self[(i, j)]
+                } else {
+                    f64::from(u8::from(i + 6 == j))
+                }
+            })
+        });
         for k in 0..6 {
             let greater = |a: usize, b: usize| if rows[b][k].abs() > rows[a][k].abs() { b } else { a };
             let greatest = (k + 1..6).fold(k, greater);
             rows.swap(k, greatest);
-            order.swap(k, greatest);
-            let pivot = rows[k][k];
-            if pivot == 0.0 || !pivot.is_finite() {
+            let pivot = rows[k];
+            if pivot[k] == 0.0 || !pivot[k].is_finite() {
                 return None;
             }
-            rows[k][k] = 1.0 / pivot;
-            let above = rows[k];
             for row in &mut rows[k + 1..] {
-                let factor = row[k] * above[k];
-                row[k] = factor;
-                for j in k + 1..6 {
-                    row[j] -= factor * above[j];
-                }
+                let factor = row[k] / pivot[k];
+                (k..12).for_each(|j| row[j] -= factor * pivot[j]);
             }
         }
-        Some(Lu6 { rows, order })
+        let mut inverse = Block::zeros();
+        for j in 0..6 {
+            for i in (0..6).rev() {
+                let known: f64 = (i + 1..6).map(|k| rows[i][k] * inverse[(k, j)]).sum();
+                inverse[(i, j)] = (rows[i][6 + j] - known) / rows[i][i];
+            }
+        }
+        Some(inverse)
     }
 
-    /// Solves for rows of right-hand sides.
+    /// Sets a row to zero.
+    fn clear_row(&mut self, row: usize) {
+        (0..6).for_each(|column| self[(row, column)] = 0.0);
+    }
+}
+
+#[inline(always)]
+fn less(a: &Column, b: &Column) -> Column {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+#[inline(always)]
+fn column(v: &Vector6<f64>) -> Column {
+    [
+        Lanes::new([v[0], v[1], v[2], v[3]]),
+        Lanes::new([v[4], v[5], 0.0, 0.0]),
+    ]
+}
+
+#[inline(always)]
+fn vector(c: &Column) -> Vector6<f64> {
+    Vector6::new(c[0][0], c[0][1], c[0][2], c[0][3], c[1][0], c[1][1])
+}
+
+impl Index<(usize, usize)> for Block {
+    type Output = f64;
     #[inline(always)]
-    fn solve<const N: usize>(&self, b: &[[f64; N]; 6]) -> [[f64; N]; 6] {
-        let mut x = [[0.0; N]; 6];
-        for i in 0..6 {
-            let mut row = b[self.order[i]];
-            for (factor, known) in self.rows[i][..i].iter().zip(&x) {
-                subtract(&mut row, *factor, known);
-            }
-            x[i] = row;
-        }
-        for i in (0..6).rev() {
-            let mut row = x[i];
-            for (factor, known) in self.rows[i].iter().zip(&x).skip(i + 1) {
-                subtract(&mut row, *factor, known);
-            }
-            x[i] = row.map(|x| x * self.rows[i][i]);
-        }
-        x
-    }
-
-    fn solve_vector(&self, b: &Vector6<f64>) -> Vector6<f64> {
-        let mut rows = [[0.0]; 6];
-        for (row, b) in rows.iter_mut().zip(b.iter()) {
-            row[0] = *b;
-        }
-        let x = self.solve(&rows);
-        Vector6::new(x[0][0], x[1][0], x[2][0], x[3][0], x[4][0], x[5][0])
-    }
-
-    fn solve_block(&self, block: &mut Matrix6<f64>) {
-        let x = self.solve(&rows(block));
-        for (i, row) in x.iter().enumerate() {
-            for (j, x) in row.iter().enumerate() {
-                block[(i, j)] = *x;
-            }
-        }
+    fn index(&self, (row, column): (usize, usize)) -> &f64 {
+        &self.0[column][row / LANES][row % LANES]
     }
 }
 
-#[inline(always)]
-fn subtract<const N: usize>(row: &mut [f64; N], factor: f64, other: &[f64; N]) {
-    for (x, y) in row.iter_mut().zip(other) {
-        *x -= factor * y;
+impl IndexMut<(usize, usize)> for Block {
+    #[inline(always)]
+    fn index_mut(&mut self, (row, column): (usize, usize)) -> &mut f64 {
+        &mut self.0[column][row / LANES][row % LANES]
     }
 }
 
-/// Rows of a block.
-#[inline(always)]
-fn rows(block: &Matrix6<f64>) -> [[f64; 6]; 6] {
-    let mut rows = [[0.0; 6]; 6];
-    for (i, row) in rows.iter_mut().enumerate() {
-        for (j, x) in row.iter_mut().enumerate() {
-            *x = block[(i, j)];
+impl AddAssign for Block {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Block) {
+        for (a, b) in self.0.iter_mut().zip(&other.0) {
+            *a = [a[0] + b[0], a[1] + b[1]];
         }
     }
-    rows
 }
 
 impl PivotedChain {
     /// Room for a chain of `nodes` nodes.
     pub fn new(nodes: usize) -> PivotedChain {
         PivotedChain {
-            diagonal: vec![Matrix6::zeros(); nodes],
-            upper: vec![Matrix6::zeros(); nodes.saturating_sub(1)],
-            lower: vec![Matrix6::zeros(); nodes.saturating_sub(1)],
+            diagonal: vec![Block::zeros(); nodes],
+            upper: vec![Block::zeros(); nodes.saturating_sub(1)],
+            lower: vec![Block::zeros(); nodes.saturating_sub(1)],
             right: vec![Vector6::zeros(); nodes],
-            factors: vec![Lu6::default(); nodes],
         }
     }
 
     /// Sets everything to zero.
     pub fn clear(&mut self) {
-        self.diagonal.fill(Matrix6::zeros());
-        self.upper.fill(Matrix6::zeros());
-        self.lower.fill(Matrix6::zeros());
-        self.right.fill(Vector6::zeros());
-    }
-
-    /// Holds one unknown of a node: it takes the value `value`.
-    pub fn hold(&mut self, node: usize, unknown: usize, value: f64) {
-        self.diagonal[node].row_mut(unknown).fill(0.0);
-        self.diagonal[node][(unknown, unknown)] = 1.0;
-        self.right[node][unknown] = value;
-        if let Some(upper) = self.upper.get_mut(node) {
-            upper.row_mut(unknown).fill(0.0);
-        }
-        if node > 0 {
-            self.lower[node - 1].row_mut(unknown).fill(0.0);
-        }
-    }
-
-    /// Solves in place; false where a block is singular or the solution is not finite.
-    pub fn solve(&mut self) -> bool {
-        for i in 0..self.diagonal.len() {
-            if i > 0 {
-                self.diagonal[i] -= self.lower[i - 1] * self.upper[i - 1];
-            }
-            let Some(factors) = Lu6::new(&self.diagonal[i]) else {
-                return false;
-            };
-            self.factors[i] = factors;
-            if let Some(upper) = self.upper.get_mut(i) {
-                factors.solve_block(upper);
-            }
-        }
-        self.solve_again()
-    }
-
-    /// Solves for another right-hand side, after [`PivotedChain::solve`]; false where the solution is not finite.
-    pub fn solve_again(&mut self) -> bool {
-        let nodes = self.diagonal.len();
-        for i in 0..nodes {
-            if i > 0 {
-                let known = self.right[i - 1];
-                self.right[i] -= self.lower[i - 1] * known;
-            }
-            self.right[i] = self.factors[i].solve_vector(&self.right[i]);
-        }
-        for i in (0..nodes.saturating_sub(1)).rev() {
-            let next = self.right[i + 1];
-            self.right[i] -= self.upper[i] * next;
-        }
-        self.right.iter().all(|block| block.iter().all(|x| x.is_finite()))
+        self.diagonal.fill(Block::zeros());
+        self.upper.fill(Block::zeros());
+        self.lower.fill(Block::zeros());
+        self.clear_right();
     }
 
     /// Sets the right-hand side to zero.
     pub fn clear_right(&mut self) {
         self.right.fill(Vector6::zeros());
+    }
+
+    /// Holds one unknown of a node: it takes the value `value`.
+    pub fn hold(&mut self, node: usize, unknown: usize, value: f64) {
+        self.diagonal[node].clear_row(unknown);
+        self.diagonal[node][(unknown, unknown)] = 1.0;
+        self.right[node][unknown] = value;
+        if let Some(upper) = self.upper.get_mut(node) {
+            upper.clear_row(unknown);
+        }
+        if node > 0 {
+            self.lower[node - 1].clear_row(unknown);
+        }
+    }
+
+    /// Solves in place; false where a block is singular or the solution is not finite.
+    pub fn solve(&mut self) -> bool {
+        unit::of_four().dispatch(Solve {
+            chain: self,
+            factorise: true,
+        })
+    }
+
+    /// Solves for another right-hand side, after [`PivotedChain::solve`]; false where the solution is not finite.
+    pub fn solve_again(&mut self) -> bool {
+        unit::of_four().dispatch(Solve {
+            chain: self,
+            factorise: false,
+        })
+    }
+
+    /// Inverts the blocks on the diagonal and takes those above to D⁻¹ U; false where a block is singular.
+    #[inline(always)]
+    fn factorise(&mut self) -> bool {
+        for i in 0..self.diagonal.len() {
+            if i > 0 {
+                let known = self.lower[i - 1].product(&self.upper[i - 1]);
+                for (own, known) in self.diagonal[i].0.iter_mut().zip(&known.0) {
+                    *own = less(own, known);
+                }
+            }
+            let Some(inverse) = self.diagonal[i].inverse() else {
+                return false;
+            };
+            self.diagonal[i] = inverse;
+            if let Some(upper) = self.upper.get_mut(i) {
+                *upper = inverse.product(upper);
+            }
+        }
+        true
+    }
+
+    /// Solves with the inverses; false where the solution is not finite.
+    #[inline(always)]
+    fn substitute(&mut self) -> bool {
+        let nodes = self.diagonal.len();
+        let mut last: Column = [Lanes::splat(0.0); 2];
+        for i in 0..nodes {
+            let mut right = column(&self.right[i]);
+            if i > 0 {
+                right = less(&right, &self.lower[i - 1].times(&last));
+            }
+            last = self.diagonal[i].times(&right);
+            self.right[i] = vector(&last);
+        }
+        for i in (0..nodes.saturating_sub(1)).rev() {
+            last = less(&column(&self.right[i]), &self.upper[i].times(&last));
+            self.right[i] = vector(&last);
+        }
+        self.right.iter().all(|block| block.iter().all(|x| x.is_finite()))
+    }
+}
+
+/// Solves a chain, with its factors as they are or new ones.
+struct Solve<'a> {
+    chain: &'a mut PivotedChain,
+    factorise: bool,
+}
+
+impl NullaryFnOnce for Solve<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        (!self.factorise || self.chain.factorise()) && self.chain.substitute()
     }
 }
 
@@ -195,6 +316,12 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
     use nalgebra::{DMatrix, DVector};
+
+    fn filled(mut number: impl FnMut() -> f64) -> Block {
+        let mut block = Block::zeros();
+        (0..36).for_each(|k| block[(k % 6, k / 6)] = number());
+        block
+    }
 
     /// A repeatable number in −1 … 1.
     fn noise(seed: &mut u64) -> f64 {
@@ -207,14 +334,11 @@ mod tests {
     fn random(nodes: usize) -> PivotedChain {
         let mut seed = 3;
         let mut chain = PivotedChain::new(nodes);
-        let mut block = || Matrix6::from_fn(|_, _| noise(&mut seed));
+        let mut block = || filled(|| noise(&mut seed));
         chain.upper.iter_mut().for_each(|u| *u = block());
         chain.lower.iter_mut().for_each(|l| *l = block());
         chain.diagonal.iter_mut().for_each(|d| *d = block());
-        chain
-            .right
-            .iter_mut()
-            .for_each(|b| *b = block().column(0).into_owned());
+        chain.right.iter_mut().for_each(|b| *b = vector(&block().0[0]));
         for d in &mut chain.diagonal {
             d[(0, 0)] = 0.0; // only an exchange of rows gets past it
         }
@@ -226,17 +350,16 @@ mod tests {
         let mut matrix = DMatrix::zeros(6 * nodes, 6 * nodes);
         let mut right = DVector::zeros(6 * nodes);
         for i in 0..nodes {
-            matrix
-                .fixed_view_mut::<6, 6>(6 * i, 6 * i)
-                .copy_from(&chain.diagonal[i]);
             right.fixed_rows_mut::<6>(6 * i).copy_from(&chain.right[i]);
+            let mut copy = |row: usize, column: usize, block: &Block| {
+                for (r, c) in (0..36).map(|k| (k % 6, k / 6)) {
+                    matrix[(6 * row + r, 6 * column + c)] = block[(r, c)];
+                }
+            };
+            copy(i, i, &chain.diagonal[i]);
             if i + 1 < nodes {
-                matrix
-                    .fixed_view_mut::<6, 6>(6 * i, 6 * i + 6)
-                    .copy_from(&chain.upper[i]);
-                matrix
-                    .fixed_view_mut::<6, 6>(6 * i + 6, 6 * i)
-                    .copy_from(&chain.lower[i]);
+                copy(i, i + 1, &chain.upper[i]);
+                copy(i + 1, i, &chain.lower[i]);
             }
         }
         (matrix, right)
@@ -276,7 +399,7 @@ mod tests {
     #[test]
     fn a_singular_block_is_reported() {
         let mut chain = random(3);
-        chain.diagonal[0].fill(0.0);
+        chain.diagonal[0] = Block::zeros();
         assert!(!chain.solve());
     }
 }

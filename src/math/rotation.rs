@@ -1,12 +1,15 @@
 //! Rotations in space by the Cayley transform, and orthonormal frames.
 //!
 //! cay(θ) = I + (θ̂ + ½ θ̂²)/(1 + ¼|θ|²) turns by α about θ/|θ| with |θ| = 2 tan(α/2), so that R = cay(θ) moves every vector by
-//! R d − d = θ × ½(d + R d), exactly. Its differential is the spin δω = T(θ) δθ, δR = δω̂ R, T = (I + ½ θ̂)/(1 + ¼|θ|²).
+//! R d − d = θ × ½(d + R d), exactly. Its differential is the spin δω = T(θ) δθ, δR = δω̂ R, T = (I + ½ θ̂)/(1 + ¼|θ|²), T⁻¹ = I + ¼ θθᵀ − ½ θ̂.
 //!
 //! Source: Simo, Tarnow & Doblaré (1995), Int. J. Numer. Methods Eng. 38, 1431-1473, section 4; checked here by differences. Valid for
 //! α < π. Frames are 3×3 matrices whose columns are orthonormal and right-handed.
 
 use nalgebra::{Matrix3, Vector3};
+
+use super::real::{Real, RealVector};
+use super::triad::{Triad, each};
 
 /// v̂, the matrix of v ×.
 #[inline(always)]
@@ -37,10 +40,22 @@ pub fn cayley_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     2.0 * axial(rotation) / twice_cosine_half_squared.max(f64::MIN_POSITIVE)
 }
 
-/// T(θ): the spin that results from a change of the Cayley vector.
+/// Directors turned by cay(θ).
 #[inline(always)]
-pub fn spin_of_cayley(theta: Vector3<f64>) -> Matrix3<f64> {
-    (Matrix3::identity() + 0.5 * skew(theta)) / (1.0 + 0.25 * theta.norm_squared())
+pub fn turned_by_cayley<V: RealVector>(theta: V, directors: &Triad<V>) -> Triad<V> {
+    let number = V::Real::splat;
+    let factor = (number(1.0) + number(0.25) * theta.inner(theta)).recip();
+    Triad(each!(d in [directors.0[0], directors.0[1], directors.0[2]] => {
+        d + theta.crossed(d + theta.crossed(d).scaled(number(0.5))).scaled(factor)
+    }))
+}
+
+/// T(θ)⁻¹ s = s + ¼ θ (θ·s) − ½ θ × s: the change of the Cayley vector that results in a spin.
+#[inline(always)]
+pub fn cayley_of_spin<V: RealVector>(theta: V, spin: V) -> V {
+    let number = V::Real::splat;
+    let along = theta.scaled(number(0.25) * theta.inner(spin));
+    spin + along - theta.crossed(spin).scaled(number(0.5))
 }
 
 /// Frame whose third column is the unit vector `direction` [-]; its first is as close to `reference` as possible.
@@ -73,7 +88,6 @@ pub fn turned_to(frame: &Matrix3<f64>, direction: Vector3<f64>) -> Matrix3<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::tests::along;
     use approx::assert_relative_eq;
 
     const THETA: Vector3<f64> = Vector3::new(0.4, -1.3, 0.7);
@@ -103,13 +117,23 @@ mod tests {
     }
 
     #[test]
-    fn the_spin_of_cayley_equals_central_differences() {
+    fn the_change_of_the_cayley_vector_that_results_in_a_spin_equals_central_differences() {
         let rotation = cayley(THETA);
         for axis in 0..3 {
-            let rate = along(axis, 1e-6, |by| cayley(THETA + by));
-            let spin = spin_of_cayley(THETA).column(axis).into_owned();
+            let spin = Vector3::ith(axis, 1.0);
+            let change = cayley_of_spin(THETA, spin);
+            let rate = crate::math::tests::central(1e-6, |by| cayley(THETA + by * change));
             assert_relative_eq!(rate, skew(spin) * rotation, epsilon = 1e-9);
         }
+    }
+
+    #[test]
+    fn directors_turn_by_the_rotation_matrix() {
+        let columns = |m: &Matrix3<f64>| Triad(each!(i in [0, 1, 2] => m.column(i).into_owned()));
+        let frame = cayley(Vector3::new(0.2, 0.5, -0.1));
+        let turned = columns(&(cayley(THETA) * frame));
+        let found = turned_by_cayley(THETA, &columns(&frame));
+        (0..3).for_each(|i| assert_relative_eq!(found.0[i], turned.0[i], epsilon = 1e-15));
     }
 
     #[test]

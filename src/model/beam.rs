@@ -4,7 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::math::rotation::{frame_along, turned_to};
-use crate::physics::section::{self, Mixture, Section, SectionLaw, Sextuple, StepStrain, StrainEnergy};
+use crate::physics::section::{
+    self, Mixture, Section, SectionLaw, Sextuple, StepStrain, StrainEnergy, split,
+};
 
 /// A line as a beam: two-node elements, one per segment, and lumped rotary inertia.
 #[derive(Debug, Clone)]
@@ -175,19 +177,19 @@ impl BeamElement {
         section::corrected(&section::strain(a, b, self.length), self.length) - rest
     }
 
-    /// The element over a step between two plain strains, from the starred strains at rest.
-    #[inline(always)]
-    pub fn over_step<'a>(
-        &'a self,
-        strains: [&'a Sextuple; 2],
-        rest: &'a Sextuple,
+    /// The element over a step between two plain strains [-], [1/m], from the starred strains at rest.
+    pub fn over_step(
+        &self,
+        strains: [&Sextuple; 2],
+        rest: &Sextuple,
         mixture: Mixture,
-    ) -> StepStrain<'a> {
+    ) -> StepStrain<Vector3<f64>> {
+        let pair = |both: &Sextuple| split(both).into();
         StepStrain {
-            laws: [&self.law, &self.damping],
+            laws: [&self.law, &self.damping].map(|law| pair(&law.diagonal())),
             length: self.length,
-            strains,
-            rest,
+            strains: strains.map(pair),
+            rest: pair(rest),
             mixture,
         }
     }

@@ -30,7 +30,8 @@
 
 use nalgebra::{Matrix3, Vector3, Vector6};
 
-use crate::math::rotation::{axial, skew};
+use crate::math::real::{Real, RealVector};
+use crate::math::triad::{Triad, componentwise, each, repeated};
 
 /// A cross-section, or the mean of one over a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,6 +71,40 @@ pub struct StrainEnergy {
     pub torsion: f64,
 }
 
+/// A cross-section, or one in every lane.
+#[derive(Debug, Clone, Copy)]
+pub struct Station<V> {
+    /// Position φ [m].
+    pub position: V,
+    /// Directors d₁, d₂, d₃ [-].
+    pub directors: Triad<V>,
+}
+
+/// Strain (Γ, K) or stress (N, M) of one section, or of one in every lane.
+pub type Pair<V> = [V; 2];
+
+impl<V: RealVector> Station<V> {
+    /// Mean of two sections; its directors are neither of unit length nor orthogonal.
+    #[inline(always)]
+    pub fn mean(&self, other: &Station<V>) -> Station<V> {
+        let half = V::Real::splat(0.5);
+        Station {
+            position: (self.position + other.position).scaled(half),
+            directors: (self.directors + other.directors).scaled(half),
+        }
+    }
+}
+
+impl From<&Section> for Station<Vector3<f64>> {
+    #[inline(always)]
+    fn from(section: &Section) -> Self {
+        Station {
+            position: section.position,
+            directors: Triad(each!(i in [0, 1, 2] => section.frame.column(i).into_owned())),
+        }
+    }
+}
+
 impl Section {
     /// Mean of two sections; its directors are neither of unit length nor orthogonal.
     pub fn mean(&self, other: &Section) -> Section {
@@ -82,6 +117,7 @@ impl Section {
 
 impl SectionLaw {
     /// C, as the diagonal that multiplies a strain.
+    #[inline(always)]
     pub fn diagonal(&self) -> Sextuple {
         let (ga, ea, ei, gj) = (self.shear, self.axial, self.bending, self.torsion);
         Sextuple::new(ga, ga, ea, ei, ei, gj)
@@ -123,125 +159,179 @@ pub struct Mixture {
     pub rate: f64,
 }
 
-/// Slopes of forces and moments (rows) with stretches and curvatures, or with positions and spins (columns).
-pub type Blocks = [[Matrix3<f64>; 2]; 2];
-
-/// An element over a step, or at rest.
+/// An element over a step, or at rest, or one in every lane.
 #[derive(Debug, Clone, Copy)]
-pub struct StepStrain<'a> {
-    /// Stiffness and damping of the section.
-    pub laws: [&'a SectionLaw; 2],
+pub struct StepStrain<V: RealVector> {
+    /// Stiffness and damping of the section, each as the numbers that multiply Γ and K.
+    pub laws: [Pair<V>; 2],
     /// Unstretched length [m].
-    pub length: f64,
+    pub length: V::Real,
     /// Plain strains before and after the step.
-    pub strains: [&'a Sextuple; 2],
+    pub strains: [Pair<V>; 2],
     /// Starred strains without stress.
-    pub rest: &'a Sextuple,
+    pub rest: Pair<V>,
     /// Weights of both strains.
     pub mixture: Mixture,
 }
 
+/// Slope of a stress with the plain strains at the end of a step:
+/// [[C, EA ẑ s₁ᵀ], [s₀ EA ẑᵀ, H + s₀ EA s₁ᵀ]], with the s of the step and of its end.
+pub struct Slope<V> {
+    /// C, diagonal [N].
+    forces: V,
+    /// s₀ and s₁ [m].
+    shortening: [V; 2],
+    /// H [N m²].
+    moments: Triad<V>,
+}
+
 /// Starred strains (Γ*, K*) of plain ones (Γ, K) over an unstretched length [m].
 #[inline(always)]
+pub fn starred<V: RealVector>(strain: Pair<V>, length: V::Real) -> Pair<V> {
+    let number = V::Real::splat;
+    let ([stretch, curvature], (u, v)) = (strain, turns(strain, length));
+    let shortening = v * (number(1.0 / 6.0) + number(17.0 / 360.0) * v);
+    [
+        stretch + along_axis(shortening),
+        curvature.scaled(number(1.0) + u * (number(1.0 / 6.0) + number(0.075) * u)),
+    ]
+}
+
+/// [`starred`] of one section.
 pub fn corrected(strain: &Sextuple, length: f64) -> Sextuple {
-    let (u, v) = turns(strain, length);
-    let (mut stretch, curvature) = split(strain);
-    stretch.z += v / 6.0 + 17.0 / 360.0 * v * v;
-    join(stretch, (1.0 + u / 6.0 + 0.075 * u * u) * curvature)
+    let [stretch, curvature] = starred(split(strain).into(), length);
+    join(stretch, curvature)
+}
+
+/// a ẑ.
+#[inline(always)]
+fn along_axis<V: RealVector>(a: V::Real) -> V {
+    let zero = V::Real::splat(0.0);
+    V::of([zero, zero, a])
+}
+
+/// A vector without its third component.
+#[inline(always)]
+fn across_axis<V: RealVector>(v: V) -> V {
+    let [x, y, _] = v.components();
+    V::of([x, y, V::Real::splat(0.0)])
 }
 
 /// u and v: squares of the sine of the turn, and of its part about the first two directors.
 #[inline(always)]
-fn turns(strain: &Sextuple, length: f64) -> (f64, f64) {
-    let v = length * length * (strain[3] * strain[3] + strain[4] * strain[4]);
-    (v + length * length * strain[5] * strain[5], v)
+fn turns<V: RealVector>([_, curvature]: Pair<V>, length: V::Real) -> (V::Real, V::Real) {
+    let [x, y, z] = curvature.scaled(length).components();
+    let v = x * x + y * y;
+    (v + z * z, v)
 }
 
-/// D = [[I, ẑ sᵀ], [0, H]]: its product with the change of the plain strains is the change of the starred ones.
-struct Correction {
-    /// H.
-    turn: Matrix3<f64>,
-    /// s.
-    shortening: Vector3<f64>,
+/// D = [[I, ẑ sᵀ], [0, H]], H = h I + τ K̄ K̄ᵀ: its product with the change of the plain strains is the change of the starred ones.
+#[derive(Clone, Copy)]
+struct Correction<V: RealVector> {
+    /// h [-].
+    plain: V::Real,
+    /// τ [m²].
+    turning: V::Real,
+    /// K̄ [1/m].
+    curvature: V,
+    /// s [m].
+    shortening: V,
 }
 
-impl Correction {
+impl<V: RealVector> Correction<V> {
     #[inline(always)]
-    fn new(before: &Sextuple, now: &Sextuple, length: f64) -> Correction {
+    fn new(before: Pair<V>, now: Pair<V>, length: V::Real) -> Correction<V> {
+        let number = V::Real::splat;
         let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
-        let curvature = split(&(0.5 * (before + now))).1;
-        let h = 1.0 + (u0 + u1) / 12.0 + 0.0375 * (u0 * u0 + u1 * u1);
-        let twice = 2.0 * length * length;
-        let turning = twice * (1.0 / 6.0 + 0.075 * (u0 + u1));
-        let shortening = twice * (1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1));
+        let curvature = (before[1] + now[1]).scaled(number(0.5));
+        let twice = number(2.0) * length * length;
+        let shortening = twice * (number(1.0 / 6.0) + number(17.0 / 360.0) * (v0 + v1));
         Correction {
-            turn: Matrix3::from_diagonal_element(h) + turning * curvature * curvature.transpose(),
-            shortening: shortening * Vector3::new(curvature.x, curvature.y, 0.0),
+            plain: number(1.0) + number(1.0 / 12.0) * (u0 + u1) + number(0.0375) * (u0 * u0 + u1 * u1),
+            turning: twice * (number(1.0 / 6.0) + number(0.075) * (u0 + u1)),
+            curvature,
+            shortening: across_axis(curvature).scaled(shortening),
         }
+    }
+
+    /// H x, and Hᵀ x.
+    #[inline(always)]
+    fn turned(&self, x: V) -> V {
+        x.scaled(self.plain) + self.curvature.scaled(self.turning * self.curvature.inner(x))
     }
 
     /// Dᵀ S.
     #[inline(always)]
-    fn tr_mul(&self, stress: &Sextuple) -> Sextuple {
-        let (n, m) = split(stress);
-        join(n, self.turn.tr_mul(&m) + n.z * self.shortening)
+    fn tr_times(&self, [n, m]: Pair<V>) -> Pair<V> {
+        let [_, _, axial] = n.components();
+        [n, self.turned(m) + self.shortening.scaled(axial)]
     }
 }
 
 /// Change of Dᵀ S with the plain strains at the end of the step, at constant S = `stress`.
 #[inline(always)]
-fn correction_curvature(before: &Sextuple, now: &Sextuple, stress: &Sextuple, length: f64) -> Matrix3<f64> {
+fn correction_curvature<V: RealVector>(
+    [before, now]: [Pair<V>; 2],
+    [force, m]: Pair<V>,
+    length: V::Real,
+) -> Triad<V> {
+    let number = V::Real::splat;
     let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
-    let (mean, last) = (split(&(0.5 * (before + now))).1, split(now).1);
-    let (n, m) = (stress[2], split(stress).1);
-    let square = length * length;
-    let along = mean.dot(&m);
-    let turning = 1.0 / 6.0 + 0.075 * (u0 + u1);
-    let shortening = 1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1);
-    let [bent, bent_last] = [mean, last].map(|k| Vector3::new(k.x, k.y, 0.0));
-    square * (1.0 / 6.0 + 0.15 * u1) * m * last.transpose()
-        + square * turning * (Matrix3::from_diagonal_element(along) + mean * m.transpose())
-        + 0.3 * square * square * along * mean * last.transpose()
-        + square * shortening * n * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0))
-        + 17.0 / 90.0 * square * square * n * bent * bent_last.transpose()
+    let (mean, last) = ((before[1] + now[1]).scaled(number(0.5)), now[1]);
+    let ([_, _, n], square) = (force.components(), length * length);
+    let along = mean.inner(m);
+    let turning = square * (number(1.0 / 6.0) + number(0.075) * (u0 + u1));
+    let shortening = square * n * (number(1.0 / 6.0) + number(17.0 / 360.0) * (v0 + v1));
+    let bending = number(17.0 / 90.0) * square * square * n;
+    let with_last = m.scaled(square * (number(1.0 / 6.0) + number(0.15) * u1))
+        + mean.scaled(number(0.3) * square * square * along);
+    let plain = turning * along;
+    let [bent, bent_last] = [across_axis(mean), across_axis(last)];
+    Triad::dyad(with_last, last)
+        + Triad::dyad(mean.scaled(turning), m)
+        + Triad::dyad(bent.scaled(bending), bent_last)
+        + Triad::diagonal(V::of([plain + shortening, plain + shortening, plain]))
 }
 
-impl StepStrain<'_> {
+impl<V: RealVector> StepStrain<V> {
     /// Mean stress conjugate to the starred strains.
     #[inline(always)]
-    fn starred(&self) -> Sextuple {
+    fn starred(&self) -> Pair<V> {
+        let number = V::Real::splat;
         let [law, damping] = self.laws;
-        let [start, end] = self.strains.map(|strain| corrected(strain, self.length));
-        let elastic = law.diagonal().component_mul(&(0.5 * (start + end) - self.rest));
-        elastic + (self.mixture.rate * damping.diagonal()).component_mul(&(end - start))
+        let [start, end] = each!(end in [0, 1] => starred(self.strains[end], self.length));
+        each!(k in [0, 1] => {
+            let strained = (start[k] + end[k]).scaled(number(0.5)) - self.rest[k];
+            let rate = (end[k] - start[k]).scaled(number(self.mixture.rate));
+            componentwise(law[k], strained) + componentwise(damping[k], rate)
+        })
     }
 
     /// Mean stress: its product with the change of the plain strains is the work on an element, per length.
     #[inline(always)]
-    pub fn stress(&self) -> Sextuple {
+    pub fn stress(&self) -> Pair<V> {
         let [before, now] = self.strains;
-        Correction::new(before, now, self.length).tr_mul(&self.starred())
+        Correction::new(before, now, self.length).tr_times(self.starred())
     }
 
-    /// Slope of the stress with the plain strains at the end of the step: stiffness [N] for forces over stretches, and so on.
+    /// Slope of the stress with the plain strains at the end of the step.
     #[inline(always)]
-    pub fn slope(&self) -> Blocks {
-        let ([law, damping], [before, now], length) = (self.laws, self.strains, self.length);
-        let share = self.mixture.share;
-        let stiffness = share * law.diagonal() + self.mixture.rate * damping.diagonal();
-        let (forces, moments) = split(&stiffness);
-        let [mean, end] = [before, now].map(|from| Correction::new(from, now, length));
-        let mut turned = mean.turn.transpose() * Matrix3::from_diagonal(&moments) * end.turn;
-        turned += forces.z * mean.shortening * end.shortening.transpose();
-        turned += 2.0 * share * correction_curvature(before, now, &self.starred(), length);
-        let axial = forces.z * Vector3::z();
-        [
-            [
-                Matrix3::from_diagonal(&forces),
-                axial * end.shortening.transpose(),
-            ],
-            [mean.shortening * axial.transpose(), turned],
-        ]
+    pub fn slope(&self) -> Slope<V> {
+        let number = V::Real::splat;
+        let ([law, damping], [before, now]) = (self.laws, self.strains);
+        let Mixture { share, rate } = self.mixture;
+        let [forces, moments] =
+            each!(k in [0, 1] => law[k].scaled(number(share)) + damping[k].scaled(number(rate)));
+        let [mean, end] = each!(from in [before, now] => Correction::new(from, now, self.length));
+        let turn = Triad::diagonal(repeated(end.plain))
+            + Triad::dyad(end.curvature, end.curvature.scaled(end.turning));
+        let turned = Triad(each!(j in [0, 1, 2] => mean.turned(componentwise(moments, turn.0[j]))));
+        let curved = correction_curvature([before, now], self.starred(), self.length);
+        Slope {
+            forces,
+            shortening: [mean.shortening, end.shortening],
+            moments: turned + curved.scaled(number(2.0 * share)),
+        }
     }
 }
 
@@ -252,163 +342,169 @@ pub fn straight() -> Sextuple {
 
 /// Strain (Γ, K) between two sections an unstretched length [m] apart.
 #[inline(always)]
+pub fn strain_between<V: RealVector>(a: &Station<V>, b: &Station<V>, length: V::Real) -> Pair<V> {
+    let per_length = V::Real::splat(0.5) * length.recip();
+    let stretch = (a.directors + b.directors).tr_times(b.position - a.position);
+    let (a, b) = (&a.directors.0, &b.directors.0);
+    let turn = V::of([
+        b[1].inner(a[2]) - b[2].inner(a[1]),
+        b[2].inner(a[0]) - b[0].inner(a[2]),
+        b[0].inner(a[1]) - b[1].inner(a[0]),
+    ]);
+    [stretch.scaled(per_length), turn.scaled(per_length)]
+}
+
+/// [`strain_between`] two single sections.
 pub fn strain(a: &Section, b: &Section, length: f64) -> Sextuple {
-    let stretch = 0.5 * (a.frame + b.frame).tr_mul(&(b.position - a.position));
-    let turn = axial(&a.frame.tr_mul(&b.frame));
-    join(stretch, turn) / length
+    let [stretch, curvature] = strain_between(&a.into(), &b.into(), length);
+    join(stretch, curvature)
 }
 
-/// ∂(Γ, K)/∂(φ, spin) of sections a and b, K [1/m] over φ [m] and spin [rad]: [[∓A, R], [0, ∓Q]] with the upper signs for a.
+/// L ∂(Γ, K)/∂(φ, spin) of sections a and b, from its rows: ā_i·(δφ_b − δφ_a) + r_i^a·s_a + r_i^b·s_b and q_k·(s_b − s_a).
 #[derive(Debug, Clone, Copy)]
-pub struct StrainGradient {
-    /// A = ½ (Λ_a + Λ_b)ᵀ/L [1/m].
-    along: Matrix3<f64>,
-    /// R = ½ Λᵀ (φ' ×) of both sections [-].
-    swept: [Matrix3<f64>; 2],
-    /// Q, of the rows q_k/L [1/m].
-    turn: Matrix3<f64>,
+pub struct StrainGradient<V> {
+    /// ā_i = ½ (d_i^a + d_i^b) [-].
+    along: Triad<V>,
+    /// r_i = ½ d_i × (φ_b − φ_a) of both sections [m].
+    swept: [Triad<V>; 2],
+    /// q_k [-].
+    turn: Triad<V>,
 }
 
-/// Returns the values for sections a and b; `map` of an array would move these matrices through memory.
-#[inline(always)]
-fn both<T>(value: impl Fn(usize) -> T) -> [T; 2] {
-    [value(0), value(1)]
-}
-
-/// Signs of A and Q for sections a and b.
-const SIGNS: [f64; 2] = [-1.0, 1.0];
-
-impl StrainGradient {
-    /// Gradient between two sections an unstretched length [m] apart.
+impl<V: RealVector> StrainGradient<V> {
+    /// Gradient between two sections.
     #[inline(always)]
-    pub fn new(a: &Section, b: &Section, length: f64) -> StrainGradient {
-        let per_length = 1.0 / length;
-        let slope = skew(0.5 * per_length * (b.position - a.position)); // ½ φ' ×
+    pub fn new(a: &Station<V>, b: &Station<V>) -> StrainGradient<V> {
+        let half = V::Real::splat(0.5);
+        let chord = (b.position - a.position).scaled(half);
+        let (d_a, d_b) = (&a.directors.0, &b.directors.0);
+        let swept = each!(d in [d_a, d_b] => Triad(each!(i in [0, 1, 2] => d[i].crossed(chord))));
+        let turn = each!(pair in [(1, 2), (2, 0), (0, 1)] => {
+            let (i, j) = pair;
+            (d_b[i].crossed(d_a[j]) - d_b[j].crossed(d_a[i])).scaled(half)
+        });
         StrainGradient {
-            along: 0.5 * per_length * (a.frame + b.frame).transpose(),
-            swept: [a.frame.tr_mul(&slope), b.frame.tr_mul(&slope)],
-            turn: per_length * turn_gradient(a, b),
+            along: (a.directors + b.directors).scaled(half),
+            swept,
+            turn: Triad(turn),
         }
     }
 
-    /// Change of the strains due to changes of positions and spins of both sections.
-    pub fn times(&self, [a, b]: [Sextuple; 2]) -> Sextuple {
-        let [(shift_a, spin_a), (shift_b, spin_b)] = [split(&a), split(&b)];
-        let stretch = self.along * (shift_b - shift_a) + self.swept[0] * spin_a + self.swept[1] * spin_b;
-        join(stretch, self.turn * (spin_b - spin_a))
-    }
-
-    /// Forces and moments per length of a stress on both sections.
+    /// Change of the strains, times the length, due to changes of positions and spins of both sections.
     #[inline(always)]
-    pub fn tr_mul(&self, stress: &Sextuple) -> [Sextuple; 2] {
-        let (n, m) = split(stress);
-        let (pull, moment) = (self.along.tr_mul(&n), self.turn.tr_mul(&m));
-        both(|side| {
-            join(
-                SIGNS[side] * pull,
-                self.swept[side].tr_mul(&n) + SIGNS[side] * moment,
-            )
-        })
+    pub fn times(&self, [[shift_a, spin_a], [shift_b, spin_b]]: [Pair<V>; 2]) -> Pair<V> {
+        let stretch = self.along.tr_times(shift_b - shift_a)
+            + self.swept[0].tr_times(spin_a)
+            + self.swept[1].tr_times(spin_b);
+        [stretch, self.turn.tr_times(spin_b - spin_a)]
     }
 
-    /// Change of [`StrainGradient::tr_mul`] with positions and spins of the sections at which the strains change by the gradient `now`, with the
+    /// Forces [N] and moments [N m] of a stress on both sections.
+    #[inline(always)]
+    pub fn tr_times(&self, [n, m]: Pair<V>) -> [Pair<V>; 2] {
+        let (pull, moment) = (self.along.times(n), self.turn.times(m));
+        [
+            [
+                repeated::<V>(V::Real::splat(0.0)) - pull,
+                self.swept[0].times(n) - moment,
+            ],
+            [pull, self.swept[1].times(n) + moment],
+        ]
+    }
+
+    /// The rows r_i of both sections of the starred strains: Γ₃ has in addition s·K.
+    #[inline(always)]
+    fn shortened(&self, shortening: V) -> [Triad<V>; 2] {
+        let change = self.turn.times(shortening);
+        let [[a1, a2, a3], [b1, b2, b3]] = [self.swept[0].0, self.swept[1].0];
+        [Triad([a1, a2, a3 - change]), Triad([b1, b2, b3 + change])]
+    }
+
+    /// Change of [`StrainGradient::tr_times`] with positions and spins of the sections at which the strains change by the gradient `now`, with the
     /// `slope` of the stress.
     #[inline(always)]
-    pub fn stiffness(&self, slope: &Blocks, now: &StrainGradient) -> Stiffness {
-        let shift = both(|part| slope[part][0] * now.along);
-        let turn = both(|part| slope[part][1] * now.turn);
-        let spin =
-            |part: usize, column: usize| slope[part][0] * now.swept[column] + SIGNS[column] * turn[part];
-        let force = both(|column| spin(0, column));
+    pub fn stiffness(&self, slope: &Slope<V>, now: &StrainGradient<V>, length: V::Real) -> Stiffness<V> {
+        let forces = slope.forces.scaled(length.recip());
+        let along = self.along.weighted(forces);
+        let left = self.shortened(slope.shortening[0]);
+        let left = each!(x in [0, 1] => left[x].weighted(forces));
+        let right = now.shortened(slope.shortening[1]);
+        let moments = slope.moments.scaled(length.recip());
+        let bent = Triad::outer(&self.turn.product(&moments), &now.turn);
+        let [[aa, ab], [ba, bb]] =
+            each!(x in [0, 1] => each!(y in [0, 1] => Triad::outer(&left[x], &right[y])));
         Stiffness {
-            stretched: self.along.tr_mul(&shift[0]),
-            bent: self.turn.tr_mul(&shift[1]),
-            pulled: both(|column| self.along.tr_mul(&force[column])),
-            twisted: both(|column| self.turn.tr_mul(&spin(1, column))),
-            swept: both(|row| self.swept[row].tr_mul(&shift[0])),
-            turned: both(|row| both(|column| self.swept[row].tr_mul(&force[column]))),
+            shift: Triad::outer(&along, &now.along),
+            pulled: each!(y in [0, 1] => Triad::outer(&along, &right[y])),
+            swept: each!(x in [0, 1] => Triad::outer(&left[x], &now.along)),
+            turned: [[aa + bent, ab - bent], [ba - bent, bb + bent]],
         }
     }
 }
 
-/// Products of strain gradients and the slope of a stress, from which the blocks of an element's tangent are composed.
-pub struct Stiffness {
-    stretched: Matrix3<f64>,
-    bent: Matrix3<f64>,
-    pulled: [Matrix3<f64>; 2],
-    twisted: [Matrix3<f64>; 2],
-    swept: [Matrix3<f64>; 2],
-    turned: [[Matrix3<f64>; 2]; 2],
-}
-
-impl Stiffness {
-    /// Change of force and moment on the section `row` with position and spin of the section `column`.
-    #[inline(always)]
-    pub fn block(&self, row: usize, column: usize) -> Blocks {
-        let (up, across) = (SIGNS[row], SIGNS[column]);
-        [
-            [up * across * self.stretched, up * self.pulled[column]],
-            [
-                across * (self.swept[row] + up * self.bent),
-                self.turned[row][column] + up * self.twisted[column],
-            ],
-        ]
-    }
-}
-
-/// Rows q_k = ½ ε_kij d_i^b × d_j^a.
+/// w_i, with which the moment m of both sections is ½ Σ d_i^b × w_i: Σ_jk ε_kij m_k d_j^a.
 #[inline(always)]
-fn turn_gradient(a: &Section, b: &Section) -> Matrix3<f64> {
-    let director = |section: &Section, i: usize| section.frame.column(i).into_owned();
-    let row = |i: usize, j: usize| {
-        0.5 * (director(b, i).cross(&director(a, j)) - director(b, j).cross(&director(a, i)))
-    };
-    Matrix3::from_columns(&[row(1, 2), row(2, 0), row(0, 1)]).transpose()
+fn arms<V: RealVector>(a: &Station<V>, moment: V) -> Triad<V> {
+    let ([d1, d2, d3], [x, y, z]) = (a.directors.0, moment.components());
+    Triad([
+        d2.scaled(z) - d3.scaled(y),
+        d3.scaled(x) - d1.scaled(z),
+        d1.scaled(y) - d2.scaled(x),
+    ])
 }
 
-/// Change of the forces and moments of both sections, [`StrainGradient::tr_mul`] at the mean sections times the length, with positions and spins
-/// of the sections after the step, at constant stress; the mean sections follow by a part of the change.
-pub struct GeometricStiffness {
-    carried: [Matrix3<f64>; 2],
-    turned: [Matrix3<f64>; 2],
-    moment: [Matrix3<f64>; 2],
-    swept: [Matrix3<f64>; 2],
+/// (Σ u_i·v_i) I.
+#[inline(always)]
+fn trace<V: RealVector>(u: &Triad<V>, v: &Triad<V>) -> Triad<V> {
+    let sum = u.0[0].inner(v.0[0]) + u.0[1].inner(v.0[1]) + u.0[2].inner(v.0[2]);
+    Triad::diagonal(repeated(sum))
 }
 
-impl GeometricStiffness {
-    /// For the sections `mean` and `now`, a `stress`, and the part `share` [-].
-    #[inline(always)]
-    pub fn new(mean: [&Section; 2], now: [&Section; 2], stress: &Sextuple, share: f64) -> GeometricStiffness {
-        let (n, m) = split(stress);
-        let half = 0.5 * share;
-        let chord = skew(mean[1].position - mean[0].position);
-        let turned = both(|i| skew(half * now[i].frame * n));
-        let moment = skew(half * m);
-        let by_b = now[1].frame * moment * mean[0].frame.transpose();
-        let by_a = mean[1].frame * moment * now[0].frame.transpose();
-        GeometricStiffness {
-            carried: both(|i| skew(half * mean[i].frame * n)), // ν ×
-            moment: [
-                Matrix3::from_diagonal_element(by_a.trace()) - by_a.transpose(),
-                by_b - Matrix3::from_diagonal_element(by_b.trace()),
-            ],
-            swept: both(|i| chord * turned[i]),
-            turned,
-        }
-    }
+/// Change of force and moment on both sections of an element with their positions and spins. Forces on a and b are opposite, and positions
+/// act by their difference b − a.
+pub struct Stiffness<V> {
+    /// Force on b with the difference of the positions [N/m].
+    pub shift: Triad<V>,
+    /// Force on b with the spins of a and b [N].
+    pub pulled: [Triad<V>; 2],
+    /// Moments on a and b with the difference of the positions [N].
+    pub swept: [Triad<V>; 2],
+    /// Moments on a and b (rows) with the spins of a and b (columns) [N m].
+    pub turned: [[Triad<V>; 2]; 2],
+}
 
-    /// Change of force and moment on the section `row` with position and spin of the section `column`.
+impl<V: RealVector> Stiffness<V> {
+    /// Adds the change of [`StrainGradient::tr_times`] at the sections `mean` with positions and spins of the sections `now` after the step, at
+    /// constant `stress`; the mean sections follow by the part `share` [-] of the change.
     #[inline(always)]
-    pub fn block(&self, row: usize, column: usize) -> Blocks {
-        let (up, across) = (SIGNS[row], SIGNS[column]);
-        let mut turn = -up * self.moment[column];
-        if row == column {
-            turn += self.swept[row];
+    pub fn add_geometric(
+        &mut self,
+        mean: [&Station<V>; 2],
+        now: [&Station<V>; 2],
+        [n, m]: Pair<V>,
+        share: f64,
+    ) {
+        let half = V::Real::splat(0.5 * share);
+        let (pull, moment) = (n.scaled(half), m.scaled(half));
+        let chord = mean[1].position - mean[0].position;
+        for x in 0..2 {
+            let (held, turned) = (mean[x].directors.times(pull), now[x].directors.times(pull));
+            self.pulled[x] = self.pulled[x] - Triad::skew(turned);
+            self.swept[x] = self.swept[x] + Triad::skew(held);
+            self.turned[x][x] = self.turned[x][x] + Triad::dyad(turned, chord)
+                - Triad::diagonal(repeated(turned.inner(chord)));
         }
-        [
-            [Matrix3::zeros(), -up * self.turned[column]],
-            [across * self.carried[row], turn],
-        ]
+        let (by_a, by_b) = (arms(now[0], moment), arms(mean[0], moment));
+        let (d_mean, d_now) = (&mean[1].directors, &now[1].directors);
+        let turned = [
+            trace(d_mean, &by_a) - Triad::outer(&by_a, d_mean),
+            Triad::outer(d_now, &by_b) - trace(d_now, &by_b),
+        ];
+        let [at_a, at_b] = &mut self.turned;
+        for ((at_a, at_b), turned) in at_a.iter_mut().zip(at_b).zip(turned) {
+            *at_a = *at_a - turned;
+            *at_b = *at_b + turned;
+        }
     }
 }
 
@@ -471,9 +567,41 @@ mod tests {
         sections
     }
 
-    fn column_of(blocks: &Blocks, unknown: usize) -> Sextuple {
-        let part = |row: usize| blocks[row][unknown / 3].column(unknown % 3).into_owned();
-        join(part(0), part(1))
+    /// Six by twelve blocks of an element: rows of the section `row`, a column of both sections' unknowns.
+    fn column_of(stiffness: &Stiffness<Vector3<f64>>, row: usize, unknown: usize) -> Sextuple {
+        let (of, column, signs) = (unknown / 6, unknown % 3, [-1.0, 1.0]);
+        match unknown % 6 < 3 {
+            true => {
+                signs[of]
+                    * join(
+                        signs[row] * stiffness.shift.0[column],
+                        stiffness.swept[row].0[column],
+                    )
+            }
+            false => join(
+                signs[row] * stiffness.pulled[of].0[column],
+                stiffness.turned[row][of].0[column],
+            ),
+        }
+    }
+
+    fn stations(sections: &[Section; 2]) -> [Station<Vector3<f64>>; 2] {
+        sections.each_ref().map(Station::from)
+    }
+
+    fn gradient(sections: &[Section; 2]) -> StrainGradient<Vector3<f64>> {
+        let [a, b] = stations(sections);
+        StrainGradient::new(&a, &b)
+    }
+
+    fn actions(sections: &[Section; 2], stress: &Sextuple) -> [Sextuple; 2] {
+        gradient(sections)
+            .tr_times(split(stress).into())
+            .map(|[force, moment]| join(force, moment))
+    }
+
+    fn pair_of(strain: &Sextuple) -> Pair<Vector3<f64>> {
+        split(strain).into()
     }
 
     fn strain_of([a, b]: [Section; 2]) -> Sextuple {
@@ -482,34 +610,41 @@ mod tests {
 
     #[test]
     fn the_strain_gradient_equals_central_differences() {
-        let [a, b] = pair();
-        let gradient = StrainGradient::new(&a, &b, LENGTH);
         for unknown in 0..12 {
             let difference = central(1e-6, |by| strain_of(moved(pair(), unknown, by)));
-            let mut unit = [Sextuple::zeros(); 2];
-            unit[unknown / 6][unknown % 6] = 1.0;
-            let column = gradient.times(unit);
-            assert_relative_eq!(column, difference, epsilon = 1e-8);
+            let mut unit = [[Vector3::zeros(); 2]; 2];
+            unit[unknown / 6][unknown % 6 / 3][unknown % 3] = 1.0;
+            let [stretch, turn] = gradient(&pair()).times(unit);
+            assert_relative_eq!(join(stretch, turn) / LENGTH, difference, epsilon = 1e-8);
         }
     }
 
     #[test]
-    fn the_geometric_stiffness_equals_central_differences() {
-        let before = pair();
-        let loads = |now: [Section; 2]| {
-            let mean = means(&before, &now);
-            let gradient = StrainGradient::new(&mean[0], &mean[1], LENGTH);
-            gradient.tr_mul(&STRESS).map(|action| LENGTH * action)
+    fn the_stiffness_of_an_element_over_a_step_equals_central_differences() {
+        let (before, now) = (pair(), later());
+        let step = |now: [Section; 2]| StepStrain {
+            laws: [&LAW, &DAMPING].map(|law| split(&law.diagonal()).into()),
+            length: LENGTH,
+            strains: [strain_of(before), strain_of(now)].map(|strain| pair_of(&strain)),
+            rest: pair_of(&straight()),
+            mixture: Mixture {
+                share: 0.5,
+                rate: 3.0,
+            },
         };
-        let now = later();
-        let mean = means(&before, &now);
-        let [m, n] = [[&mean[0], &mean[1]], [&now[0], &now[1]]];
-        let stiffness = GeometricStiffness::new(m, n, &STRESS, 0.5);
+        let loads = |now: [Section; 2]| {
+            let [stretch, turn] = step(now).stress();
+            actions(&means(&before, &now), &join(stretch, turn))
+        };
+        let [mean, end] = [means(&before, &now), now];
+        let mut stiffness = gradient(&mean).stiffness(&step(now).slope(), &gradient(&end), LENGTH);
+        let ([a, b], [c, d]) = (stations(&mean), stations(&end));
+        stiffness.add_geometric([&a, &b], [&c, &d], step(now).stress(), 0.5);
         for unknown in 0..12 {
             for row in 0..2 {
                 let difference = central(1e-6, |by| loads(moved(now, unknown, by))[row]);
-                let column = column_of(&stiffness.block(row, unknown / 6), unknown % 6);
-                assert_relative_eq!(column, difference, epsilon = 1e-8);
+                let column = column_of(&stiffness, row, unknown);
+                assert_relative_eq!(column, difference, epsilon = 1e-7);
             }
         }
     }
@@ -522,9 +657,9 @@ mod tests {
         );
         let shift = |i: usize| Vector3::new(0.2, i as f64, -0.3);
         let now = [0, 1].map(|i| section(before[i].position + shift(i), cayley(thetas[i]) * before[i].frame));
-        let mean = means(&before, &now);
-        let gradient = StrainGradient::new(&mean[0], &mean[1], LENGTH);
-        let change = gradient.times([0, 1].map(|i| join(now[i].position - before[i].position, thetas[i])));
+        let moved = [0, 1].map(|i| [now[i].position - before[i].position, thetas[i]]);
+        let [stretch, turn] = gradient(&means(&before, &now)).times(moved);
+        let change = join(stretch, turn) / LENGTH;
         assert_relative_eq!(change, strain_of(now) - strain_of(before), epsilon = 1e-14);
     }
 
@@ -539,8 +674,7 @@ mod tests {
     #[test]
     fn forces_and_moments_of_a_stress_are_in_balance() {
         let [a, b] = pair();
-        let actions = StrainGradient::new(&a, &b, LENGTH).tr_mul(&STRESS);
-        let [at_a, at_b] = actions.map(|action| split(&(LENGTH * action)));
+        let [at_a, at_b] = actions(&pair(), &STRESS).map(|action| split(&action));
         assert_relative_eq!(at_a.0 + at_b.0, Vector3::zeros(), epsilon = 1e-14);
         let moment = at_a.1 + at_b.1 + (b.position - a.position).cross(&at_b.0);
         assert_relative_eq!(moment, Vector3::zeros(), epsilon = 1e-14);
@@ -583,13 +717,14 @@ mod tests {
         let (share, rate) = (0.5, 3.0);
         let by = |damping| {
             let step = StepStrain {
-                laws: [&LAW, damping],
+                laws: [&LAW, damping].map(|law| pair_of(&law.diagonal())),
                 length: LENGTH,
-                strains: [&before, &now],
-                rest: &rest,
+                strains: [pair_of(&before), pair_of(&now)],
+                rest: pair_of(&rest),
                 mixture: Mixture { share, rate },
             };
-            step.stress()
+            let [force, moment] = step.stress();
+            join(force, moment)
         };
         let (at, damped) = (by(&law([0.0; 4])), by(&DAMPING));
         let work = LENGTH * at.dot(&(now - before));
@@ -600,22 +735,33 @@ mod tests {
     #[test]
     fn the_slope_of_the_stress_equals_central_differences() {
         let [before, now] = strains();
-        let rest = straight();
         for (share, rate, still) in [(0.5, 3.0, false), (1.0, 0.0, true)] {
             let at = |now: Sextuple| {
                 let from = if still { now } else { before };
-                let step = StepStrain {
-                    laws: [&LAW, &DAMPING],
+                StepStrain {
+                    laws: [&LAW, &DAMPING].map(|law| pair_of(&law.diagonal())),
                     length: LENGTH,
-                    strains: [&from, &now],
-                    rest: &rest,
+                    strains: [pair_of(&from), pair_of(&now)],
+                    rest: pair_of(&straight()),
                     mixture: Mixture { share, rate },
-                };
-                (step.stress(), step.slope())
+                }
             };
+            let Slope {
+                forces,
+                shortening: [mean, end],
+                moments,
+            } = at(now).slope();
+            let axis = forces.z * Vector3::z();
             for unknown in 0..6 {
-                let difference = central(1e-6, |h| at(now + h * Sextuple::ith(unknown, 1.0)).0);
-                let column = column_of(&at(now).1, unknown);
+                let difference = central(1e-6, |h| {
+                    let [force, moment] = at(now + h * Sextuple::ith(unknown, 1.0)).stress();
+                    join(force, moment)
+                });
+                let i = unknown % 3;
+                let column = match unknown < 3 {
+                    true => join(forces[i] * Vector3::ith(i, 1.0), axis[i] * mean),
+                    false => join(end[i] * axis, moments.0[i] + forces.z * end[i] * mean),
+                };
                 assert_relative_eq!(column, difference, epsilon = 1e-7);
             }
         }

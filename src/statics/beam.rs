@@ -12,9 +12,9 @@
 
 mod coarse;
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
-use crate::elements::beam::{BeamCase, BeamEnd, ElementSpring, LoadShare, end_hold, folded};
+use crate::elements::beam::{BeamCase, BeamEnd, ElementSpring, FourElements, LoadShare, end_hold, folded};
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, turned_to};
 use crate::model::{BeamElement, Model, PointState, State};
@@ -218,7 +218,7 @@ fn unstressed(case: &BeamCase, start: &[Section]) -> Option<Vec<Section>> {
 #[derive(Debug, Clone, Default)]
 struct BeamStatics {
     chain: PivotedChain,
-    unit: Vec<Matrix3<f64>>,
+    four: Vec<FourElements>,
     trial: Vec<Section>,
     /// Linear solves [-].
     solves: usize,
@@ -362,9 +362,8 @@ impl BeamStatics {
     }
 
     fn resize(&mut self, nodes: usize) {
-        if self.unit.len() != nodes {
+        if self.chain.right.len() != nodes {
             self.chain = PivotedChain::new(nodes);
-            self.unit = vec![Matrix3::identity(); nodes];
         }
     }
 
@@ -468,7 +467,7 @@ impl BeamStatics {
     }
 
     fn assemble(&mut self, case: &BeamCase, sections: &[Section], share: LoadShare, anchoring: f64) {
-        case.assemble(&mut self.chain, sections, share, &self.unit);
+        case.assemble(&mut self.chain, sections, share, &mut self.four);
         if anchoring > 0.0 {
             self.anchor(case, anchoring);
         }

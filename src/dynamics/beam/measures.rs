@@ -6,9 +6,7 @@ use super::{beam_state, drag_of, node_mass};
 use crate::dynamics::energy_balance::Energy;
 use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
 use crate::physics::morison::drag;
-use crate::physics::section::{
-    Mixture, Section, Sextuple, StrainEnergy, StrainGradient, join, split, strain,
-};
+use crate::physics::section::{Mixture, Pair, Section, StrainEnergy, StrainGradient, split, strain};
 
 /// Momenta of a beam's mass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -97,7 +95,7 @@ impl<'a> BeamView<'a> {
     }
 
     /// Stress of an element conjugate to the plain strains, with or without its damping.
-    fn stress(&self, i: usize, damped: bool) -> Sextuple {
+    fn stress(&self, i: usize, damped: bool) -> Pair<Vector3<f64>> {
         let (element, state) = (&self.beam.elements[i], beam_state(self.shape));
         let (a, b) = (self.section(i), self.section(i + 1));
         let now = strain(&a, &b, element.length);
@@ -110,9 +108,10 @@ impl<'a> BeamView<'a> {
             return elastic;
         }
         let moving =
-            [i, i + 1].map(|node| join(self.shape.velocity[node], state.frames[node] * state.spins[node]));
-        let rate = StrainGradient::new(&a, &b, element.length).times(moving);
-        elastic + element.damping.diagonal().component_mul(&rate)
+            [i, i + 1].map(|node| [self.shape.velocity[node], state.frames[node] * state.spins[node]]);
+        let rate = StrainGradient::new(&(&a).into(), &(&b).into()).times(moving);
+        let damping: Pair<Vector3<f64>> = split(&element.damping.diagonal()).into();
+        [0, 1].map(|k| elastic[k] + damping[k].component_mul(&rate[k]) / element.length)
     }
 
     /// Effective tension of an element: the axial component of its stress [N].
@@ -125,9 +124,8 @@ impl<'a> BeamView<'a> {
 
     /// Force [N] and moment [N m] that balance the stress of an element at its lower (0) or upper (1) end.
     fn end_stress(&self, i: usize, side: usize, damped: bool) -> (Vector3<f64>, Vector3<f64>) {
-        let element = &self.beam.elements[i];
-        let gradient = StrainGradient::new(&self.section(i), &self.section(i + 1), element.length);
-        split(&(element.length * gradient.tr_mul(&self.stress(i, damped))[side]))
+        let gradient = StrainGradient::new(&(&self.section(i)).into(), &(&self.section(i + 1)).into());
+        gradient.tr_times(self.stress(i, damped))[side].into()
     }
 
     /// Bending moment at a node [N m], from its elements' elastic stress: the mean of both sides, which differ by the
