@@ -294,4 +294,18 @@ mod tests {
         assert_relative_eq!(along, turn * Vector3::z(), epsilon = 1e-14);
         assert_relative_eq!(turn * state.carried[0], state.frames[0], epsilon = 1e-14);
     }
+
+    #[test]
+    fn rates_on_a_parabola_are_predicted_after_three_steps() {
+        let (step, mut course) = (0.1, Course::at_rest(1));
+        let rate = |k: usize| {
+            let t = step * (k as f64 + 0.5);
+            Sextuple::repeat(2.0 - 3.0 * t + 7.0 * t * t)
+        };
+        for k in 0..3 {
+            course.follow(0, rate(k), step);
+            course.end_step(step);
+        }
+        assert_relative_eq!(course.predict(0, step), rate(3), epsilon = 1e-14);
+    }
 }
