@@ -510,7 +510,7 @@ impl BeamStatics {
     fn step(&mut self, case: &BeamCase, sections: &mut [Section]) -> Option<f64> {
         self.solves += 1;
         self.work += sections.len();
-        if self.work > WORK_MAX || !self.chain.solve() {
+        if self.work > WORK_MAX || !self.chain.solve_refined() {
             return None;
         }
         let length: f64 = case.elements.iter().map(|e| e.length).sum();
