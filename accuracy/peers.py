@@ -1,42 +1,50 @@
 #!/usr/bin/env python3
 """Run MoorDyn and CableDyn over one scene at their own best settings, for `moorline accuracy --peers`.
 
-A conversation in lines of JSON. The first line on standard input describes a scene of one line whose upper end is driven; the answer
-names the runs of the ladder. Every further line asks for one of them; the answer is what it gave. Everything else goes to standard
-error.
+The conversation is in lines of JSON. The first line on standard input describes a scene of one line whose upper end is
+driven; the first answer lists the runs of the ladder. Every further line asks for one of them and gets its results.
+Everything else goes to standard error.
 
 Input (SI units)
     name, gravity [m/s²], density [kg/m³], depth [m] or null, bed {stiffness [Pa/m], damping [Pa·s/m]} or null,
     line {length [m], mass [kg/m], diameter [m], axial_stiffness [N], axial_damping [N·s], drag_normal, drag_tangential,
     added_mass_normal, added_mass_tangential [-]}, anchor [m], fairlead [m],
     harmonics {x, y, z: [[amplitude [m], period [s], phase [rad]], ...], ramp [s]}, duration [s], interval [s],
-    elements [-], and time_limit_seconds [s], the CPU time that all passes of a run may take. A density of null is
-    a line in air.
+    elements [-], hosts, the communication steps [s] of hosts (none if absent), and time_limit_seconds [s], the CPU time
+    that all passes of a run may take. A density of null is a line in air.
 First answer
-    runs, each with peer, label, and family, a name that runs share which differ in their mesh alone, from coarse to fine.
+    runs, each with peer, label, host, and family, a name that runs share which differ in their mesh alone, from coarse
+    to fine. host is null for a run of the offline ladder, or the one of hosts that the run is in.
 Question
     run, its number from 0, and read, whether its results are wanted beside its cost.
 Answer
     Either cpu_seconds [s] and, where wanted, tension [N] at the fairlead and mid [m], the position at s = L/2, both at
     interval, 2·interval, ...; or failed, the reason.
 
-What a run costs
-    CPU time of the time loop alone: reading the deck, the initial equilibrium and the reading of results are not
-    charged. A first pass reads the results as it goes and is not timed; further passes repeat the same steps
-    without reading anything and are timed, their median counts. The price of calling from Python, measured on
-    calls that do no work, is taken off. Each run has its own process, on whatever core the parent is bound to.
+Offline and in a host
+    Offline, the peer chooses its communication step: that of its path and of its forces. In a host, the communication
+    step is the host's, H. The host gives the fairlead's motion up to the next communication point, calls the peer until
+    it is there, and reads the force on the fairlead once. The internal step divides H and is at most H. Results between
+    communication points are interpolated by cubics.
+
+Cost of a run
+    CPU time of the time loop, with the force on the fairlead read at every communication point. The deck, the initial
+    equilibrium and the results of this module are not charged: a first pass reads them and is not timed. Further passes
+    repeat the same steps and are timed, and their median counts. The cost of calls from Python, measured on calls that
+    do no work, is subtracted. Each run has its own process, on the core that the parent is bound to.
 
 MoorDyn's settings
-    Schemes: RK2, RK4 and Midpoint2 (one fixed-point correction), whichever costs least per second at its stability
-    limit, at 0.9 and 0.6 of that limit. The limit comes from the scheme's amplification factor on the axial waves of
-    the mesh, on slack segments and on the seabed's spring and damper; MoorDyn's own CFL option knows the undamped
-    axial wave only. The rest did not pay: Euler and Heun (one evaluation) need steps 3 to 10 times smaller for the
-    same error, AB2 to AB4 do not converge, Midpoint and backward Euler with more iterations, Wilson and ACA cost more
-    for the same answer.
-    Host step: the path goes in as straight pieces with the secant velocity, so that it has no jumps in position
-    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of one to eight internal ones
-    and at most 1/200 of the motion's period, or of one internal step where that is longer. A host step costs 0.4 µs
-    more than its internal ones.
+    Schemes: RK2, RK4 and Midpoint2 (one fixed-point correction), the one that costs least per second at its stability
+    limit, at 1.1, 0.9 and 0.6 of that limit. The limit comes from the scheme's amplification factor on the axial waves
+    of the mesh, on slack segments and on the seabed's spring and damper; MoorDyn's own CFL option knows the undamped
+    axial wave only. The prediction is on the safe side for some lines; on the others the runs at 1.1 fail. The rest did
+    not pay: Euler and Heun (one evaluation) need steps 3 to 10 times smaller for the same error, AB2 to AB4 do not
+    converge, Midpoint and backward Euler with more iterations, Wilson and ACA cost more for the same answer.
+    Communication step: the path goes in as straight pieces with the secant velocity, so that it has no jumps in
+    position (given the velocity at the start of the step the fairlead jumps by ah²/2). Offline it is one to eight
+    internal steps and at most 1/200 of the motion's period, or one internal step where that is longer; a communication
+    step costs 0.4 µs more than its internal ones. Aligned runs divide the output interval, the others do not.
+    In a host, the scheme costs least at the internal step that divides H.
     Tension: the force at the fairlead's node (last segment, drag and weight of its half) less the node's mass times
     its known acceleration. MoorDyn returns the force without the inertia, which is some 1 % of the tension's deviation
     on a coarse taut line. RK2 and Midpoint leave that force at the middle of the last internal step; it is given the
@@ -46,11 +54,20 @@ CableDyn's settings
     Two-node elements, generalised-α in process. A relative tolerance of 1e-2 or 1e-1 in Newton's iteration is enough
     (the default 1e-8 costs up to twice as much for the same errors; on oc3_catenary 1e-1 costs 13 to 25 % less than
     1e-2). Where the line meets the bed: ρ∞ = 0.4 with 1/360 and 1/180 of the motion's period, best for tension, and
-    ρ∞ = 0 with 1/180 and 1/90, best for position. Where it does not:
-    ρ∞ = 0.9 and reused tangents with 1/30 and 1/20 of the period. The cubic element with a token bending stiffness
-    reaches the position error of 28 two-node elements with 8, at the same cost, and diverges with 6; where the line
-    meets the bed it costs several times more. It is left out.
+    ρ∞ = 0 with 1/180 and 1/90, best for position. Where it does not: ρ∞ = 0.9 and reused tangents with 1/30 and 1/20 of
+    the period. A tolerance of 1 costs 1 to 2 % less than 1e-1 on taut_polyester, with the same errors as long as it
+    converges; on oc4_chain it changes the tension by 13 to 80 % of its deviation. ρ∞ = 1 costs as much as 0.9, and
+    diverges earlier. The cubic element with a token bending stiffness reaches the position error of 28 two-node
+    elements with 8, at the same cost, and diverges with 6; where the line meets the bed it costs several times more. It
+    is left out.
+    The path is exact in position, velocity and acceleration at every step, also between communication points.
+    Offline, a communication point is a multiple of the output interval, or every step where the step is longer.
     Tension: CalcOutput, which has the end's inertia in it (FairTen has not).
+
+Decks as they come
+    In a host, each peer has two more runs with settings that a user may take without a study, with 20 and 40 elements:
+    MoorDyn's RK2 with an internal step of 1 ms, and CableDyn without options of its solver (a tolerance of 1e-8,
+    ρ∞ = 0.4, new tangents in every iteration) with 1/180 of the motion's period, as it has no default step.
 
 Both get a water depth (CableDyn drops drag and added mass without one) that a scene without a seabed never reaches,
 and where the motion reaches z = 0 the whole scene is lowered by 10 m (MoorDyn drops the water above), which changes
@@ -85,6 +102,31 @@ AIR = 1e-6
 HANGS_FREE = 0.97
 # Timed passes of a run: at most this many, until they add up to this much CPU time [s].
 PASSES, PASSES_CPU = 9, 0.4
+
+# MoorDyn's schemes, and the evaluations of the forces in a step of each.
+EVALUATIONS = {"RK2": 2, "RK4": 4, "Midpoint2": 2}
+# Internal steps of MoorDyn as parts of the scheme's predicted stability limit [-].
+PARTS = (1.1, 0.9, 0.6)
+# An aligned internal step that differs from another one of its mesh by at most this part [-] is left out.
+NEAR = 0.1
+# CableDyn's settings: steps to the motion's period [-], ρ∞ [-], reused tangents, Newton's relative tolerance [-], for a
+# line that meets the bed and for a free one.
+LANDING = (
+    (360.0, 0.4, False, 1e-2),
+    (360.0, 0.4, False, 1e-1),
+    (180.0, 0.4, False, 1e-1),
+    (180.0, 0.4, False, 1.0),
+    (180.0, 0.0, False, 1e-1),
+    (90.0, 0.0, False, 1e-1),
+    (90.0, 0.0, False, 1.0),
+    (60.0, 0.0, False, 1e-1),
+    (40.0, 0.0, False, 1e-1),
+)
+RATES = (30.0, 20.0, 16.0, 12.0, 10.0, 9.0, 8.0)
+FREE = tuple((parts, 0.9, True, tolerance) for tolerance in (1e-2, 1e-1, 1.0) for parts in RATES)
+FREE += tuple((parts, 1.0, True, 1e-1) for parts in (20.0, 12.0, 9.0))
+# Decks as they come: elements [-], MoorDyn's internal step [s], CableDyn's steps to the motion's period [-].
+DECK_ELEMENTS, DECK_STEP, DECK_PARTS = (20, 40), 0.001, 180.0
 
 
 class Path:
@@ -145,9 +187,12 @@ class Site:
             self.depth = scene["line"]["length"] - min(self.anchor[2], self.fairlead[2])
             self.stiffness, self.damping = 1.0e3, 0.0
 
-    def host(self, step, duration):
-        """Return times [s] from 0 to at least `duration` every `step` [s], and the lowered path there."""
-        times = step * np.arange(math.ceil(duration / step - 1e-9) + 1)
+    def motion(self, step, every, duration):
+        """Return times [s] at intervals of `step` [s], and the lowered path at these times.
+
+        The last time is the first multiple of `every` steps that is not before `duration` [s].
+        """
+        times = step * np.arange(every * math.ceil(duration / (every * step) - 1e-9) + 1)
         position, velocity, acceleration = self.path.at(times)
         position[:, 2] -= self.lowered
         return times, position, velocity, acceleration
@@ -231,11 +276,27 @@ def options(scene, site):
 {site.damping:.17g} cBot"""
 
 
-def host_step(wanted, interval):
-    """Return the largest step [s] not above `wanted` [s] that divides `interval` [s] or is a multiple of it."""
-    if wanted >= interval:
-        return interval * math.floor(wanted / interval + 1e-9)
-    return interval / math.ceil(interval / wanted - 1e-9)
+def divided(whole, limit):
+    """Return `whole` [s] divided into the fewest equal parts of at most `limit` [s]."""
+    return whole / math.ceil(whole / limit - 1e-9)
+
+
+def aligned(limit, interval):
+    """Return the largest step [s] not above `limit` [s] that divides `interval` [s] or is a multiple of it."""
+    return interval * math.floor(limit / interval + 1e-9) if limit >= interval else divided(interval, limit)
+
+
+def distinct(runs):
+    """Return `runs` without those that have the settings, and so the label, of an earlier one."""
+    first = {}
+    for run in runs:
+        first.setdefault((run["peer"], run["label"], run["host"]), run)
+    return list(first.values())
+
+
+def in_host(host):
+    """Return the suffix of the names of families in a host of communication step `host` [s]; empty offline."""
+    return "" if host is None else f", in a host of {host:g} s"
 
 
 # MoorDyn
@@ -288,6 +349,12 @@ def stable_step(scheme, modes):
     return step
 
 
+def stable_steps(scene, elements, bedded):
+    """Return the largest stable internal step [s] of every scheme on a mesh of `elements` segments."""
+    modes = eigenvalues(scene, elements, bedded)
+    return {scheme: stable_step(scheme, modes) for scheme in EVALUATIONS}
+
+
 def moordyn_deck(scene, site, elements, scheme, step):
     """Return MoorDyn's input for one line of `elements` segments and an internal step of `step` [s].
 
@@ -331,9 +398,9 @@ class MoorDyn:
 
         self.library, self.scene, self.run = cmoordyn, scene, run
         self.site = Site(scene)
-        times, position, _, self.acceleration = self.site.host(run["host"], scene["duration"])
-        self.times, self.count = times, len(times) - 1
-        secant = np.diff(position, axis=0) / run["host"]
+        times, position, _, _ = self.site.motion(run["communication"], 1, scene["duration"])
+        self.times = times
+        secant = np.diff(position, axis=0) / run["communication"]
         self.steps = list(zip(position[:-1].tolist(), secant.tolist(), times[:-1].tolist()))
         with open("deck.txt", "w", encoding="ascii") as deck:
             deck.write(moordyn_deck(scene, self.site, run["elements"], run["scheme"], run["step"]))
@@ -348,10 +415,10 @@ class MoorDyn:
     def read(self):
         """Run once, and return times [s] and values of tension [N] and mid-position [m]."""
         system, library = self.open(), self.library
-        line, nodes, host = library.get_line(system, 1), self.run["elements"], self.run["host"]
+        line, nodes, length = library.get_line(system, 1), self.run["elements"], self.run["communication"]
         forces, masses, mids = [], [], []
         for position, velocity, start in self.steps:
-            forces.append(library.step(system, position, velocity, start, host))
+            forces.append(library.step(system, position, velocity, start, length))
             masses.append(library.line_get_node_m(line, nodes))
             mids.append(half_way([library.line_get_node_pos(line, node) for node in range(nodes + 1)]))
         library.close(system)
@@ -362,11 +429,11 @@ class MoorDyn:
         return (self.times[1:] - late, tension), (self.times[1:], np.array(mids))
 
     def timed(self):
-        """Run once without reading anything, and return the CPU time [s] less that of as many empty calls."""
-        system, step, host = self.open(), self.library.step, self.run["host"]
+        """Run once, and return the CPU time [s] less that of as many empty calls; each step returns the forces."""
+        system, step, length = self.open(), self.library.step, self.run["communication"]
         begin = time.thread_time()
         for position, velocity, start in self.steps:
-            step(system, position, velocity, start, host)
+            step(system, position, velocity, start, length)
         solved = time.thread_time()
         empty = self.library.get_dt
         for _position, _velocity, _start in self.steps:
@@ -376,39 +443,72 @@ class MoorDyn:
         return (solved - begin) - (ended - solved)
 
 
-def moordyn_steps(limit, period, interval):
-    """Return the host step and the internal step [s], the cheapest with an internal step of at most `limit` [s].
+def exact_steps(limit, period):
+    """Return the communication step and the internal step [s], the internal one `limit` [s] to three digits.
 
-    The internal step divides the host's, and the host's divides `interval` [s], so some waste is left to choose by.
+    The communication step is the longest multiple that the path allows, up to eight. It need not divide the output
+    interval.
+    """
+    step = float(f"{limit:.3g}")
+    return step * max(1, min(8, math.floor(period / 200.0 / step + 1e-9))), step
+
+
+def aligned_steps(limit, period, interval):
+    """Return the communication step and the internal step [s], the cheapest with the internal one at most `limit` [s].
+
+    The internal step divides the communication step, which divides `interval` [s]: both are shorter than they could be,
+    the less so the cheaper.
     """
     if limit >= interval:
-        host = host_step(limit, interval)
-        return host, host
+        step = aligned(limit, interval)
+        return step, step
     longest = max(limit, min(period / 200.0, 8.0 * limit))
     hosts = [interval / parts for parts in range(1, math.ceil(interval / limit) + 1)]
-    steps = [(host, host / math.ceil(host / limit - 1e-9)) for host in hosts if host <= longest * (1.0 + 1e-9)]
+    steps = [(host, divided(host, limit)) for host in hosts if host <= longest * (1.0 + 1e-9)]
     if not steps:
-        host = host_step(longest, interval)
+        host = aligned(longest, interval)
         steps = [(host, host)]
     return min(steps, key=lambda pair: 1.0 / pair[1] + 0.1 / pair[0])
 
 
-def moordyn_runs(scene, elements, period, bedded):
-    """Return the runs of MoorDyn's ladder; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
+def moordyn_run(elements, scheme, steps, host, family):
+    """Return a run of MoorDyn; `steps` are its communication step and its internal step [s]."""
+    communication, step = steps
+    label = f"n = {elements}, {scheme}, dtM {step:.3g} s"
+    label += f", host step {communication:.3g} s" if host is None else ""
+    run = {"peer": "MoorDyn", "label": label, "family": family + in_host(host), "host": host}
+    return run | {"elements": elements, "scheme": scheme, "step": step, "communication": communication}
+
+
+def moordyn_offline(scene, period, bedded):
+    """Return the runs of MoorDyn offline; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
     runs = []
-    for count in elements:
-        modes = eigenvalues(scene, count, bedded)
-        limits = {scheme: stable_step(scheme, modes) for scheme in ("RK2", "RK4", "Midpoint2")}
-        scheme = min(limits, key=lambda name: (4 if name == "RK4" else 2) / limits[name])
-        for part in (0.9, 0.6):
-            limit = min(part * limits[scheme], period / 8.0)
-            host, step = moordyn_steps(limit, period, scene["interval"])
-            label = f"n = {count}, {scheme}, dtM {step:.3g} s, host step {host:.3g} s"
-            runs.append(
-                {"peer": "MoorDyn", "label": label, "elements": count, "scheme": scheme, "step": step, "host": host}
-                | {"family": f"MoorDyn at {part:g} of its limit"}
-            )
-    return runs
+    for count in scene["elements"]:
+        limits = stable_steps(scene, count, bedded)
+        scheme = min(limits, key=lambda name: EVALUATIONS[name] / limits[name])
+        exact = [exact_steps(min(part * limits[scheme], period / 8.0), period) for part in PARTS]
+        for part, steps in zip(PARTS, exact):
+            runs.append(moordyn_run(count, scheme, steps, None, f"MoorDyn at {part:g} of its limit"))
+        for part in PARTS:
+            steps = aligned_steps(min(part * limits[scheme], period / 8.0), period, scene["interval"])
+            if all(abs(steps[1] / step - 1.0) > NEAR for _, step in exact):
+                runs.append(moordyn_run(count, scheme, steps, None, f"MoorDyn at {part:g} of its limit, aligned"))
+    return distinct(runs)
+
+
+def moordyn_hosted(scene, period, bedded, host):
+    """Return the runs of MoorDyn in a host of communication step `host` [s]."""
+    runs = []
+    for count in scene["elements"]:
+        limits = stable_steps(scene, count, bedded)
+        for part in PARTS:
+            steps = {name: divided(host, min(part * limit, period / 8.0)) for name, limit in limits.items()}
+            scheme = min(steps, key=lambda name: (EVALUATIONS[name] / steps[name], -limits[name]))
+            runs.append(moordyn_run(count, scheme, (host, steps[scheme]), host, f"MoorDyn at {part:g} of its limit"))
+    for count in DECK_ELEMENTS:
+        run = moordyn_run(count, "RK2", (host, divided(host, DECK_STEP)), host, "deck: MoorDyn")
+        runs.append(run | {"label": "deck: " + run["label"]})
+    return distinct(runs)
 
 
 # CableDyn
@@ -418,6 +518,12 @@ def cabledyn_deck(scene, site, run):
     """Return CableDyn's input; its end A is the fairlead."""
     line = scene["line"]
     row = line_type(line, "drag_normal", "drag_tangential", "added_mass_normal", "added_mass_tangential")
+    solver = ""
+    if run["radius"] is not None:
+        solver = f"""dynamic_solver {run["tolerance"]:g} 1e-14 30 12
+{run["radius"]:g} rhoInf
+{run["reuse"]} modified_newton
+"""
     return f"""--- LINE TYPES ---
 Name Diam Mass EA BA EI Cdn Cdt Can Cat
 (-) (m) (kg/m) (N) (N-s) (N-m^2) (-) (-) (-) (-)
@@ -436,11 +542,8 @@ LineID LineType Length NumSegs
 (-) (-) (m) (-)
 1 line {line["length"]:.17g} {run["elements"]}
 --- OPTIONS ---
-dynamic_solver {run["tolerance"]:g} 1e-14 30 12
-{options(scene, site)}
+{solver}{options(scene, site)}
 {scene["density"]:.17g} rhoW
-{run["radius"]:g} rhoInf
-{run["reuse"]} modified_newton
 --- need this line ---
 """
 
@@ -457,7 +560,8 @@ class CableDyn:
         self.site = Site(scene)
         with open("deck.dat", "w", encoding="ascii") as deck:
             deck.write(cabledyn_deck(scene, self.site, run))
-        self.times, *path = self.site.host(run["step"], scene["duration"])
+        self.every = round(run["communication"] / run["step"])
+        self.times, *path = self.site.motion(run["step"], self.every, scene["duration"])
         with self.create("deck.dat") as model:
             self.size, self.driven = model.n_coupled_dof, model.host_dofs()
             rest = np.asarray(model.get_coupled_motion()[0], float)
@@ -480,8 +584,7 @@ class CableDyn:
     def read(self):
         """Run once, and return times [s] and values of tension [N] and mid-position [m]."""
         step, length = self.library.CableDyn_Step, ctypes.c_double(self.run["step"])
-        forces, mids = [], []
-        every = max(1, round(self.scene["interval"] / self.run["step"]))
+        forces, mids, every = [], [], self.every
         with self.create("deck.dat") as model:
             line = model.lines[0]
             for index, arguments in enumerate(self.calls(), 1):
@@ -496,42 +599,61 @@ class CableDyn:
         return (times, tension), (times, np.array(mids))
 
     def timed(self):
-        """Run once without reading anything, and return the CPU time [s] less that of as many refused calls."""
-        step, length, calls = self.library.CableDyn_Step, ctypes.c_double(self.run["step"]), self.calls()
-        size, replies, nothing = self.size, self.replies, ctypes.c_void_p()
+        """Run once, and return the CPU time [s] less that of as many refused calls."""
+        calls = self.calls()
         with self.create("deck.dat") as model:
-            handle = model._handle
-            begin = time.thread_time()
-            for position, velocity, acceleration in calls:
-                step(handle, length, position, velocity, acceleration, size, *replies)
-            solved = time.thread_time()
-            for position, velocity, acceleration in calls:
-                step(nothing, length, position, velocity, acceleration, size, *replies)
-            return (solved - begin) - (time.thread_time() - solved)
+            return self.loop(model._handle, calls) - self.loop(ctypes.c_void_p(), calls)
+
+    def loop(self, handle, calls):
+        """Return the CPU time [s] of all steps and of the forces at communication points; a null handle refuses all."""
+        step, length, every = self.library.CableDyn_Step, ctypes.c_double(self.run["step"]), self.every
+        size, replies = self.size, self.replies
+        output, loads, status = self.library.CableDyn_CalcOutput, (ctypes.c_double * size)(), replies[3]
+        begin = time.thread_time()
+        for index, (position, velocity, acceleration) in enumerate(calls, 1):
+            step(handle, length, position, velocity, acceleration, size, *replies)
+            if index % every == 0:
+                output(handle, loads, size, status)
+        return time.thread_time() - begin
 
 
-def cabledyn_runs(scene, elements, period, bedded):
-    """Return the runs of CableDyn's ladder; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
-    landing = [
-        (360.0, 0.4, False, 1e-2),
-        (360.0, 0.4, False, 1e-1),
-        (180.0, 0.4, False, 1e-1),
-        (180.0, 0.0, False, 1e-1),
-        (90.0, 0.0, False, 1e-1),
-        (60.0, 0.0, False, 1e-1),
-        (40.0, 0.0, False, 1e-1),
-    ]
-    rates = (30.0, 20.0, 16.0, 12.0, 10.0, 9.0, 8.0)
-    free = [(parts, 0.9, True, tolerance) for tolerance in (1e-2, 1e-1) for parts in rates]
+def cabledyn_run(elements, steps, solver, host, family):
+    """Return a run of CableDyn; `steps` are its communication step and its step [s].
+
+    `solver` is ρ∞ [-], whether tangents are reused, and Newton's relative tolerance [-], or None each for the defaults.
+    """
+    communication, step = steps
+    radius, reuse, tolerance = solver
+    label = f"n = {elements}, dt {step:.3g} s"
+    label += ", default solver" if radius is None else f", rhoInf {radius:g}, tolerance {tolerance:g}"
+    label += ", modified Newton" if reuse else ""
+    run = {"peer": "CableDyn", "label": label, "family": family + in_host(host), "host": host}
+    run |= {"elements": elements, "step": step, "communication": communication}
+    return run | {"radius": radius, "reuse": reuse, "tolerance": tolerance}
+
+
+def cabledyn_runs(scene, period, bedded, host):
+    """Return the runs of CableDyn's families, offline or in a host of communication step `host` [s]."""
     runs = []
-    for count in elements:
-        for parts, radius, reuse, tolerance in landing if bedded else free:
-            step = host_step(period / parts, scene["interval"])
-            label = f"n = {count}, dt {step:.3g} s, rhoInf {radius:g}, tolerance {tolerance:g}"
-            label += ", modified Newton" if reuse else ""
-            family = f"CableDyn, {parts:g} steps to the period, {radius:g}, {tolerance:g}"
-            run = {"peer": "CableDyn", "label": label, "elements": count, "step": step, "family": family}
-            runs.append(run | {"radius": radius, "reuse": reuse, "tolerance": tolerance})
+    for count in scene["elements"]:
+        for parts, *solver in LANDING if bedded else FREE:
+            family = f"CableDyn, {parts:g} steps to the period, {solver[0]:g}, {solver[2]:g}"
+            if host is None:
+                step = aligned(period / parts, scene["interval"])
+                steps = max(step, scene["interval"]), step
+            else:
+                steps = host, divided(host, period / parts)
+            runs.append(cabledyn_run(count, steps, solver, host, family))
+    return distinct(runs)
+
+
+def cabledyn_hosted(scene, period, bedded, host):
+    """Return the runs of CableDyn in a host of communication step `host` [s]."""
+    runs = cabledyn_runs(scene, period, bedded, host)
+    for count in DECK_ELEMENTS:
+        steps = host, divided(host, period / DECK_PARTS)
+        run = cabledyn_run(count, steps, (None, None, None), host, "deck: CableDyn")
+        runs.append(run | {"label": "deck: " + run["label"]})
     return runs
 
 
@@ -597,9 +719,10 @@ def main():
     scene["density"] = scene["density"] or AIR
     path = Path(scene)
     period, bedded = path.period(scene["duration"]), lies_on_bed(scene, path)
-    settings = scene, scene["elements"], period, bedded
-    runs = moordyn_runs(*settings) + cabledyn_runs(*settings)
-    named = [{key: run[key] for key in ("peer", "label", "family")} for run in runs]
+    runs = moordyn_offline(scene, period, bedded) + cabledyn_runs(scene, period, bedded, None)
+    for host in scene.get("hosts", []):
+        runs += moordyn_hosted(scene, period, bedded, host) + cabledyn_hosted(scene, period, bedded, host)
+    named = [{key: run[key] for key in ("peer", "label", "family", "host")} for run in runs]
     print(json.dumps({"runs": named}), file=answers, flush=True)
     limit = scene["time_limit_seconds"]
     for line in sys.stdin:
