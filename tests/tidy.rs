@@ -30,7 +30,7 @@ const LAYERS: [&str; 11] = [
 /// are on top.
 const PACKAGES: [(&str, &[&str]); 13] = [
     (".", &[]),
-    ("accuracy", &["moorline"]),
+    ("accuracy", &["moorline", "moorline-host"]),
     ("boundary", &["moorline"]),
     ("capi", &["moorline", "moorline-boundary", "moorline-decks"]),
     (

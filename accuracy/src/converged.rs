@@ -8,7 +8,7 @@
 
 use moorline::scene::Scene;
 
-use crate::errors::{Errors, Judge, Metric};
+use crate::errors::{Errors, Histories, Judge, Metric};
 use crate::ladder::{self, Setting};
 use crate::timed::{Timed, Trial};
 use crate::{StudyError, judge, shortest_period};
@@ -20,7 +20,7 @@ pub(crate) struct Converged {
     pub fine: Timed,
     /// Distance from the mesh before.
     pub uncertainty: Errors,
-    pub judge: Judge,
+    judge: Judge,
 }
 
 /// A sequence of settings on its way.
@@ -43,6 +43,11 @@ impl Converged {
             }
         }
         Err(StudyError::NotConverged { name: name(), reason })
+    }
+
+    /// Errors of histories against this solution.
+    pub(crate) fn errors(&self, histories: &Histories) -> Errors {
+        self.judge.errors(histories, &self.fine.histories)
     }
 
     /// Measure of convergence; the least is best [-].

@@ -31,12 +31,19 @@ pub fn figure(study: &Study) -> String {
     grid(charts.into())
 }
 
-/// RMS tension and position of several studies.
+/// RMS tension and position of several studies offline.
 pub fn overview(studies: &[Study]) -> String {
-    let charts = studies
-        .iter()
-        .flat_map(|study| [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false)));
+    let offline = studies.iter().filter(|study| study.host_step.is_none());
+    let charts =
+        offline.flat_map(|study| [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false)));
     grid(charts.collect())
+}
+
+/// RMS tension of several studies in hosts; `None` where there is none.
+pub fn in_host(studies: &[Study]) -> Option<String> {
+    let hosted = studies.iter().filter(|study| study.host_step.is_some());
+    let charts: Vec<_> = hosted.map(|study| chart(study, Metric::Rms, false)).collect();
+    (!charts.is_empty()).then(|| grid(charts))
 }
 
 /// Charts in two columns below one legend, which names every kind of curve once.
@@ -77,7 +84,7 @@ fn chart(study: &Study, metric: Metric, runs_too: bool) -> (Chart, Vec<Curve>) {
         Metric::Position => "mid position, RMS",
         other => other.title(),
     };
-    let title = format!("{}: {short}", study.name);
+    let title = format!("{}: {short}", study.place());
     (Chart::new(title, x, y, curves, SIZE[0], SIZE[1]), named)
 }
 
@@ -102,15 +109,15 @@ fn curves(study: &Study, metric: Metric, runs_too: bool) -> Vec<Curve> {
     }
     let own = frontier(study, metric, Code::is_own);
     curves.push(Curve::new(own, DARK, Stroke::Bold).named("moorline, cheapest"));
-    curves.push(own_choice(study, metric));
+    curves.push(by_default(study, metric));
     for level in LEVELS {
         curves.extend(duel(study, metric, level));
     }
     curves
 }
 
-/// Runs with settings that moorline chose, labelled with the tolerance.
-fn own_choice(study: &Study, metric: Metric) -> Curve {
+/// Runs with default settings, labelled with the tolerance.
+fn by_default(study: &Study, metric: Metric) -> Curve {
     let runs = study.runs.iter().filter(|run| run.code == Code::Chosen);
     let runs = runs.filter(|run| run.errors.of(metric) <= ERROR_MAX);
     let (mut points, mut labels) = (Vec::new(), Vec::new());
@@ -120,7 +127,7 @@ fn own_choice(study: &Study, metric: Metric) -> Curve {
         labels.push(tolerance.replace("tolerance ", ""));
     }
     Curve::new(points, [213, 30, 30], Stroke::Marks)
-        .named("moorline, its own choice for a tolerance")
+        .named("moorline, default settings for a tolerance")
         .labelled(labels)
 }
 

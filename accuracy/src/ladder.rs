@@ -1,5 +1,6 @@
 //! The settings that a scene is tried with.
 
+use moorline::discretisation;
 use moorline::scene::{ContactLaw, Integrator, Reconstruction, Scene, Threads};
 
 /// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
@@ -36,8 +37,10 @@ const COMMUNICATIONS: [usize; 10] = [1, 2, 3, 4, 8, 10, 13, 16, 20, 28];
 const COMMUNICATING_ELEMENTS: usize = 32;
 /// Communication steps to the shortest period, at least [-]: the motion in between is a cubic, and histories are read by cubics.
 const COMMUNICATIONS_PER_PERIOD: f64 = 5.0;
-/// Target errors of the tool's own choice [-].
+/// Target errors of default settings [-].
 pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
+/// Communication steps of the hosts [s].
+pub const HOST_STEPS: [f64; 2] = [0.05, 0.01];
 /// Elements of the longest line in converged solutions, the coarser of which measure the convergence of the finer [-].
 const CONVERGED_ELEMENTS: [usize; 3] = [320, 640, 1280];
 /// The same under the peers' law: the short waves of a slack line grow under it, the faster the finer the mesh [-].
@@ -58,12 +61,21 @@ pub struct Setting {
     pub integrator: Integrator,
     /// Longest internal step [s].
     pub time_step_max: Option<f64>,
-    /// Target error [-] that the tool chooses by.
-    pub tolerance: Option<f64>,
+    /// Default settings for a target error in a host; the rest is then absent.
+    pub by_default: Option<ByDefault>,
     /// Intervals of the output from one communication point to the next [-].
     pub communication: usize,
     /// Contact law of the seabed; that of the scene where absent.
     pub contact: Option<ContactLaw>,
+}
+
+/// Default settings as a host uses them: it gives displacements at the start of a step, and no velocities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ByDefault {
+    /// Target error that mesh, integrator and step are selected for [-].
+    pub tolerance: f64,
+    /// Communication step of the host [s].
+    pub host_step: f64,
 }
 
 impl Setting {
@@ -73,26 +85,32 @@ impl Setting {
             elements: Some(elements),
             integrator,
             time_step_max,
-            tolerance: None,
+            by_default: None,
             communication: 1,
             contact: None,
         }
     }
 
-    /// The setting that moorline chooses for a target error [-].
-    pub fn chosen(tolerance: f64) -> Setting {
+    /// The setting that moorline chooses.
+    pub fn chosen(by_default: ByDefault) -> Setting {
         Setting {
             elements: None,
             integrator: Integrator::Auto,
             time_step_max: None,
-            tolerance: Some(tolerance),
+            by_default: Some(by_default),
             communication: 1,
             contact: None,
         }
     }
 
-    /// The scene with this setting, its own mesh, integrator and step put aside. A setting that moorline chooses gets the inputs of the start of a step, as by
-    /// default; other settings get those of the end, as other codes do.
+    /// Time from one communication point to the next [s], for an interval of the output [s].
+    pub fn communication_step(&self, interval: f64) -> f64 {
+        let own = self.communication as f64 * interval;
+        self.by_default.map_or(own, |by_default| by_default.host_step)
+    }
+
+    /// The scene with this setting, its own mesh, integrator and step put aside. Settings by default are found by convergence trials, as `moorline
+    /// run` and `fmu` find them; other settings get the inputs of the end of a step, as other codes do.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         let length = |line: &moorline::scene::Line| -> f64 {
@@ -106,17 +124,18 @@ impl Setting {
             });
         }
         scene.solver.integrator = self.integrator;
-        if self.tolerance.is_none() {
-            scene.solver.input_reconstruction = Reconstruction::Interpolate;
-        }
         // A missing step is limited by the integrator's rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
-        scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
         // Processor time is that of one thread, as that of other codes.
         scene.solver.threads = Threads::Number(1);
         if let (Some(bed), Some(contact)) = (&mut scene.seabed, self.contact) {
             bed.contact = contact;
         }
+        if let Some(by_default) = self.by_default {
+            scene.solver.tolerance = by_default.tolerance;
+            return discretisation::discretised(&scene).into_owned();
+        }
+        scene.solver.input_reconstruction = Reconstruction::Interpolate;
         scene
     }
 
@@ -143,8 +162,7 @@ pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
         return ELEMENTS_STATIC.map(quasi_static).into();
     }
     let interval = scene.output.interval;
-    let mut settings: Vec<Setting> = TOLERANCES.map(Setting::chosen).into();
-    settings.extend(explicit(period, interval));
+    let mut settings: Vec<Setting> = explicit(period, interval).collect();
     let axial = Integrator::AxialImplicit;
     settings.extend(implicit(axial, &ELEMENTS_AXIAL, &STEPS_AXIAL, period, interval));
     let full = Integrator::GeneralisedAlpha;
@@ -166,6 +184,11 @@ pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     }
     settings.extend([10, 40].map(quasi_static));
     settings
+}
+
+/// Default settings for all target errors in a host of this communication step [s].
+pub(crate) fn by_default(host_step: f64) -> [Setting; 4] {
+    TOLERANCES.map(|tolerance| Setting::chosen(ByDefault { tolerance, host_step }))
 }
 
 /// Returns whether a scene is quasi-static: dynamics is then no measure of it.
@@ -290,9 +313,13 @@ mod tests {
         let elements: Vec<_> = meshed.lines.iter().flat_map(|line| &line.sections).collect();
         let elements: Vec<_> = elements.iter().map(|section| section.elements).collect();
         assert_eq!(elements, [Some(30), Some(10), Some(1)]);
-        let own = Setting::chosen(0.01).apply(&scene);
-        assert_eq!(own.lines[0].sections[0].elements, None);
-        assert_eq!(own.solver.tolerance, 0.01);
+        let by_default = ByDefault {
+            tolerance: 0.01,
+            host_step: 0.02,
+        };
+        let own = Setting::chosen(by_default);
+        assert_eq!(own.apply(&scene).solver.tolerance, 0.01);
+        assert_eq!(own.communication_step(0.05), 0.02);
     }
 
     #[test]

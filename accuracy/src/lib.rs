@@ -15,6 +15,7 @@
 mod converged;
 pub mod errors;
 pub mod frontier;
+mod in_host;
 mod ladder;
 mod peers;
 mod rounds;
@@ -27,9 +28,12 @@ use moorline::scene::{ContactLaw, Integrator, MotionPath, Scene};
 
 use converged::Converged;
 pub use errors::{Errors, Histories, Judge, Metric};
-pub use ladder::{Setting, TOLERANCES};
+pub use in_host::Package;
+use ladder::ByDefault;
+pub use ladder::{HOST_STEPS, Setting, TOLERANCES};
 use peers::Conversation;
 pub use peers::{PeerError, Peers};
+use rounds::Repeat;
 pub use slow::Slow;
 use timed::{Timed, Trial, run};
 pub use verdict::{Duel, LEVELS, Verdict};
@@ -44,7 +48,7 @@ const PERIOD: f64 = 10.0;
 pub enum Code {
     /// moorline with this integrator.
     Own(Integrator),
-    /// moorline with its default choices.
+    /// moorline with default settings.
     Chosen,
     /// Another code, by name.
     Peer(String),
@@ -54,7 +58,7 @@ impl Code {
     /// Name of the code.
     pub fn name(&self) -> &str {
         match self {
-            Code::Chosen => "moorline, its own choice",
+            Code::Chosen => "moorline, default settings",
             Code::Own(Integrator::Leapfrog) => "moorline, leapfrog",
             Code::Own(Integrator::AxialImplicit) => "moorline, axial-implicit",
             Code::Own(Integrator::QuasiStatic) => "moorline, quasi-static",
@@ -90,6 +94,8 @@ pub struct Run {
 #[derive(Debug, Clone, PartialEq)]
 enum How {
     Own(Setting),
+    /// By its number among the FMUs in a host.
+    InHost(usize),
     /// By its number in the peers' ladder.
     Peer(usize),
 }
@@ -104,6 +110,11 @@ impl Run {
             costs: vec![cost],
             how,
         }
+    }
+
+    /// Returns whether it is a peer's with the settings of its decks.
+    pub fn is_of_deck(&self) -> bool {
+        self.label.starts_with(peers::DECK)
     }
 
     /// Least and greatest of its timings [-].
@@ -129,6 +140,8 @@ pub struct Study {
     pub name: String,
     /// Title of the scene.
     pub title: String,
+    /// Communication step of the host [s]; offline where absent.
+    pub host_step: Option<f64>,
     /// Damping acts in compression, the peers' law.
     pub negative_tension: bool,
     /// The scene has a seabed.
@@ -164,62 +177,95 @@ pub enum StudyError {
     },
 }
 
-/// Runs the ladder of a scene; `progress` is called with the number of runs that are done, and of all.
+/// What a study may use beside the library.
+#[derive(Clone, Copy, Default)]
+pub struct Means<'a> {
+    /// The peers.
+    pub peers: Option<&'a Peers>,
+    /// Maker of the FMUs for studies in a host.
+    pub package: Option<&'a Package<'a>>,
+}
+
+/// Runs the ladder of a scene offline and, where FMUs can be made, the default settings in hosts; `progress` is called with the number of runs that
+/// are done, and of all. The study offline is the first.
 ///
 /// # Errors
 /// No converged solution can be found. Single runs that fail are listed in the study.
 pub fn study(
     name: &str,
     scene: &Scene,
-    peers: Option<&Peers>,
+    means: &Means<'_>,
     progress: &mut dyn FnMut(usize, usize),
-) -> Result<Study, StudyError> {
+) -> Result<Vec<Study>, StudyError> {
     let mut scene = scene.clone();
-    scene.solver.negative_tension |= peers.is_some();
-    let period = shortest_period(&scene);
-    let settings = ladder::ladder(&scene, period);
-    let (mut conversation, refused) = match peers.map(|peers| peers.begin(name, &scene)) {
+    scene.solver.negative_tension |= means.peers.is_some();
+    let (mut conversation, refused) = match means.peers.map(|peers| peers.begin(name, &scene)) {
         Some(Ok(conversation)) => (Some(conversation), None),
         Some(Err(reason)) => (None, Some(reason)),
         None => (None, None),
     };
-    let of_peers = conversation.as_ref().map_or(0, Conversation::count);
-    // The converged solution and its judge cost much, and so does timing again.
-    let (first, last) = (settings.len() / 4, (settings.len() + of_peers) / 8 + 1);
-    let total = first + settings.len() + of_peers + last;
-    progress(0, total);
-    let converged = Converged::find(name, &scene)?;
-    progress(first, total);
-    let judge = converged.judge;
-    let mut study = Study {
-        name: name.to_string(),
-        title: scene.title.clone(),
-        negative_tension: scene.solver.negative_tension,
-        on_bed: scene.seabed.is_some(),
-        converged: label(&converged.setting, &converged.fine, scene.seabed.is_some()),
-        uncertainty: converged.uncertainty,
-        runs: Vec::new(),
-        failed: Vec::new(),
-        slow: match ladder::is_quasi_static(&scene) {
-            true => Vec::new(),
-            false => slow::slow(&scene),
-        },
+    let mut case = Case {
+        settings: ladder::ladder(&scene, shortest_period(&scene)),
+        package: means.package.filter(|_| !ladder::is_quasi_static(&scene)),
+        by_default: Vec::new(),
+        scene,
     };
-    study.climb(&scene, &settings, &judge, &converged.fine, &mut |done| {
-        progress(first + done, total);
+    let counts = case.places().map(|place| {
+        let of_peers = conversation.as_ref().map_or(0, |peers| peers.count(place));
+        (place, case.count(place) + of_peers)
     });
-    study.failed.extend(refused.map(|reason| Failed {
-        label: "peers".to_string(),
-        reason,
-    }));
-    if let Some(conversation) = &mut conversation {
-        let before = first + settings.len();
-        let mut told = |done| progress(before + done, total);
-        conversation.add_runs(&judge, &converged.fine.histories, &mut study, &mut told);
+    let counts: Vec<(Option<f64>, usize)> = counts.collect();
+    // The converged solution and its judge cost much, and so does timing again.
+    let mut before = case.settings.len() / 4;
+    let with_rounds = |runs: usize| runs + runs / 8 + 1;
+    let total = before + counts.iter().map(|(_, runs)| with_rounds(*runs)).sum::<usize>();
+    progress(0, total);
+    let converged = Converged::find(name, &case.scene)?;
+    if case.package.is_some() {
+        let settings = ladder::by_default(case.scene.output.interval);
+        case.by_default = settings
+            .iter()
+            .map(|setting| setting.apply(&case.scene))
+            .collect();
     }
-    study.settle(&scene, conversation.as_mut());
+    let mut studies = Vec::new();
+    for (place, runs) in counts {
+        let mut study = Study::new((name, place), &case.scene, &converged);
+        study.failed.extend(refused.iter().map(|reason| Failed {
+            label: "peers".to_string(),
+            reason: reason.clone(),
+        }));
+        let mut told = |done| progress(before + done, total);
+        told(0);
+        study.run(&case, &converged, conversation.as_mut(), &mut told);
+        before += with_rounds(runs);
+        studies.push(study);
+    }
     progress(total, total);
-    Ok(study)
+    Ok(studies)
+}
+
+/// What all studies of a scene share.
+struct Case<'a> {
+    scene: Scene,
+    /// The ladder offline.
+    settings: Vec<Setting>,
+    package: Option<&'a Package<'a>>,
+    /// The scene with default settings for every tolerance.
+    by_default: Vec<Scene>,
+}
+
+impl Case<'_> {
+    /// Communication steps of the hosts [s], after none for the study offline.
+    fn places(&self) -> impl Iterator<Item = Option<f64>> + use<'_> {
+        let hosts = HOST_STEPS.into_iter().filter(|_| self.package.is_some());
+        std::iter::once(None).chain(hosts.map(Some))
+    }
+
+    /// Number of moorline's runs.
+    fn count(&self, host_step: Option<f64>) -> usize {
+        host_step.map_or(self.settings.len(), |_| TOLERANCES.len())
+    }
 }
 
 /// Distance of the converged solution of a scene from one of half its resolution.
@@ -231,13 +277,56 @@ pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
 }
 
 impl Study {
+    /// A study without runs, offline or in a host of a communication step [s].
+    fn new((name, host_step): (&str, Option<f64>), scene: &Scene, converged: &Converged) -> Study {
+        let on_bed = scene.seabed.is_some();
+        Study {
+            name: name.to_string(),
+            title: scene.title.clone(),
+            host_step,
+            negative_tension: scene.solver.negative_tension,
+            on_bed,
+            converged: label(&converged.setting, &converged.fine, on_bed),
+            uncertainty: converged.uncertainty,
+            runs: Vec::new(),
+            failed: Vec::new(),
+            slow: match host_step.is_some() || ladder::is_quasi_static(scene) {
+                true => Vec::new(),
+                false => slow::slow(scene),
+            },
+        }
+    }
+
+    /// Runs moorline and the peers, and times the runs that the verdicts name in rounds; `done` is called with the number of runs that are done.
+    fn run(
+        &mut self,
+        case: &Case<'_>,
+        converged: &Converged,
+        mut peers: Option<&mut Conversation>,
+        done: &mut dyn FnMut(usize),
+    ) {
+        let mut hosted = Vec::new();
+        match (self.host_step, case.package) {
+            (Some(_), Some(package)) => hosted = self.run_in_host(&case.by_default, package, converged, done),
+            _ => self.climb(&case.scene, &case.settings, converged, done),
+        }
+        if let Some(peers) = &mut peers {
+            let own = case.count(self.host_step);
+            peers.add_runs(converged, self, &mut |of_peers| done(own + of_peers));
+        }
+        self.settle(Repeat {
+            scene: &case.scene,
+            hosted: &hosted,
+            peers,
+        });
+    }
+
     /// Runs all settings except those equivalent to an earlier one.
     fn climb(
         &mut self,
         scene: &Scene,
         settings: &[Setting],
-        judge: &Judge,
-        converged: &Timed,
+        converged: &Converged,
         done: &mut dyn FnMut(usize),
     ) {
         let mut plans = Vec::new();
@@ -250,7 +339,7 @@ impl Study {
                     setting.contact,
                     trial.plan(),
                 );
-                if setting.tolerance.is_none() && plans.contains(&plan) {
+                if plans.contains(&plan) {
                     continue;
                 }
                 plans.push(plan);
@@ -260,7 +349,7 @@ impl Study {
                     code(setting),
                     label(setting, &timed, self.on_bed),
                     timed.cost,
-                    judge.errors(&timed.histories, &converged.histories),
+                    converged.errors(&timed.histories),
                     How::Own(*setting),
                 )),
                 Err(reason) => self.failed.push(Failed {
@@ -269,6 +358,14 @@ impl Study {
                 }),
             }
             done(index + 1);
+        }
+    }
+
+    /// Name of the scene, and the host's communication step.
+    pub fn place(&self) -> String {
+        match self.host_step {
+            Some(step) => format!("{}, {step} s", self.name),
+            None => self.name.clone(),
         }
     }
 
@@ -326,7 +423,8 @@ fn code(setting: &Setting) -> Code {
 
 /// Mesh and step of a run, in words, with the treatment of the bed, where there is one.
 fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
-    let communication = timed.communication.map_or(String::new(), |step| {
+    let communication = timed.communication.filter(|_| setting.by_default.is_none());
+    let communication = communication.map_or(String::new(), |step| {
         format!(", communication step {}", seconds(step))
     });
     let bed = match setting.contact {
@@ -334,8 +432,8 @@ fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
         _ => "",
     };
     let step = format!("step {}{communication}{bed}", seconds(timed.step));
-    match setting.tolerance {
-        Some(tolerance) => format!(
+    match setting.by_default {
+        Some(ByDefault { tolerance, .. }) => format!(
             "tolerance {} %: {}, n = {}, {step}",
             100.0 * tolerance,
             timed.integrator,
@@ -350,7 +448,10 @@ fn described(setting: &Setting) -> String {
     let elements = setting.elements.map_or(String::new(), |n| format!(", n = {n}"));
     let step = setting.time_step_max.map(seconds);
     let step = step.map_or(String::new(), |step| format!(", step {step}"));
-    format!("{}{elements}{step}", code(setting).name())
+    let tolerance = setting.by_default.map_or(String::new(), |by_default| {
+        format!(", tolerance {} %", 100.0 * by_default.tolerance)
+    });
+    format!("{}{elements}{step}{tolerance}", code(setting).name())
 }
 
 /// A time [s] in the multiple of the second that fits.
@@ -396,6 +497,7 @@ mod tests {
         Study {
             name: "scene".to_string(),
             title: "a scene".to_string(),
+            host_step: None,
             negative_tension: true,
             on_bed: true,
             converged: String::new(),

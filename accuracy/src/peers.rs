@@ -15,13 +15,17 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-use crate::errors::{Errors, Histories, Judge, Metric};
+use crate::converged::Converged;
+use crate::errors::{Errors, Histories, Metric};
+use crate::ladder::HOST_STEPS;
 use crate::{Code, Failed, How, Run, Study};
 
 const SCRIPT: &str = include_str!("../peers.py");
 /// Imports all that the script needs, and then prints [`READY`].
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
+/// Beginning of the label of a run with the settings that a peer's decks come with.
+pub(crate) const DECK: &str = "deck: ";
 /// Elements that the peers are tried with [-].
 const ELEMENTS: [usize; 23] = [
     3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80,
@@ -84,6 +88,8 @@ struct Planned {
     label: String,
     /// Runs that differ in their mesh alone, from coarse to fine.
     family: String,
+    /// Communication step [s] of a run in a host.
+    host: Option<f64>,
 }
 
 /// The answer for a run.
@@ -203,9 +209,9 @@ impl Family {
 }
 
 impl Conversation {
-    /// Runs in the peers' ladder.
-    pub(crate) fn count(&self) -> usize {
-        self.runs.len()
+    /// Number of runs for a host of a communication step [s], or offline.
+    pub(crate) fn count(&self, host: Option<f64>) -> usize {
+        self.runs.iter().filter(|run| run.host == host).count()
     }
 
     fn ask<A: DeserializeOwned>(&mut self, question: &Value) -> Result<A, String> {
@@ -227,20 +233,21 @@ impl Conversation {
         }
     }
 
-    /// Makes the runs of the peers' ladder and judges them. A family of settings ends where finer meshes no longer pay; `done` is
+    /// Makes the runs of the peers' ladder for the host of a study, or offline, and judges them. A family of settings ends where finer meshes no longer pay; `done` is
     /// called with the number of runs that are done.
-    pub(crate) fn add_runs(
-        &mut self,
-        judge: &Judge,
-        converged: &Histories,
-        study: &mut Study,
-        done: &mut dyn FnMut(usize),
-    ) {
+    pub(crate) fn add_runs(&mut self, converged: &Converged, study: &mut Study, done: &mut dyn FnMut(usize)) {
         let mut families: BTreeMap<String, Family> = BTreeMap::new();
+        let mut made = 0;
         for number in 0..self.runs.len() {
-            let Planned { peer, label, family } = self.runs[number].clone();
+            let planned = self.runs[number].clone();
+            let Planned {
+                peer,
+                label,
+                family,
+                host,
+            } = planned;
             let family = families.entry(family).or_default();
-            if family.idle >= IDLE_MAX {
+            if host != study.host_step || family.idle >= IDLE_MAX {
                 continue;
             }
             match self.run(number, true) {
@@ -249,7 +256,7 @@ impl Conversation {
                         tension: vec![measured.tension],
                         middle: vec![measured.mid.into_iter().map(Vector3::from).collect()],
                     };
-                    let errors = judge.errors(&histories, converged);
+                    let errors = converged.errors(&histories);
                     family.take(&errors);
                     let cost = measured.cpu_seconds / self.simulated;
                     let run = Run::new(Code::Peer(peer), label, cost, errors, How::Peer(number));
@@ -260,7 +267,8 @@ impl Conversation {
                     study.failed.push(Failed { label, reason });
                 }
             }
-            done(number + 1);
+            made += 1;
+            done(made);
         }
     }
 
@@ -309,6 +317,7 @@ fn question(name: &str, scene: &Scene) -> Option<Value> {
         "duration": scene.output.duration,
         "interval": scene.output.interval,
         "elements": &ELEMENTS[if bed.is_some() { ELEMENTS_ON_BED } else { 0 }..],
+        "hosts": HOST_STEPS,
         "time_limit_seconds": TIME_LIMIT,
     }))
 }

@@ -9,7 +9,7 @@
 use moorline::scene::Scene;
 
 use crate::errors::Metric;
-use crate::ladder::Setting;
+use crate::in_host::Hosted;
 use crate::peers::Conversation;
 use crate::timed::Trial;
 use crate::{Code, How, Run, Study};
@@ -21,19 +21,34 @@ const PASSES_MAX: usize = 8;
 /// Cost of a run over that of the cheapest of its code, up to which it might be the cheapest itself [-].
 const CONTENDER_COST: f64 = 1.5;
 
+/// What repeats the runs of a study.
+pub(crate) struct Repeat<'a> {
+    pub scene: &'a Scene,
+    pub hosted: &'a [Hosted],
+    pub peers: Option<&'a mut Conversation>,
+}
+
+impl Repeat<'_> {
+    /// Processor time of a run over simulated time [-]; `None` where it cannot be repeated.
+    fn cost(&mut self, how: &How) -> Option<f64> {
+        match how {
+            How::Own(setting) => Trial::new(self.scene, setting).ok()?.cost().ok(),
+            How::InHost(number) => self.hosted.get(*number)?.cost().ok(),
+            How::Peer(number) => self.peers.as_mut()?.time(*number),
+        }
+    }
+}
+
 impl Study {
     /// Times the runs that the verdicts name in rounds.
-    pub(crate) fn settle(&mut self, scene: &Scene, mut peers: Option<&mut Conversation>) {
+    pub(crate) fn settle(&mut self, mut repeat: Repeat<'_>) {
         for _ in 0..PASSES_MAX {
             let open = self.unsettled();
             if open.is_empty() {
                 return;
             }
             for index in open {
-                let cost = match &self.runs[index].how {
-                    How::Own(setting) => timed_again(scene, setting),
-                    How::Peer(number) => peers.as_mut().and_then(|peers| peers.time(*number)),
-                };
+                let cost = repeat.cost(&self.runs[index].how);
                 // A run that cannot be repeated keeps the cost it has.
                 let run = &mut self.runs[index];
                 let cost = cost.unwrap_or(run.cost);
@@ -77,10 +92,6 @@ impl Study {
         self.within(metric, level, alike)
             .filter(move |run| run.cost <= most)
     }
-}
-
-fn timed_again(scene: &Scene, setting: &Setting) -> Option<f64> {
-    Trial::new(scene, setting).ok()?.cost().ok()
 }
 
 #[cfg(test)]

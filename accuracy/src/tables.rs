@@ -3,9 +3,17 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use crate::{Code, Metric, Run, Study, Verdict};
+use crate::{Code, Metric, Run, Study, TOLERANCES, Verdict};
 
-/// Writes scene, code, setting, cost with its range, errors and the converged solution's uncertainty of every run of these studies;
+/// Peers with the settings of their decks, and their elements [-].
+const DECKS: [(&str, usize); 4] = [
+    ("MoorDyn", 20),
+    ("MoorDyn", 40),
+    ("CableDyn", 20),
+    ("CableDyn", 40),
+];
+
+/// Writes scene, communication step of the host (empty offline), code, setting, cost with its range, errors and the converged solution's uncertainty of every run of these studies;
 /// `machine` names the processor.
 ///
 /// # Errors
@@ -15,12 +23,13 @@ pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Resu
     let keys = Metric::ALL.map(Metric::key);
     let errors = keys.iter().map(|key| (*key).to_string());
     let uncertainties = keys.iter().map(|key| format!("{key}_uncertainty"));
-    let head = "machine scene code setting cost cost_least cost_greatest";
+    let head = "machine scene host_step code setting cost cost_least cost_greatest";
     let head = head.split(' ').map(str::to_string);
     table.write_record(head.chain(errors).chain(uncertainties))?;
     for study in studies {
         for run in &study.runs {
-            let words = [machine, &study.name, run.code.name(), &run.label].map(str::to_string);
+            let host = host_step(study);
+            let words = [machine, &study.name, &host, run.code.name(), &run.label].map(str::to_string);
             let numbers = Metric::ALL.map(|metric| run.errors.of(metric));
             let limits = Metric::ALL.map(|metric| study.uncertainty.of(metric));
             let numbers = costs(run).into_iter().chain(numbers).chain(limits);
@@ -36,7 +45,8 @@ pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Resu
 /// `out` refuses.
 pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    let head = "machine scene metric level key certain code setting cost cost_least cost_greatest ratio";
+    let head =
+        "machine scene host_step metric level key certain code setting cost cost_least cost_greatest ratio";
     table.write_record(head.split(' '))?;
     for study in studies {
         for verdict in study.verdicts() {
@@ -47,6 +57,7 @@ pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::
                 let words = [
                     machine.to_string(),
                     study.name.clone(),
+                    host_step(study),
                     verdict.metric.key().to_string(),
                     verdict.level.to_string(),
                     verdict.key.to_string(),
@@ -71,29 +82,69 @@ fn number(number: f64) -> String {
     format!("{number:.4e}")
 }
 
-/// The levels that moorline is held to as a table in Markdown, and where a peer comes closest.
+/// Communication step of the host [s]; empty offline.
+fn host_step(study: &Study) -> String {
+    study.host_step.map_or(String::new(), |step| step.to_string())
+}
+
+/// Tables in Markdown: the levels that moorline is held to, offline and in hosts, and what default settings cost in hosts.
 pub fn summary(studies: &[Study]) -> String {
-    let mut text = String::from(
-        "| scene, error | moorline | MoorDyn | CableDyn | ratio to the better | moorline's setting |\n|---|---|---|---|---|---|\n",
+    let offline = |study: &&Study| study.host_step.is_none();
+    let mut text = levels("offline, error", studies.iter().filter(offline));
+    let hosted: Vec<&Study> = studies.iter().filter(|study| !offline(study)).collect();
+    if hosted.is_empty() {
+        return text;
+    }
+    text.push('\n');
+    text.push_str(&levels("in a host, error", hosted.iter().copied()));
+    let tolerances = TOLERANCES.map(|tolerance| format!("moorline, {}", percent(tolerance)));
+    let decks = DECKS.map(|(peer, elements)| format!("{peer}, n = {elements}"));
+    let head: Vec<String> = tolerances.into_iter().chain(decks).collect();
+    let _ = writeln!(
+        text,
+        "\n| default settings in a host: cost, RMS error | {} |",
+        head.join(" | ")
+    );
+    let _ = writeln!(text, "|---|{}", "---|".repeat(head.len()));
+    hosted
+        .into_iter()
+        .for_each(|study| text.push_str(&defaults(study)));
+    text
+}
+
+/// The levels that moorline is held to; `head` is the title of the first column.
+fn levels<'a>(head: &str, studies: impl Iterator<Item = &'a Study>) -> String {
+    let mut text = format!(
+        "| {head} | moorline | MoorDyn | CableDyn | ratio to the better | moorline's setting |\n|---|---|---|---|---|---|\n"
     );
     for study in studies {
         for verdict in study.verdicts().iter().filter(|verdict| verdict.key) {
             text.push_str(&row(study, verdict));
         }
     }
-    text.push_str("\n| scene, moorline's own choice | cost | RMS | low-passed | peak | position |\n|---|---|---|---|---|---|\n");
-    for study in studies {
-        for run in study.runs.iter().filter(|run| run.code == Code::Chosen) {
-            let [rms, low, peak, position] = Metric::ALL.map(|metric| percent(run.errors.of(metric)));
-            let (name, label, cost) = (&study.name, &run.label, cost(Some(run)));
-            // Writing into a string does not fail.
-            let _ = writeln!(
-                text,
-                "| {name}, {label} | {cost} | {rms} | {low} | {peak} | {position} |"
-            );
-        }
-    }
     text
+}
+
+/// Cost and RMS error of moorline by default for each tolerance, and of the peers as decks set them.
+fn defaults(study: &Study) -> String {
+    let chosen = TOLERANCES.map(|tolerance| {
+        let label = format!("tolerance {}:", percent(tolerance));
+        let run = |run: &&Run| run.code == Code::Chosen && run.label.starts_with(&label);
+        study.runs.iter().find(run)
+    });
+    let decks = DECKS.map(|(peer, elements)| {
+        let mesh = format!("n = {elements},");
+        let run = |run: &&Run| run.code.name() == peer && run.is_of_deck() && run.label.contains(&mesh);
+        study.runs.iter().find(run)
+    });
+    let cell = |run: Option<&Run>| {
+        let error = run.map_or(String::new(), |run| {
+            format!(", {}", percent(run.errors.of(Metric::Rms)))
+        });
+        format!("{}{error}", cost(run))
+    };
+    let cells: Vec<String> = chosen.into_iter().chain(decks).map(cell).collect();
+    format!("| {} | {} |\n", study.place(), cells.join(" | "))
 }
 
 fn row(study: &Study, verdict: &Verdict<'_>) -> String {
@@ -115,7 +166,7 @@ fn row(study: &Study, verdict: &Verdict<'_>) -> String {
     });
     format!(
         "| {}, {metric} {} | {} | {} | {} | {ratio} | {setting} |\n",
-        study.name,
+        study.place(),
         percent(verdict.level),
         cost(verdict.own),
         peer("MoorDyn"),

@@ -1,14 +1,13 @@
 //! One run of a scene: its histories and their cost.
 //!
-//! A timed run is driven like a run under a host: before every communication step it is given displacement and
-//! velocity of the moving bodies, computed beforehand: at the end of the step, as for the peers, or with
-//! [`Reconstruction::Smooth`] at its start, and nothing later. The converged solution follows the scene's motion
-//! exactly.
+//! A timed run is driven as by a host, which reads the forces on the moving bodies after every communication step. Before the step it
+//! gives their displacements and velocities at its end, computed beforehand, as for the peers; with default settings the
+//! displacements at its start alone, and nothing later. The converged solution follows the scene's motion exactly.
 
 use std::hint::black_box;
 
 use cpu_time::ThreadTime;
-use moorline::model::{Line, Model, Moving, Role};
+use moorline::model::{Body, Line, Model, Role};
 use moorline::scene::{Integrator, Reconstruction, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
@@ -21,21 +20,31 @@ use crate::ladder::Setting;
 /// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
 const PASSES_MAX: usize = 9;
 const PASSES_TIME: f64 = 0.08;
+/// Rounding of a number of steps [-].
+const ROUNDING: f64 = 1e-9;
 
 /// A run that can be repeated.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
     start: Simulation,
-    /// Motion that the host sets before every step, body by body, contiguous in memory: fetching it is no work of the solver. Empty where
-    /// the scene's motion is followed exactly.
-    said: Vec<Moving>,
-    bodies: usize,
+    /// Inputs before every step, body by body, contiguous in memory: fetching them is no work of the solver. Empty where the scene's motion
+    /// is followed exactly.
+    inputs: Vec<Input>,
+    /// Bodies that the host moves.
+    bodies: Vec<Body>,
     /// Communication step [s].
     step: f64,
     count: usize,
     /// Interval [s] and number of the samples.
     interval: f64,
     samples: usize,
+}
+
+/// Displacement [m, rad] of a body, and its velocity [m/s, rad/s] where the host gives one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Input {
+    pub displacement: [f64; 6],
+    velocity: [Option<f64>; 6],
 }
 
 /// Results of a run.
@@ -71,22 +80,40 @@ impl Timed {
 impl Trial {
     /// A run driven as a host drives it; the error is a message.
     pub(crate) fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+        Trial::in_steps(
+            &setting.apply(scene),
+            setting.communication_step(scene.output.interval),
+        )
+    }
+
+    /// A run of a scene with its setting, driven in communication steps of a length [s].
+    pub(crate) fn in_steps(scene: &Scene, step: f64) -> Result<Trial, String> {
         let interval = scene.output.interval;
-        let step = setting.communication as f64 * interval;
         let samples = samples(scene);
-        let count = samples.div_ceil(setting.communication);
-        let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
-        let time = |index: usize| (index * setting.communication) as f64 * interval;
+        let count = (samples as f64 * interval / step - ROUNDING).ceil() as usize;
+        let mut start = Simulation::new(scene).map_err(|error| error.to_string())?;
         let ahead = start.model().solver.input_reconstruction == Reconstruction::Interpolate;
-        let told = |index: usize| time(index + usize::from(ahead));
-        let first = start.model().moving(0.0);
-        let said = (0..count).flat_map(|index| start.model().moving(told(index)));
-        let (said, bodies) = (said.collect(), first.len());
-        tell(&mut start, &first);
+        let at = |time: f64| {
+            let moving = start.model().moving(time).into_iter();
+            moving.map(|moving| Input {
+                displacement: moving.pose,
+                velocity: moving.velocity.map(|velocity| ahead.then_some(velocity)),
+            })
+        };
+        let first: Vec<Input> = at(0.0).collect();
+        let times = (0..count).map(|index| (index + usize::from(ahead)) as f64 * step);
+        let inputs = times.flat_map(at).collect();
+        let bodies: Vec<Body> = start
+            .model()
+            .moving(0.0)
+            .into_iter()
+            .map(|moving| moving.body)
+            .collect();
+        give(&mut start, &bodies, &first);
         start.restart(0.0).map_err(|error| error.to_string())?;
         Ok(Trial {
             start,
-            said,
+            inputs,
             bodies,
             step,
             count,
@@ -102,8 +129,8 @@ impl Trial {
         let samples = samples(scene);
         Ok(Trial {
             start,
-            said: Vec::new(),
-            bodies: 0,
+            inputs: Vec::new(),
+            bodies: Vec::new(),
             step: scene.output.interval,
             count: samples,
             interval: scene.output.interval,
@@ -111,9 +138,29 @@ impl Trial {
         })
     }
 
+    /// The model of its simulation.
+    pub(crate) fn model(&self) -> &Model {
+        self.start.model()
+    }
+
+    /// Bodies that the host moves.
+    pub(crate) fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// Inputs before every step, body by body.
+    pub(crate) fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    /// Communication step [s].
+    pub(crate) fn step(&self) -> f64 {
+        self.step
+    }
+
     /// Integrator and planned steps in a communication step, by network: two runs with one mesh and the same plan are the same.
     pub(crate) fn plan(&self) -> Vec<(Integrator, usize)> {
-        let steps = |step_max: f64| (self.step / step_max - 1e-9).ceil() as usize;
+        let steps = |step_max: f64| (self.step / step_max - ROUNDING).ceil() as usize;
         let choices = self.start.choices();
         choices
             .map(|choice| (choice.integrator, steps(choice.step_max)))
@@ -143,16 +190,16 @@ impl Trial {
         Ok((timed, long.then(|| self.relative(elapsed))))
     }
 
-    /// Processor time over simulated time [-], the median of a few passes that read nothing.
+    /// Processor time over simulated time [-], the median of a few passes that read the forces on the bodies alone.
     pub(crate) fn cost(&self) -> Result<f64, String> {
-        let mut times = Vec::with_capacity(PASSES_MAX);
-        while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
-            times.push(self.step_through(|simulation| {
-                black_box(simulation);
-            })?);
-        }
-        times.sort_by(f64::total_cmp);
-        Ok(self.relative(times[times.len() / 2]))
+        let pass = || {
+            self.step_through(|simulation| {
+                for body in &self.bodies {
+                    black_box(simulation.host_force(*body));
+                }
+            })
+        };
+        median(pass).map(|time| self.relative(time))
     }
 
     fn relative(&self, elapsed: f64) -> f64 {
@@ -164,8 +211,9 @@ impl Trial {
         let mut simulation = self.start.clone();
         let before = ThreadTime::now();
         for index in 0..self.count {
-            let said = index * self.bodies..(index + 1) * self.bodies;
-            tell(&mut simulation, &self.said[said]);
+            let bodies = self.bodies.len();
+            let inputs = &self.inputs[index * bodies..(index + 1) * bodies];
+            give(&mut simulation, &self.bodies, inputs);
             simulation.advance(self.step).map_err(|error| error.to_string())?;
             each(&simulation);
         }
@@ -173,10 +221,20 @@ impl Trial {
     }
 }
 
-fn tell(simulation: &mut Simulation, said: &[Moving]) {
-    for moving in said {
-        simulation.set_body(moving.body, moving.pose, moving.velocity.map(Some));
+fn give(simulation: &mut Simulation, bodies: &[Body], inputs: &[Input]) {
+    for (body, input) in bodies.iter().zip(inputs) {
+        simulation.set_body(*body, input.displacement, input.velocity);
     }
+}
+
+/// Median of the times [s] of a few passes.
+pub(crate) fn median(mut pass: impl FnMut() -> Result<f64, String>) -> Result<f64, String> {
+    let mut times = Vec::with_capacity(PASSES_MAX);
+    while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
+        times.push(pass()?);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(times[times.len() / 2])
 }
 
 /// Runs a setting as a host drives it, and times it.

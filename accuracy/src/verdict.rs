@@ -1,7 +1,7 @@
 //! Verdicts of a study at a level of error: the codes that reach it, their costs, and the errors at which a peer is cheaper.
 
 use crate::errors::Metric;
-use crate::{Code, Run, Study};
+use crate::{Code, Run, Study, TOLERANCES};
 
 /// Error levels that are judged [-].
 pub const LEVELS: [f64; 5] = [0.05, 0.03, 0.02, 0.01, 0.005];
@@ -15,7 +15,8 @@ pub struct Verdict<'a> {
     pub metric: Metric,
     /// Error level [-].
     pub level: f64,
-    /// moorline is held to this level: 3 % of RMS tension, 1 % in position; of lines without a bed 1 % of RMS tension.
+    /// moorline is held to this level: 3 % of RMS tension, 1 % in position; of lines without a bed 1 % of RMS tension; in a host the
+    /// tolerances of its default settings, of RMS tension.
     pub key: bool,
     /// The converged solution is certain enough to judge this level.
     pub certain: bool,
@@ -81,6 +82,7 @@ impl Study {
             metric,
             level,
             key: match metric {
+                _ if self.host_step.is_some() => metric == Metric::Rms && TOLERANCES.contains(&level),
                 Metric::Rms => level == 0.03 || (level == 0.01 && !self.on_bed),
                 Metric::Position => level == 0.01,
                 Metric::LowPassed | Metric::Peak => false,

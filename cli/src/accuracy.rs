@@ -2,27 +2,39 @@
 
 use std::path::{Path, PathBuf};
 
+use moorline::output::fmi::FmiVersion;
+use moorline::output::package::{Container, Stamp, write_package};
 use moorline::output::report::rounded;
 use moorline::output::write_file;
 use moorline::scene::{Drive, Integrator, Scene};
 use moorline_accuracy::tables::{summary, write_runs, write_verdicts};
 use moorline_accuracy::{
-    Code, Duel, Errors, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, frontier, study,
+    Code, Duel, Errors, LEVELS, Means, Metric, Peers, Run, Slow, Study, Verdict, frontier, study,
 };
 use moorline_decks::Supplement;
+use moorline_host::Fmu;
 
+use crate::Library;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::summary::Table;
 use crate::terminal::{bar, print, read_scene};
 
 /// The public scenes, built in.
-const PUBLIC: [(&str, &str); 5] = [
+const PUBLIC: [(&str, &str); 7] = [
     ("oc3_catenary", include_str!("../../scenes/oc3_catenary.toml")),
     ("oc4_chain", include_str!("../../scenes/oc4_chain.toml")),
     ("taut_polyester", include_str!("../../scenes/taut_polyester.toml")),
     ("lindahl_fast", include_str!("../../scenes/lindahl_fast.toml")),
     ("lindahl_slow", include_str!("../../scenes/lindahl_slow.toml")),
+    (
+        "storm_chain_shallow",
+        include_str!("../../scenes/storm_chain_shallow.toml"),
+    ),
+    (
+        "storm_chain_deep",
+        include_str!("../../scenes/storm_chain_deep.toml"),
+    ),
 ];
 /// moorline's integrators that have a ladder.
 const INTEGRATORS: [Integrator; 4] = [
@@ -41,7 +53,7 @@ pub(crate) fn accuracy(
     supplement: &Supplement,
     drive: &Drive,
     folder: &Path,
-    python: Option<&Path>,
+    (python, library): (Option<&Path>, Library<'_>),
 ) -> Result<(), Failure> {
     let scenes = scenes(paths, supplement, drive)?;
     let _open = Folder::open(folder)?;
@@ -54,17 +66,27 @@ pub(crate) fn accuracy(
     let mut studies = Vec::new();
     for (name, scene) in &scenes {
         let bar = bar(1);
-        let done = study(name, scene, peers.as_ref(), &mut |done, total| {
+        let means = Means {
+            peers: peers.as_ref(),
+            package: Some(&|scene| opened(scene, library)),
+        };
+        let done = study(name, scene, &means, &mut |done, total| {
             bar.set_length(total as u64);
             bar.set_position(done as u64);
         });
         bar.finish_and_clear();
         let done = done.map_err(|error| Failure::Computation(error.to_string()))?;
-        studies.push(done);
+        let text: String = done.iter().map(told).collect();
+        if let Some(offline) = done.first() {
+            let figure = frontier::figure(offline);
+            write_file(&folder.join(format!("{name}.svg")), |w| {
+                w.write_all(figure.as_bytes())
+            })?;
+        }
+        studies.extend(done);
         // Written after every scene: an interrupted run keeps the finished ones.
         write_studies(&machine, &studies, folder)?;
-        let last = studies.last().map(told).unwrap_or_default();
-        printed = printed.and_then(|()| print(&last));
+        printed = printed.and_then(|()| print(&text));
     }
     printed = printed.and_then(|()| print(&format!("written to {}\n", folder.display())));
     if python.is_some() && studies.iter().all(|study| study.peers().is_empty()) {
@@ -72,6 +94,17 @@ pub(crate) fn accuracy(
         return Err(Failure::Computation(text.to_string()));
     }
     printed
+}
+
+/// The FMU of a scene, opened; the error is a message.
+fn opened(scene: &Scene, library: Library<'_>) -> Result<Fmu, String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let (target, text) = (folder.path().join("scene.fmu"), scene.to_toml());
+    let binaries = library.find().map_err(|error| error.to_string())?;
+    let plain = (Container::Fmu, &Stamp::default());
+    write_package((scene, &text), FmiVersion::Two, plain, &binaries, &target)
+        .map_err(|error| error.to_string())?;
+    Fmu::open(&target).map_err(|error| error.to_string())
 }
 
 fn write_studies(machine: &str, studies: &[Study], folder: &Path) -> Result<(), Failure> {
@@ -82,9 +115,7 @@ fn write_studies(machine: &str, studies: &[Study], folder: &Path) -> Result<(), 
         ("summary.md".to_string(), summary(studies)),
         ("overview.svg".to_string(), frontier::overview(studies)),
     ];
-    if let Some(last) = studies.last() {
-        texts.push((format!("{}.svg", last.name), frontier::figure(last)));
-    }
+    texts.extend(frontier::in_host(studies).map(|figure| ("in_host.svg".to_string(), figure)));
     for (name, text) in texts {
         write_file(&file(&name), |w| w.write_all(text.as_bytes()))?;
     }
@@ -136,8 +167,8 @@ fn processor() -> String {
         .to_string()
 }
 
-/// A study in tables: the cheapest runs at each level and the cost of the peers over moorline's, settings of each integrator, moorline's own
-/// choice, and the periods for which equilibria are enough.
+/// A study in tables: the cheapest runs at each level and the cost of the peers over moorline's; offline settings of each integrator and the
+/// periods for which equilibria are enough, in a host default settings.
 fn told(study: &Study) -> String {
     let title = match study.title.as_str() {
         "" => String::new(),
@@ -151,6 +182,15 @@ fn told(study: &Study) -> String {
     let failed: String = failed
         .map(|failed| format!("no result: {}: {}\n", failed.label, failed.reason))
         .collect();
+    if let Some(step) = study.host_step {
+        let head = format!(
+            "{} in a host, steps of {step} s, displacements only: moorline with default settings\n",
+            study.name
+        );
+        let cheapest = format!("cheapest runs\n{}", verdicts(study));
+        let defaults = format!("default settings\n{}{failed}\n", defaults(study));
+        return [head, cheapest, defaults].join("\n");
+    }
     let blocks = [
         format!(
             "{}{title}\nconverged solution: {}; its uncertainty: {}\n",
@@ -164,7 +204,6 @@ fn told(study: &Study) -> String {
             Metric::Rms.title(),
             settings(study)
         ),
-        format!("its own choice\n{}", choices(study)),
         format!("{}{failed}\n", slower(&study.slow)),
     ];
     blocks.join("\n")
@@ -261,13 +300,14 @@ fn settings(study: &Study) -> Table {
     table
 }
 
-/// Settings that moorline chose for each tolerance, and their errors.
-fn choices(study: &Study) -> Table {
+/// Default settings for each tolerance and those of the peers' decks, and their errors.
+fn defaults(study: &Study) -> Table {
     let titles = Metric::ALL.map(Metric::title);
-    let head: Vec<&str> = ["setting", "cost"].into_iter().chain(titles).collect();
+    let head: Vec<&str> = ["", "setting", "cost"].into_iter().chain(titles).collect();
     let mut table = Table::new(&head);
-    for run in study.runs.iter().filter(|run| run.code == Code::Chosen) {
-        let row = [run.label.clone(), cost(Some(run))];
+    let by_default = |run: &&Run| run.code == Code::Chosen || run.is_of_deck();
+    for run in study.runs.iter().filter(by_default) {
+        let row = [run.code.name().to_string(), run.label.clone(), cost(Some(run))];
         table.text_row(row.into_iter().chain(percents(&run.errors)).collect());
     }
     table

@@ -137,7 +137,7 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
             host,
         } => {
             let (host, moved) = (host.supplement(), moved.into());
-            accuracy::accuracy(&scenes, &host, &moved, &output, peers.as_deref())
+            accuracy::accuracy(&scenes, &host, &moved, &output, (peers.as_deref(), library))
         }
         Command::Demo { output } => demo::demo(&output, library),
     }

@@ -17,8 +17,9 @@ fn short_study() -> Folder {
     folder
 }
 
-const STUDIED: [&str; 5] = [
+const STUDIED: [&str; 6] = [
     "accuracy.csv",
+    "in_host.svg",
     "overview.svg",
     "short.svg",
     "summary.md",
@@ -43,6 +44,42 @@ fn a_study_of_a_scene_without_title_or_bed_speaks_of_neither() {
     let text = short_study().done("accuracy short.toml -o out");
     assert_says(&text, &["\nshort\nconverged solution"]);
     assert!(!text.contains("bed"), "{text}");
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn default_settings_keep_their_tolerance_in_a_host_of_short_steps() {
+    let folder = folder_with(&[(
+        "rope.toml",
+        include_str!("../../../tests/scenes/pulled_rope.toml"),
+    )]);
+    let text = folder.done("accuracy rope.toml -o out");
+    assert_says(
+        &text,
+        &[
+            "rope in a host, steps of 0.05 s",
+            "rope in a host, steps of 0.01 s",
+        ],
+    );
+    let table = folder.read("out/accuracy.csv");
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let head = reader.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let column = |name: &str| head.iter().position(|key| key == name).unwrap();
+    let in_host = |step: &str| -> Vec<f64> {
+        let hosted = rows.iter().filter(|row| &row[column("host_step")] == step);
+        let hosted = hosted.inspect(|row| assert_eq!(&row[column("code")], "moorline, default settings"));
+        hosted
+            .map(|row| row[column("tension_rms")].parse().unwrap())
+            .collect()
+    };
+    let errors = in_host("0.01");
+    let kept = errors
+        .iter()
+        .zip([0.05, 0.02, 0.01, 0.005])
+        .all(|(error, tolerance)| *error <= tolerance);
+    assert!(kept, "{errors:?}");
+    assert_eq!((errors.len(), in_host("0.05").len()), (4, 4));
 }
 
 #[test]
@@ -75,7 +112,7 @@ fn peers_that_give_nothing_are_a_computation_that_failed_after_all_else_is_writt
     assert_says(&err(&output), &["no peer gave a result"]);
     assert_says(&out(&output), &["no result: peers: "]);
     let mut written = STUDIED.to_vec();
-    written.insert(2, "peers.py");
+    written.insert(3, "peers.py");
     assert_eq!(folder.names_in("out"), written);
 }
 
