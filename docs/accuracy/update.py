@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Make the tables and figures of speed against error anew on this machine, and the part of docs/accuracy.md that shows them.
 
-Builds the command line, runs `moorline accuracy` over the five public scenes into a folder named after the processor,
+Builds the command line, runs `moorline accuracy` over the public scenes into a folder named after the processor,
 and puts its summary between the marks of docs/accuracy.md. `--page-only` does the last part alone, from the folder's tables.
 """
 
@@ -52,7 +52,8 @@ def shown(folder):
     place = folder.relative_to(HERE.parent).as_posix()
     summary = (folder / "summary.md").read_text(encoding="utf-8")
     text = f"Measured on {machine(folder)}; tables and figures in [{place}]({place}).\n\n"
-    text += f"![cost against error]({place}/overview.svg)\n\n{summary}"
+    text += f"![cost against error]({place}/overview.svg)\n\n"
+    text += f"In a host:\n\n![cost against error in a host]({place}/in_host.svg)\n\n{summary}"
     page.write_text(f"{before}{MARKS[0]}\n{text}{MARKS[1]}{after}", encoding="utf-8")
 
 
