@@ -13,8 +13,9 @@ Input (SI units)
     elements [-], hosts, the communication steps [s] of hosts (none if absent), and time_limit_seconds [s], the CPU time
     that all passes of a run may take. A density of null is a line in air.
 First answer
-    runs, each with peer, label, host, and family, a name that runs share which differ in their mesh alone, from coarse
-    to fine. host is null for a run of the offline ladder, or the one of hosts that the run is in.
+    runs, each with peer, label, host, deck, and family, a name that runs share which differ in their mesh alone, from
+    coarse to fine. host is null for a run of the offline ladder, or the one of hosts that the run is in. deck is the
+    number of elements where the settings are those of a deck, else null.
 Question
     run, its number from 0, and read, whether its results are wanted beside its cost.
 Answer
@@ -514,7 +515,7 @@ def moordyn_hosted(scene, period, bedded, host):
             runs.append(moordyn_run(count, scheme, (step, step), host, f"{family}, path at every step"))
     for count in DECK_ELEMENTS:
         run = moordyn_run(count, "RK2", (host, divided(host, DECK_STEP)), host, "deck: MoorDyn")
-        runs.append(run | {"label": "deck: " + run["label"]})
+        runs.append(run | {"label": "deck: " + run["label"], "deck": count})
     return distinct(runs)
 
 
@@ -660,7 +661,7 @@ def cabledyn_hosted(scene, period, bedded, host):
     for count in DECK_ELEMENTS:
         steps = host, divided(host, period / DECK_PARTS)
         run = cabledyn_run(count, steps, (None, None, None), host, "deck: CableDyn")
-        runs.append(run | {"label": "deck: " + run["label"]})
+        runs.append(run | {"label": "deck: " + run["label"], "deck": count})
     return runs
 
 
@@ -729,7 +730,7 @@ def main():
     runs = moordyn_offline(scene, period, bedded) + cabledyn_runs(scene, period, bedded, None)
     for host in scene.get("hosts", []):
         runs += moordyn_hosted(scene, period, bedded, host) + cabledyn_hosted(scene, period, bedded, host)
-    named = [{key: run[key] for key in ("peer", "label", "family", "host")} for run in runs]
+    named = [{key: run.get(key) for key in ("peer", "label", "family", "host", "deck")} for run in runs]
     print(json.dumps({"runs": named}), file=answers, flush=True)
     limit = scene["time_limit_seconds"]
     for line in sys.stdin:

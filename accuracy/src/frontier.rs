@@ -118,13 +118,12 @@ fn curves(study: &Study, metric: Metric, runs_too: bool) -> Vec<Curve> {
 
 /// Runs with default settings, labelled with the tolerance.
 fn by_default(study: &Study, metric: Metric) -> Curve {
-    let runs = study.runs.iter().filter(|run| run.code == Code::Chosen);
-    let runs = runs.filter(|run| run.errors.of(metric) <= ERROR_MAX);
+    let runs = study.runs.iter().filter_map(|run| Some((run, run.tolerance?)));
+    let runs = runs.filter(|(run, _)| run.errors.of(metric) <= ERROR_MAX);
     let (mut points, mut labels) = (Vec::new(), Vec::new());
-    for run in runs {
+    for (run, tolerance) in runs {
         points.push(place(study, metric, run.errors.of(metric), run.cost));
-        let tolerance = run.label.split(':').next().unwrap_or_default();
-        labels.push(tolerance.replace("tolerance ", ""));
+        labels.push(format!("{} %", 100.0 * tolerance));
     }
     Curve::new(points, [213, 30, 30], Stroke::Marks)
         .named("moorline, default settings for a tolerance")

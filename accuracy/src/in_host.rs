@@ -1,7 +1,7 @@
 //! Default settings in a host: the FMU of the scene, driven through the C interface of FMI 2.0.
 //!
-//! The host gives the displacements of its bodies at the start of every communication step, no velocities, and reads the forces on them after it.
-//! Histories are those of the same simulation outside of the FMU with the same inputs; both are equal bit by bit.
+//! Before every communication step the host sets the displacements of its bodies, but no velocities; after it, it reads the forces on them.
+//! Histories are taken from the same simulation outside the FMU with the same inputs: the two agree bit for bit.
 
 use std::hint::black_box;
 
@@ -11,14 +11,14 @@ use moorline::scene::Scene;
 use moorline_host::{Fmu, HostError};
 
 use crate::converged::Converged;
-use crate::ladder;
+use crate::ladder::{Setting, TOLERANCES};
 use crate::timed::{Timed, Trial, median};
 use crate::{Failed, How, Run, Study, code, described, label};
 
-/// Makes and opens the FMU of a scene; the error is a message.
+/// Packages a scene as an FMU and opens it; the error is a message.
 pub type Package<'a> = dyn Fn(&Scene) -> Result<Fmu, String> + 'a;
 
-/// An FMU whose run can be repeated.
+/// An FMU with its inputs, so that a run can be repeated.
 #[derive(Debug)]
 pub(crate) struct Hosted {
     fmu: Fmu,
@@ -52,7 +52,9 @@ impl Hosted {
             }
         }
         if inputs.is_empty() {
-            return Err("a host moves nothing in the scene".to_string());
+            return Err(
+                "the scene has no moving coupled point or vessel, so a host has nothing to drive".to_string(),
+            );
         }
         let rows = trial.inputs().chunks_exact(trial.bodies().len());
         let displacements =
@@ -95,28 +97,30 @@ impl Hosted {
 }
 
 impl Study {
-    /// Runs the scenes with default settings, one for each tolerance, in the host of this study; returns their FMUs in the order of [`How::InHost`].
+    /// Runs the scenes with default settings, one for each of [`TOLERANCES`], in a host of a communication step [s]; returns their FMUs in the order of
+    /// [`How::InHost`].
     pub(crate) fn run_in_host(
         &mut self,
-        scenes: &[Scene],
+        (scenes, step): (&[Scene], f64),
         package: &Package<'_>,
         converged: &Converged,
         done: &mut dyn FnMut(usize),
     ) -> Vec<Hosted> {
         let mut hosted = Vec::new();
-        let settings = self.host_step.map(ladder::by_default);
-        for (index, (setting, scene)) in settings.iter().flatten().zip(scenes).enumerate() {
-            let step = setting.communication_step(scene.output.interval);
+        for (index, (tolerance, scene)) in TOLERANCES.into_iter().zip(scenes).enumerate() {
+            let setting = Setting::by_default(tolerance);
             match run(scene, step, package) {
                 Ok((timed, fmu)) => {
                     let errors = converged.errors(&timed.histories);
-                    let (label, how) = (label(setting, &timed, self.on_bed), How::InHost(hosted.len()));
-                    self.runs
-                        .push(Run::new(code(setting), label, timed.cost, errors, how));
+                    let (label, how) = (label(&setting, &timed, self.on_bed), How::InHost(hosted.len()));
+                    self.runs.push(Run {
+                        tolerance: Some(tolerance),
+                        ..Run::new(code(&setting), label, timed.cost, errors, how)
+                    });
                     hosted.push(fmu);
                 }
                 Err(reason) => self.failed.push(Failed {
-                    label: described(setting),
+                    label: described(&setting),
                     reason,
                 }),
             }

@@ -61,21 +61,12 @@ pub struct Setting {
     pub integrator: Integrator,
     /// Longest internal step [s].
     pub time_step_max: Option<f64>,
-    /// Default settings for a target error in a host; the rest is then absent.
-    pub by_default: Option<ByDefault>,
+    /// Target error [-] that default settings are found for; the rest is then absent.
+    pub tolerance: Option<f64>,
     /// Intervals of the output from one communication point to the next [-].
     pub communication: usize,
     /// Contact law of the seabed; that of the scene where absent.
     pub contact: Option<ContactLaw>,
-}
-
-/// Default settings as a host uses them: it gives displacements at the start of a step, and no velocities.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ByDefault {
-    /// Target error that mesh, integrator and step are selected for [-].
-    pub tolerance: f64,
-    /// Communication step of the host [s].
-    pub host_step: f64,
 }
 
 impl Setting {
@@ -85,32 +76,26 @@ impl Setting {
             elements: Some(elements),
             integrator,
             time_step_max,
-            by_default: None,
+            tolerance: None,
             communication: 1,
             contact: None,
         }
     }
 
-    /// The setting that moorline chooses.
-    pub fn chosen(by_default: ByDefault) -> Setting {
+    /// Default settings for a target error [-].
+    pub fn by_default(tolerance: f64) -> Setting {
         Setting {
             elements: None,
             integrator: Integrator::Auto,
             time_step_max: None,
-            by_default: Some(by_default),
+            tolerance: Some(tolerance),
             communication: 1,
             contact: None,
         }
     }
 
-    /// Time from one communication point to the next [s], for an interval of the output [s].
-    pub fn communication_step(&self, interval: f64) -> f64 {
-        let own = self.communication as f64 * interval;
-        self.by_default.map_or(own, |by_default| by_default.host_step)
-    }
-
-    /// The scene with this setting, its own mesh, integrator and step put aside. Settings by default are found by convergence trials, as `moorline
-    /// run` and `fmu` find them; other settings get the inputs of the end of a step, as other codes do.
+    /// The scene with this setting in place of its own mesh, integrator and step. Default settings are found by convergence trials, as in
+    /// `moorline run` and `fmu`; with any other setting a host gives the motion at the end of a step, as it does to other codes.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         let length = |line: &moorline::scene::Line| -> f64 {
@@ -131,8 +116,8 @@ impl Setting {
         if let (Some(bed), Some(contact)) = (&mut scene.seabed, self.contact) {
             bed.contact = contact;
         }
-        if let Some(by_default) = self.by_default {
-            scene.solver.tolerance = by_default.tolerance;
+        if let Some(tolerance) = self.tolerance {
+            scene.solver.tolerance = tolerance;
             return discretisation::discretised(&scene).into_owned();
         }
         scene.solver.input_reconstruction = Reconstruction::Interpolate;
@@ -184,11 +169,6 @@ pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     }
     settings.extend([10, 40].map(quasi_static));
     settings
-}
-
-/// Default settings for all target errors in a host of this communication step [s].
-pub(crate) fn by_default(host_step: f64) -> [Setting; 4] {
-    TOLERANCES.map(|tolerance| Setting::chosen(ByDefault { tolerance, host_step }))
 }
 
 /// Returns whether a scene is quasi-static: dynamics is then no measure of it.
@@ -313,13 +293,7 @@ mod tests {
         let elements: Vec<_> = meshed.lines.iter().flat_map(|line| &line.sections).collect();
         let elements: Vec<_> = elements.iter().map(|section| section.elements).collect();
         assert_eq!(elements, [Some(30), Some(10), Some(1)]);
-        let by_default = ByDefault {
-            tolerance: 0.01,
-            host_step: 0.02,
-        };
-        let own = Setting::chosen(by_default);
-        assert_eq!(own.apply(&scene).solver.tolerance, 0.01);
-        assert_eq!(own.communication_step(0.05), 0.02);
+        assert_eq!(Setting::by_default(0.01).apply(&scene).solver.tolerance, 0.01);
     }
 
     #[test]

@@ -29,7 +29,6 @@ use moorline::scene::{ContactLaw, Integrator, MotionPath, Scene};
 use converged::Converged;
 pub use errors::{Errors, Histories, Judge, Metric};
 pub use in_host::Package;
-use ladder::ByDefault;
 pub use ladder::{HOST_STEPS, Setting, TOLERANCES};
 use peers::Conversation;
 pub use peers::{PeerError, Peers};
@@ -49,7 +48,7 @@ pub enum Code {
     /// moorline with this integrator.
     Own(Integrator),
     /// moorline with default settings.
-    Chosen,
+    ByDefault,
     /// Another code, by name.
     Peer(String),
 }
@@ -58,7 +57,7 @@ impl Code {
     /// Name of the code.
     pub fn name(&self) -> &str {
         match self {
-            Code::Chosen => "moorline, default settings",
+            Code::ByDefault => "moorline, default settings",
             Code::Own(Integrator::Leapfrog) => "moorline, leapfrog",
             Code::Own(Integrator::AxialImplicit) => "moorline, axial-implicit",
             Code::Own(Integrator::QuasiStatic) => "moorline, quasi-static",
@@ -85,6 +84,10 @@ pub struct Run {
     pub cost: f64,
     /// Against the converged solution.
     pub errors: Errors,
+    /// Target error of moorline's default settings [-].
+    pub tolerance: Option<f64>,
+    /// Elements of a peer with the settings that its decks come with [-].
+    pub deck: Option<usize>,
     /// All timings.
     costs: Vec<f64>,
     how: How,
@@ -107,14 +110,11 @@ impl Run {
             label,
             cost,
             errors,
+            tolerance: None,
+            deck: None,
             costs: vec![cost],
             how,
         }
-    }
-
-    /// Returns whether it is a peer's with the settings of its decks.
-    pub fn is_of_deck(&self) -> bool {
-        self.label.starts_with(peers::DECK)
     }
 
     /// Least and greatest of its timings [-].
@@ -177,17 +177,17 @@ pub enum StudyError {
     },
 }
 
-/// What a study may use beside the library.
+/// Optional means of a study.
 #[derive(Clone, Copy, Default)]
 pub struct Means<'a> {
     /// The peers.
     pub peers: Option<&'a Peers>,
-    /// Maker of the FMUs for studies in a host.
+    /// Packages scenes as FMUs, for studies in a host.
     pub package: Option<&'a Package<'a>>,
 }
 
-/// Runs the ladder of a scene offline and, where FMUs can be made, the default settings in hosts; `progress` is called with the number of runs that
-/// are done, and of all. The study offline is the first.
+/// Studies a scene offline and, if it can be packaged, in hosts; the offline study comes first. `progress` is called with the number of finished runs and
+/// with the total.
 ///
 /// # Errors
 /// No converged solution can be found. Single runs that fail are listed in the study.
@@ -222,11 +222,8 @@ pub fn study(
     progress(0, total);
     let converged = Converged::find(name, &case.scene)?;
     if case.package.is_some() {
-        let settings = ladder::by_default(case.scene.output.interval);
-        case.by_default = settings
-            .iter()
-            .map(|setting| setting.apply(&case.scene))
-            .collect();
+        let scenes = TOLERANCES.map(|tolerance| Setting::by_default(tolerance).apply(&case.scene));
+        case.by_default = scenes.into();
     }
     let mut studies = Vec::new();
     for (place, runs) in counts {
@@ -256,7 +253,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// Communication steps of the hosts [s], after none for the study offline.
+    /// None for the offline study, then the communication step of each host [s].
     fn places(&self) -> impl Iterator<Item = Option<f64>> + use<'_> {
         let hosts = HOST_STEPS.into_iter().filter(|_| self.package.is_some());
         std::iter::once(None).chain(hosts.map(Some))
@@ -307,7 +304,9 @@ impl Study {
     ) {
         let mut hosted = Vec::new();
         match (self.host_step, case.package) {
-            (Some(_), Some(package)) => hosted = self.run_in_host(&case.by_default, package, converged, done),
+            (Some(step), Some(package)) => {
+                hosted = self.run_in_host((&case.by_default, step), package, converged, done);
+            }
             _ => self.climb(&case.scene, &case.settings, converged, done),
         }
         if let Some(peers) = &mut peers {
@@ -416,14 +415,14 @@ impl Study {
 /// Code that computes with a setting.
 fn code(setting: &Setting) -> Code {
     match setting.integrator {
-        Integrator::Auto => Code::Chosen,
+        Integrator::Auto => Code::ByDefault,
         integrator => Code::Own(integrator),
     }
 }
 
 /// Mesh and step of a run, in words, with the treatment of the bed, where there is one.
 fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
-    let communication = timed.communication.filter(|_| setting.by_default.is_none());
+    let communication = timed.communication.filter(|_| setting.tolerance.is_none());
     let communication = communication.map_or(String::new(), |step| {
         format!(", communication step {}", seconds(step))
     });
@@ -432,8 +431,8 @@ fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
         _ => "",
     };
     let step = format!("step {}{communication}{bed}", seconds(timed.step));
-    match setting.by_default {
-        Some(ByDefault { tolerance, .. }) => format!(
+    match setting.tolerance {
+        Some(tolerance) => format!(
             "tolerance {} %: {}, n = {}, {step}",
             100.0 * tolerance,
             timed.integrator,
@@ -448,8 +447,8 @@ fn described(setting: &Setting) -> String {
     let elements = setting.elements.map_or(String::new(), |n| format!(", n = {n}"));
     let step = setting.time_step_max.map(seconds);
     let step = step.map_or(String::new(), |step| format!(", step {step}"));
-    let tolerance = setting.by_default.map_or(String::new(), |by_default| {
-        format!(", tolerance {} %", 100.0 * by_default.tolerance)
+    let tolerance = setting.tolerance.map_or(String::new(), |tolerance| {
+        format!(", tolerance {} %", 100.0 * tolerance)
     });
     format!("{}{elements}{step}{tolerance}", code(setting).name())
 }

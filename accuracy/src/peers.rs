@@ -24,8 +24,6 @@ const SCRIPT: &str = include_str!("../peers.py");
 /// Imports all that the script needs, and then prints [`READY`].
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
-/// Beginning of the label of a run with the settings that a peer's decks come with.
-pub(crate) const DECK: &str = "deck: ";
 /// Elements that the peers are tried with [-].
 const ELEMENTS: [usize; 23] = [
     3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80,
@@ -90,6 +88,8 @@ struct Planned {
     family: String,
     /// Communication step [s] of a run in a host.
     host: Option<f64>,
+    /// Elements of a run with the settings that decks come with [-].
+    deck: Option<usize>,
 }
 
 /// The answer for a run.
@@ -245,6 +245,7 @@ impl Conversation {
                 label,
                 family,
                 host,
+                deck,
             } = planned;
             let family = families.entry(family).or_default();
             if host != study.host_step || family.idle >= IDLE_MAX {
@@ -260,7 +261,7 @@ impl Conversation {
                     family.take(&errors);
                     let cost = measured.cpu_seconds / self.simulated;
                     let run = Run::new(Code::Peer(peer), label, cost, errors, How::Peer(number));
-                    study.runs.push(run);
+                    study.runs.push(Run { deck, ..run });
                 }
                 Err(reason) => {
                     let label = format!("{peer}, {label}");

@@ -21,7 +21,7 @@ const PASSES_MAX: usize = 8;
 /// Cost of a run over that of the cheapest of its code, up to which it might be the cheapest itself [-].
 const CONTENDER_COST: f64 = 1.5;
 
-/// What repeats the runs of a study.
+/// Everything that is needed to time the runs of a study again.
 pub(crate) struct Repeat<'a> {
     pub scene: &'a Scene,
     pub hosted: &'a [Hosted],
@@ -71,7 +71,7 @@ impl Study {
                 }
             }
         }
-        named.extend(self.runs.iter().filter(|run| run.code == Code::Chosen));
+        named.extend(self.runs.iter().filter(|run| run.tolerance.is_some()));
         let mut indices = Vec::new();
         for run in named {
             let index = self.runs.iter().position(|other| std::ptr::eq(run, other));

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use crate::{Code, Metric, Run, Study, TOLERANCES, Verdict};
+use crate::{Metric, Run, Study, TOLERANCES, Verdict};
 
 /// Peers with the settings of their decks, and their elements [-].
 const DECKS: [(&str, usize); 4] = [
@@ -127,23 +127,17 @@ fn levels<'a>(head: &str, studies: impl Iterator<Item = &'a Study>) -> String {
 
 /// Cost and RMS error of moorline by default for each tolerance, and of the peers as decks set them.
 fn defaults(study: &Study) -> String {
-    let chosen = TOLERANCES.map(|tolerance| {
-        let label = format!("tolerance {}:", percent(tolerance));
-        let run = |run: &&Run| run.code == Code::Chosen && run.label.starts_with(&label);
-        study.runs.iter().find(run)
-    });
-    let decks = DECKS.map(|(peer, elements)| {
-        let mesh = format!("n = {elements},");
-        let run = |run: &&Run| run.code.name() == peer && run.is_of_deck() && run.label.contains(&mesh);
-        study.runs.iter().find(run)
-    });
+    let found = |is: &dyn Fn(&Run) -> bool| study.runs.iter().find(|run| is(run));
+    let own = TOLERANCES.map(|tolerance| found(&|run| run.tolerance == Some(tolerance)));
+    let decks =
+        DECKS.map(|(peer, elements)| found(&|run| run.code.name() == peer && run.deck == Some(elements)));
     let cell = |run: Option<&Run>| {
         let error = run.map_or(String::new(), |run| {
             format!(", {}", percent(run.errors.of(Metric::Rms)))
         });
         format!("{}{error}", cost(run))
     };
-    let cells: Vec<String> = chosen.into_iter().chain(decks).map(cell).collect();
+    let cells: Vec<String> = own.into_iter().chain(decks).map(cell).collect();
     format!("| {} | {} |\n", study.place(), cells.join(" | "))
 }
 

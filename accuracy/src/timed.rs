@@ -80,10 +80,8 @@ impl Timed {
 impl Trial {
     /// A run driven as a host drives it; the error is a message.
     pub(crate) fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
-        Trial::in_steps(
-            &setting.apply(scene),
-            setting.communication_step(scene.output.interval),
-        )
+        let step = setting.communication as f64 * scene.output.interval;
+        Trial::in_steps(&setting.apply(scene), step)
     }
 
     /// A run of a scene with its setting, driven in communication steps of a length [s].

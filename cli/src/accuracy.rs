@@ -305,7 +305,7 @@ fn defaults(study: &Study) -> Table {
     let titles = Metric::ALL.map(Metric::title);
     let head: Vec<&str> = ["", "setting", "cost"].into_iter().chain(titles).collect();
     let mut table = Table::new(&head);
-    let by_default = |run: &&Run| run.code == Code::Chosen || run.is_of_deck();
+    let by_default = |run: &&Run| run.tolerance.is_some() || run.deck.is_some();
     for run in study.runs.iter().filter(by_default) {
         let row = [run.code.name().to_string(), run.label.clone(), cost(Some(run))];
         table.text_row(row.into_iter().chain(percents(&run.errors)).collect());
