@@ -68,7 +68,11 @@ fn chart(study: &Study, metric: Metric, runs_too: bool) -> (Chart, Vec<Curve>) {
     let y = Axis::decades(&curves, 1, "processor time / simulated time".to_string());
     let limit = percent(study, metric, study.uncertainty.of(metric));
     let edge = vec![[limit, y.min], [limit, y.max]];
-    let mut x = Axis::decades(&curves, 0, "error [%]".to_string());
+    let short = match metric {
+        Metric::Position => "mid position, RMS",
+        other => other.title(),
+    };
+    let mut x = Axis::decades(&curves, 0, format!("error of {short} [%]"));
     x.max = (100.0 * ERROR_MAX).log10();
     let band = vec![[x.min.min(limit), y.min], [limit, y.max]];
     x.min = x.min.min(limit);
@@ -80,12 +84,7 @@ fn chart(study: &Study, metric: Metric, runs_too: bool) -> (Chart, Vec<Curve>) {
     for curve in &mut curves {
         curve.name.clear();
     }
-    let short = match metric {
-        Metric::Position => "mid position, RMS",
-        other => other.title(),
-    };
-    let title = format!("{}: {short}", study.place());
-    (Chart::new(title, x, y, curves, SIZE[0], SIZE[1]), named)
+    (Chart::new(study.place(), x, y, curves, SIZE[0], SIZE[1]), named)
 }
 
 fn curves(study: &Study, metric: Metric, runs_too: bool) -> Vec<Curve> {

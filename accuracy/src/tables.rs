@@ -5,6 +5,9 @@ use std::io::{self, Write};
 
 use crate::{Metric, Run, Study, TOLERANCES, Verdict};
 
+/// Words for a level of error that the converged solution is too uncertain to judge.
+pub const UNCERTAIN: &str = "within the converged solution's uncertainty";
+
 /// Peers with the settings of their decks, and their elements [-].
 const DECKS: [(&str, usize); 4] = [
     ("MoorDyn", 20),
@@ -131,17 +134,26 @@ fn defaults(study: &Study) -> String {
     let own = TOLERANCES.map(|tolerance| found(&|run| run.tolerance == Some(tolerance)));
     let decks =
         DECKS.map(|(peer, elements)| found(&|run| run.code.name() == peer && run.deck == Some(elements)));
-    let cell = |run: Option<&Run>| {
-        let error = run.map_or(String::new(), |run| {
-            format!(", {}", percent(run.errors.of(Metric::Rms)))
-        });
-        format!("{}{error}", cost(run))
+    let limit = study.uncertainty.of(Metric::Rms);
+    let error = |run: &Run| match run.errors.of(Metric::Rms) {
+        error if error < limit => format!("{:.1e}, within {}", run.cost, percent(limit)),
+        error => format!("{:.1e}, {}", run.cost, percent(error)),
     };
+    let cell = |run: Option<&Run>| run.map_or("—".to_string(), error);
     let cells: Vec<String> = own.into_iter().chain(decks).map(cell).collect();
     format!("| {} | {} |\n", study.place(), cells.join(" | "))
 }
 
 fn row(study: &Study, verdict: &Verdict<'_>) -> String {
+    let metric = match verdict.metric {
+        Metric::Rms => "RMS tension",
+        Metric::Position => "mid position",
+        other => other.title(),
+    };
+    let place = format!("{}, {metric} {}", study.place(), percent(verdict.level));
+    if !verdict.certain {
+        return format!("| {place} | — | — | — | — | {UNCERTAIN} |\n");
+    }
     let peer = |name: &str| {
         let found = verdict.peers.iter().find(|(peer, _)| *peer == name);
         cost(found.and_then(|(_, run)| *run))
@@ -150,18 +162,11 @@ fn row(study: &Study, verdict: &Verdict<'_>) -> String {
         let range = verdict.ratio_range().unwrap_or([ratio; 2]);
         format!("**{ratio:.0}** ({:.0}–{:.0})", range[0], range[1])
     });
-    let metric = match verdict.metric {
-        Metric::Rms => "RMS tension",
-        Metric::Position => "mid position",
-        other => other.title(),
-    };
     let setting = verdict.own.map_or("—".to_string(), |run| {
         format!("{}, {}", run.code.name().replace("moorline, ", ""), run.label)
     });
     format!(
-        "| {}, {metric} {} | {} | {} | {} | {ratio} | {setting} |\n",
-        study.place(),
-        percent(verdict.level),
+        "| {place} | {} | {} | {} | {ratio} | {setting} |\n",
         cost(verdict.own),
         peer("MoorDyn"),
         peer("CableDyn"),

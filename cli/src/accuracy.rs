@@ -7,7 +7,7 @@ use moorline::output::package::{Container, Stamp, write_package};
 use moorline::output::report::rounded;
 use moorline::output::write_file;
 use moorline::scene::{Drive, Integrator, Scene};
-use moorline_accuracy::tables::{summary, write_runs, write_verdicts};
+use moorline_accuracy::tables::{UNCERTAIN, summary, write_runs, write_verdicts};
 use moorline_accuracy::{
     Code, Duel, Errors, LEVELS, Means, Metric, Peers, Run, Slow, Study, Verdict, frontier, study,
 };
@@ -248,7 +248,7 @@ fn verdicts(study: &Study) -> Table {
 /// Settings of moorline and of the better peer.
 fn how(verdict: &Verdict<'_>) -> String {
     if !verdict.certain {
-        return "within the converged solution's uncertainty".to_string();
+        return UNCERTAIN.to_string();
     }
     let named = |run: &Run| format!("{}, {}", run.code.name(), run.label);
     let own = verdict.own.map_or("not reached".to_string(), named);
