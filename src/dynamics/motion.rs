@@ -14,6 +14,13 @@
 //! where a harmonic motion is sampled symmetrically, and rounding of the host's times would then choose between them.
 //! With velocities the polynomial is fitted to them and integrated from x_k.
 //!
+//! The velocity of the third degree at the end of the step is off by (25/12) m/h on equal steps, with the fourth difference m of the samples, which
+//! is also the error of the position. A cubic with this error of velocity at both ends has accelerations that are off by up to 12.5 m/h²: 18 %
+//! RMS with 40 steps in a period, where positions are off by 0.06 % and velocities by 0.4 %. The tension of a light line follows the
+//! acceleration of its end. On equal steps the velocity is therefore that of the polynomial of degree four: accelerations are
+//! then off by 1.7 % and velocities by 0.07 %, and noise of the samples counts 1.3 times as much. The term of degree four fades out as
+//! the longest of the steps grows to twice the shortest: the errors of the positions at the ends of uneven steps differ and shake the path as much.
+//!
 //! The error of a prediction, e = path − P at t_k with its rate ė, is removed within the coming step if that is no
 //! shorter than the last. Otherwise a step of 1 ms after one of 10 s that ended a metre from the host's position
 //! would jump back by a metre. In that case e decays to zero along a cubic over a time T: the length of the step that
@@ -347,11 +354,11 @@ impl AxesPath {
     fn predict(&mut self, extrapolation: &Extrapolation, samples: Samples) -> Prediction {
         let differences = Differences::new(extrapolation, samples);
         let degree = differences.degree(extrapolation.count, &mut self.degree);
-        let slope = |terms| differences.sum(degree, terms) * Lanes::splat(extrapolation.unit[1]);
+        let rate = Lanes::splat(extrapolation.unit[1]);
         [
             differences.sum(degree, &extrapolation.value),
-            slope(&extrapolation.slope),
-            slope(&extrapolation.slope_before),
+            differences.velocity(degree, &extrapolation.slope) * rate,
+            differences.sum(degree, &extrapolation.slope_before) * rate,
         ]
     }
 
@@ -363,7 +370,7 @@ impl AxesPath {
         let rise = differences.sum(degree, &extrapolation.integral);
         [
             sample.position + rise * Lanes::splat(extrapolation.unit[0]),
-            differences.sum(degree, &extrapolation.value),
+            differences.velocity(degree, &extrapolation.value),
             sample.velocity,
         ]
     }

@@ -131,7 +131,7 @@ const SAMPLED: [(&str, f64); 3] = [
 ];
 
 #[test]
-fn the_estimated_error_of_inputs_is_that_of_tension_within_a_factor() {
+fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
     for (name, period) in SAMPLED {
         let model = by_rules(name);
         let cases = [12.0, 17.0, 21.0, 25.0].map(|points| (points, false));
@@ -143,7 +143,10 @@ fn the_estimated_error_of_inputs_is_that_of_tension_within_a_factor() {
             } = hosted(&model, period, points, velocities);
             let ratio = estimate / error;
             let what = format!("{name}, {points} points, velocities {velocities}");
-            assert!(ratio > 0.4 && ratio < 3.0, "{what}: {error} estimated {estimate}");
+            assert!(
+                ratio > 0.9 && ratio < 12.0,
+                "{what}: {error} estimated {estimate}"
+            );
             assert_eq!(warning.is_some(), estimate > 0.02, "{what}: {estimate}");
         }
     }

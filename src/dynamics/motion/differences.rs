@@ -1,6 +1,8 @@
 //! Polynomials through the newest samples, and the degree with the least expected error.
 
-use super::extrapolation::{DEGREE_MAX, Extrapolation, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms};
+use super::extrapolation::{
+    DEGREE_MAX, Extrapolation, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms, VelocityTerms,
+};
 use crate::math::lanes::{LANES, Lanes};
 
 /// Error of another degree over that of the present one, below which it takes over [-]. On harmonic motions any value
@@ -21,6 +23,8 @@ const UNJUDGED_MAX: f64 = 2.0;
 pub(super) struct Differences {
     /// Differences of the newest samples, by order from 0 on.
     newest: [Lanes; DEGREE_MAX + 1],
+    /// Difference of the next order.
+    next: Lanes,
     /// Errors of polynomials of every degree through the samples before at the newest ones.
     miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
     /// Factors on the errors for the end of the step, where the host does not keep its step.
@@ -50,6 +54,7 @@ impl Differences {
         let before = if extrapolation.all { miss(qt, s3) } else { newest };
         Differences {
             newest: [a, p, pq, pr],
+            next: ps,
             miss: [
                 [miss(p, r0), miss(pq, r1), miss(pr, r2), newest],
                 [miss(q, s0), miss(qr, s1), miss(qs, s2), before],
@@ -130,12 +135,20 @@ impl Differences {
 
     /// Newton's polynomials of these degrees, whose terms have the values `basis`.
     #[inline(always)]
-    pub(super) fn sum(&self, degree: Lanes, basis: &Terms) -> Lanes {
+    pub(super) fn sum<const N: usize>(&self, degree: Lanes, basis: &[f64; N]) -> Lanes {
         let term = |k: usize| {
             let term = self.newest[k] * Lanes::splat(basis[k]);
             term.where_positive(above(degree, k))
         };
         (term(0) + term(1)) + (term(2) + term(3))
+    }
+
+    /// Velocity at the end of the step of polynomials of these degrees; those of the highest degree have one term more. `basis` holds the
+    /// velocities of the terms.
+    #[inline(always)]
+    pub(super) fn velocity(&self, degree: Lanes, basis: &VelocityTerms) -> Lanes {
+        let next = self.next * Lanes::splat(basis[DEGREE_MAX + 1]);
+        self.sum(degree, basis) + next.where_positive(above(degree, DEGREE_MAX))
     }
 }
 

@@ -172,8 +172,8 @@ pub struct Extrapolation {
     /// Products of the times from the newest k samples to the end of the step over these: 1 where the host keeps its step.
     pub(super) stretch: [Terms; JUDGED],
     /// Newton's polynomials of the newest samples at the end of the step, their slopes there and at its start, and their integrals over it.
-    pub(super) value: Terms,
-    pub(super) slope: Terms,
+    pub(super) value: VelocityTerms,
+    pub(super) slope: VelocityTerms,
     pub(super) slope_before: Terms,
     pub(super) integral: Terms,
 }
@@ -200,8 +200,17 @@ impl Reciprocals {
     }
 }
 
+/// Returns 1 for steps of one length [s], 0 where the longest is at least twice the shortest, and linearly between [-].
+fn evenness(steps: &[f64; SAMPLES_MAX - 1]) -> f64 {
+    let shortest = steps.iter().fold(f64::INFINITY, |least, &step| least.min(step));
+    let longest = steps.iter().fold(0.0, |most: f64, &step| most.max(step));
+    (2.0 - longest / shortest).clamp(0.0, 1.0)
+}
+
 /// A number for every term of a polynomial.
 pub(super) type Terms = [f64; DEGREE_MAX + 1];
+/// The same with one term more, for velocities; 0 on uneven steps.
+pub(super) type VelocityTerms = [f64; DEGREE_MAX + 2];
 
 impl Extrapolation {
     /// Empty extrapolation, before the first sample.
@@ -219,8 +228,8 @@ impl Extrapolation {
             inverse: Reciprocals::new(&[f64::NAN; SAMPLES_MAX]),
             reach: [zeros; JUDGED],
             stretch: [zeros; JUDGED],
-            value: zeros,
-            slope: zeros,
+            value: [0.0; DEGREE_MAX + 2],
+            slope: [0.0; DEGREE_MAX + 2],
             slope_before: zeros,
             integral: zeros,
         }
@@ -278,8 +287,10 @@ impl Extrapolation {
         if !self.all {
             self.stretch[1][DEGREE_MAX] = self.stretch[0][DEGREE_MAX];
         }
-        self.value = [1.0, h, h * e1, h * e1 * e2];
-        self.slope = [0.0, 1.0, h + e1, h * e1 + (h + e1) * e2];
+        let third = h * e1 + (h + e1) * e2;
+        let next = evenness(&[h, a, t[1] - t[2], t[2] - t[3], t[3] - t[4]]);
+        self.value = [1.0, h, h * e1, h * e1 * e2, next * h * e1 * e2 * e3];
+        self.slope = [0.0, 1.0, h + e1, third, next * (third * e3 + h * e1 * e2)];
         self.slope_before = [0.0, 1.0, a, a * b];
         self.integral = [
             h,
