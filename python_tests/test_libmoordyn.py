@@ -4,7 +4,6 @@ The programs are those of capi/moordyn/hosts/hosts.c: the calls of WEC-Sim, Hydr
 by moorline's default behind this interface, the same laws, paths and meaning of forces.
 """
 
-import ctypes
 import math
 import os
 import pathlib
@@ -158,29 +157,20 @@ def test_forces_are_moordyns_for_less_processor_time(hosts, tmp_path, name, text
     assert our_time < their_time
 
 
-def at_rest(library, deck, place):
+def at_rest(program, library, folder, text, place):
     """Force of the static equilibrium at a place, after a step of no length."""
-    library = ctypes.CDLL(str(library))
-    library.MoorDyn_Create.restype = ctypes.c_void_p
-    system = ctypes.c_void_p(library.MoorDyn_Create(str(deck).encode()))
-    assert system.value
-    library.MoorDyn_SetVerbosity(system, 4096)
-    values = ctypes.c_double * len(place)
-    force, still = values(), values()
-    t, dt = ctypes.c_double(0.0), ctypes.c_double(1e-6)
-    assert library.MoorDyn_Init(system, values(*place), still) == 0
-    assert library.MoorDyn_Step(system, values(*place), still, force, ctypes.byref(t), ctypes.byref(dt)) == 0
-    assert library.MoorDyn_Close(system) == 0
-    return np.array(force)
+    row = np.array([[*place, *np.zeros(len(place))]])
+    forces, _ = drive(program, library, "wec_sim", folder, text, row, 1e-6)
+    return forces[0]
 
 
 @pytest.mark.parametrize("place", [[3, -2, 1, 0, 0, 0], [0, 0, 0, 0.2, -0.3, 0.4], [5, 1, -1, -0.1, 0.25, -0.5]])
-def test_a_turned_body_has_moordyns_force_and_moment(tmp_path, place):
+def test_a_turned_body_has_moordyns_force_and_moment(hosts, tmp_path, place):
     """Angles are Rx Ry Rz, in any combination."""
-    deck = tmp_path / "deck.txt"
     options = {"dtM": 0.002, "writeLog": 0, "disableOutput": 1, **RELAXATION, "TmaxIC": 800}
-    deck.write_text(with_options(on_body(decks.oc4()), options))
-    ours, theirs = (at_rest(library, deck, place) for library in (OURS, peer_library()))
+    text = with_options(on_body(decks.oc4()), options)
+    ours = at_rest(hosts, OURS, tmp_path / "ours", text, place)
+    theirs = at_rest(hosts, peer_library(), tmp_path / "theirs", text, place)
     for part in (slice(0, 3), slice(3, 6)):
         assert np.linalg.norm(ours[part] - theirs[part]) < 1e-3 * np.linalg.norm(theirs[part])
 
