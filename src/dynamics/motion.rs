@@ -33,7 +33,9 @@
 //! mean acceleration of P over the step, the path is five metres further 12 s after a step of minutes.
 //!
 //! A host that has the motion in advance, or that steps the moving body first, sets the position at t_k + h instead
-//! ([`Reconstruction::Interpolate`]): cubics through the samples then need no prediction.
+//! ([`Reconstruction::Interpolate`]): cubics through the samples then need no prediction. A velocity that the host leaves out follows from the newest
+//! samples. The parabola through three of them has an error of h²/3 x⃛ at both ends of the step, so that accelerations are off by 31 % with 40 steps
+//! in a period; the polynomial of degree four, where the degree that predicts best is the third, leaves 0.5 %.
 //!
 //! Source: divided differences and their remainder, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary
 //! Differential Equations I, eq. III.1.7; the choice of degree, and of T, is derived here. Valid for any sequence of
@@ -53,9 +55,9 @@ use crate::math::hermite::{self, Hermites};
 use crate::math::lanes::{LANES, Lanes};
 use crate::model::{Kinematics, Pose};
 use crate::scene::Reconstruction;
-use differences::Differences;
+use differences::{Differences, above};
 pub use extrapolation::{Clock, Extrapolation};
-use extrapolation::{Order, SAMPLES_MAX, Samples};
+use extrapolation::{DEGREE_MAX, Order, SAMPLES_MAX, Samples};
 pub use fading::Fading;
 
 /// Acceleration that the removal of a prediction error may use in any case [m/s²]: a fiftieth of g.
@@ -181,8 +183,7 @@ impl AxesPath {
         self.ends()
     }
 
-    /// [`AxesPath::extend`] to the host's sample at the step's end. A missing velocity is the slope there of the
-    /// parabola through the last three places.
+    /// [`AxesPath::extend`] to the host's sample at the step's end.
     #[inline(always)]
     fn interpolate(
         &mut self,
@@ -190,19 +191,32 @@ impl AxesPath {
         extrapolation: &Extrapolation,
         sample: &InputSample,
     ) -> [[Lanes; 3]; 2] {
+        self.positions = extrapolation.order.push(&before.positions, sample.position);
+        self.degree = before.degree;
         let mut velocity = sample.velocity;
         if !sample.rated.all_positive() {
-            let [_, length, rate] = extrapolation.span;
-            let (slope_before, rate_before) = before.curve.secant();
-            let slope = (sample.position - before.end[0]) * Lanes::splat(rate);
-            let bend = length * rate_before / (1.0 + length * rate_before);
-            let derived = slope + Lanes::splat(bend) * (slope - slope_before);
+            let derived = self.derive(before, extrapolation);
             velocity = sample.rated.choose(sample.velocity, derived);
         }
         let curve = Hermites::bridge(extrapolation.span, before.end, [sample.position, velocity]);
         (self.curve, self.end) = (curve, [sample.position, velocity]);
         let [start, [.., curvature]] = curve.ends();
         [start, [sample.position, velocity, curvature]]
+    }
+
+    /// Velocity at the newest sample [m/s, rad/s]: that of the polynomial of degree four where the third predicts the samples best, else that of
+    /// the parabola through the last three places.
+    #[inline(never)]
+    fn derive(&mut self, before: &AxesPath, extrapolation: &Extrapolation) -> Lanes {
+        let differences = Differences::new(extrapolation, extrapolation.pick(&self.positions));
+        let degree = differences.degree(extrapolation.count, &mut self.degree);
+        let smooth = differences.velocity(degree, &extrapolation.slope_before);
+        let [_, length, rate] = extrapolation.span;
+        let (slope_before, rate_before) = before.curve.secant();
+        let slope = (self.positions[0] - before.end[0]) * Lanes::splat(rate);
+        let bend = length * rate_before / (1.0 + length * rate_before);
+        let parabola = slope + Lanes::splat(bend) * (slope - slope_before);
+        above(degree, DEGREE_MAX).choose(smooth * Lanes::splat(extrapolation.unit[1]), parabola)
     }
 
     /// [`AxesPath::extend`] where the host goes back in time, where samples are dropped, or where the axes with a

@@ -194,13 +194,9 @@ impl Simulation {
             return Ok(());
         }
         let (time, extrapolation) = (snapshot.state.time, &mut self.extrapolation);
-        match model.solver.input_reconstruction {
-            Reconstruction::Interpolate => extrapolation.reach(time, step),
-            reconstruction => {
-                paths.clock = before.clock;
-                paths.clock.tell(time, step, reconstruction, extrapolation);
-            }
-        }
+        paths.clock = before.clock;
+        let reconstruction = model.solver.input_reconstruction;
+        paths.clock.tell(time, step, reconstruction, extrapolation);
         if !snapshot.follows_scene {
             let inputs = &snapshot.inputs;
             unit::of_four().dispatch(Extend {

@@ -154,6 +154,6 @@ impl Differences {
 
 /// Positive where a degree is at least k.
 #[inline(always)]
-fn above(degree: Lanes, k: usize) -> Lanes {
+pub(super) fn above(degree: Lanes, k: usize) -> Lanes {
     degree - Lanes::splat(k as f64 - 0.5)
 }

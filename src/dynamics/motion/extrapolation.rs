@@ -84,8 +84,8 @@ impl Clock {
         (self.count > 1 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
     }
 
-    /// Adds a sample at a time [s] for a step that starts there [s]: `extrapolation` receives all that the paths need
-    /// to continue by it; its old contents are not read.
+    /// Adds the sample of a step from a time [s] of a length [s], taken at its end with [`Reconstruction::Interpolate`], else at its start:
+    /// `extrapolation` receives all that the paths need to continue by it; its old contents are not read.
     pub fn tell(
         &mut self,
         time: f64,
@@ -93,18 +93,23 @@ impl Clock {
         reconstruction: Reconstruction,
         extrapolation: &mut Extrapolation,
     ) {
-        let last_step = time - self.times[0];
+        let taken = match reconstruction {
+            Reconstruction::Interpolate => time + step,
+            _ => time,
+        };
+        let last_step = taken - self.times[0];
         let order = if last_step > 0.0 {
-            self.made_up = self.made_up.max(time + last_step);
-            self.follow(time, last_step, step)
+            self.made_up = self.made_up.max(taken + last_step);
+            self.follow(taken, last_step, step)
         } else if last_step < 0.0 {
-            (self.count, self.made_up, self.even) = (1, time, 0);
+            (self.count, self.made_up, self.even) = (1, taken, 0);
             Order::Before
         } else {
             Order::Again
         };
-        self.times = order.push(&self.times, time);
+        self.times = order.push(&self.times, taken);
         extrapolation.renew(self, order, step, reconstruction);
+        extrapolation.span = [time, step, 1.0 / step];
     }
 
     /// Adds a time [s] that comes a step [s] after the newest, before another one [s].
@@ -171,10 +176,10 @@ pub struct Extrapolation {
     pub(super) reach: [Terms; JUDGED],
     /// Products of the times from the newest k samples to the end of the step over these: 1 where the host keeps its step.
     pub(super) stretch: [Terms; JUDGED],
-    /// Newton's polynomials of the newest samples at the end of the step, their slopes there and at its start, and their integrals over it.
+    /// Newton's polynomials of the newest samples at the end of the step, their slopes there and at the newest sample, and their integrals over it.
     pub(super) value: VelocityTerms,
     pub(super) slope: VelocityTerms,
-    pub(super) slope_before: Terms,
+    pub(super) slope_before: VelocityTerms,
     pub(super) integral: Terms,
 }
 
@@ -230,24 +235,17 @@ impl Extrapolation {
             stretch: [zeros; JUDGED],
             value: [0.0; DEGREE_MAX + 2],
             slope: [0.0; DEGREE_MAX + 2],
-            slope_before: zeros,
+            slope_before: [0.0; DEGREE_MAX + 2],
             integral: zeros,
         }
     }
 
-    /// Extrapolation of a step from a time [s] with a sample at its end, so that nothing is predicted; its length is
-    /// in [s].
-    #[inline]
-    pub fn reach(&mut self, start: f64, step: f64) {
-        self.reconstruction = Reconstruction::Interpolate;
-        self.span = [start, step, 1.0 / step];
-    }
-
+    /// Factors for a step [s] that follows the newest sample, from which a motion at the same step is predicted as well where that sample is
+    /// the end of the path.
     fn renew(&mut self, clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) {
         let (was_even, start) = (self.even, clock.times[0]);
         let rate = 1.0 / step;
         (self.order, self.reconstruction) = (order, reconstruction);
-        self.span = [start, step, rate];
         let late = clock.made_up - start;
         let is_late = late > step * (1.0 + ROUNDING);
         self.late = is_late.then(|| [clock.longest(step).min(late), late]);
@@ -291,7 +289,7 @@ impl Extrapolation {
         let next = evenness(&[h, a, t[1] - t[2], t[2] - t[3], t[3] - t[4]]);
         self.value = [1.0, h, h * e1, h * e1 * e2, next * h * e1 * e2 * e3];
         self.slope = [0.0, 1.0, h + e1, third, next * (third * e3 + h * e1 * e2)];
-        self.slope_before = [0.0, 1.0, a, a * b];
+        self.slope_before = [0.0, 1.0, a, a * b, next * a * b * (t[0] - t[3])];
         self.integral = [
             h,
             h * h / 2.0,

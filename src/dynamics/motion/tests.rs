@@ -1,6 +1,5 @@
 //! Claims on the paths of a host's motion.
 
-use super::extrapolation::DEGREE_MAX;
 use super::*;
 use approx::assert_relative_eq;
 
