@@ -30,7 +30,7 @@ use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
 use coupling::StepStart;
 use flow::Course;
-use input_error::InputRecord;
+use input_error::{InputRecord, LightEnd};
 use inputs::Inputs;
 use paths::Paths;
 use prescribed::{MotionSource, PrescribedMotion};
@@ -96,6 +96,7 @@ pub struct Simulation {
     prescribed: PrescribedMotion,
     reactions: Reactions,
     scale: Scale,
+    light_end: Option<LightEnd>,
     catenaries: Vec<Option<Catenary>>,
 }
 
@@ -133,6 +134,7 @@ impl Simulation {
             prescribed: PrescribedMotion::new(&model, false, work.choices()),
             reactions: Reactions::new(&model),
             scale: Scale::new(&model),
+            light_end: LightEnd::new(&model, &snapshot.state),
             snapshot,
             work,
             model,

@@ -6,10 +6,17 @@
 //!
 //! e = √(⟨m²/h²⟩/⟨v²⟩)
 //!
-//! of the motion, and 2.5 e is taken as the error of tension, RMS over standard deviation. On `lindahl_fast`, `oc3_catenary` and
-//! `taut_polyester` it is 1 to 10 times that error with 12 to 25 steps a period, displacements only, and with 12 with velocities
-//! (`tests/systems/host_edge.rs`): their tension follows the velocity of the path, whose error is less than m/h. The tension of light cables and
-//! risers follows the acceleration of their hang-off: on `power_cable` 2.5 e is a quarter of the error. The error falls with h³ or faster, as m/h does.
+//! of the motion. Its velocity at the end of a step is off by δ, of about the same size at both ends, so that the acceleration of the
+//! path jumps there by J = 12 δ/h. A change of velocity that is fast for the line makes the tension Z δ with the impedance Z = √(EA m_t) of axial
+//! waves. The error of tension over its standard deviation σ is taken as
+//!
+//! √((2.5 e)² + (Z ⟨|J|⟩h/12 / σ)²).
+//!
+//! The second part is that of the line whose impedance is greatest over its tension at rest, and counts while this line is tight. It is the
+//! greater one where the tension is light and follows the acceleration of the end, on cables and risers; ⟨|J|⟩, not √⟨J²⟩, because a motion whose own
+//! acceleration jumps once is not an error for ten periods. The estimate is 1 to 16 times the error on three heavy lines, and 0.95 to 12 times on
+//! light ones (`tests/systems/host_edge.rs`); an error that a resonance enlarges, because communication points come at the frequency of an axial mode of the line, is
+//! not in it. The error falls with h³ or faster, as m/h does.
 //!
 //! Mean values decay with the time of ten periods, of the frequency √(⟨a²⟩/⟨v²⟩) with the acceleration a. The first
 //! samples, which do not determine a motion, are not counted. The fastest part of the motion dominates the measure,
@@ -24,11 +31,14 @@ use super::Simulation;
 use super::scale::Scale;
 use super::{inputs::Inputs, paths::Paths};
 use crate::dynamics::motion::AxesPath;
-use crate::model::{Model, Role};
-use crate::scene::Reconstruction;
+use crate::dynamics::reaction;
+use crate::model::{End, Model, Role, State};
+use crate::scene::{Integrator, Reconstruction};
 
 /// Error of tension over the relative error of velocity [-].
 const GAIN: f64 = 2.5;
+/// Jump of acceleration over the error of velocity that makes it, per step [-].
+const JUMP: f64 = 12.0;
 /// Periods of the motion over which mean values decay [-].
 const PERIODS: f64 = 10.0;
 /// Periods before a warning [-].
@@ -37,6 +47,8 @@ const PERIODS_MIN: f64 = 3.0;
 const SAMPLES_MIN: usize = 8;
 /// Share of the scene's size below which an error has no effect [-].
 const NEGLIGIBLE: f64 = 1e-7;
+/// Standard deviation of tension over its mean, below which it does not vary [-].
+const CONSTANT: f64 = 1e-6;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;
 
@@ -53,6 +65,10 @@ pub(super) struct InputRecord {
     speed: f64,
     /// Σ a² h [m²/s³].
     bend: f64,
+    /// Σ |δ| h of the light end [m].
+    drift: f64,
+    /// Σ T h [N s] and Σ T² h [N² s] of its tension.
+    tension: [f64; 2],
     /// Periods since the start [-].
     periods: f64,
     /// The last communication step [s].
@@ -63,16 +79,16 @@ pub(super) struct InputRecord {
 type Squares = [f64; 3];
 
 impl InputRecord {
-    /// Records the inputs at a time [s], before they continue the paths.
+    /// Counts a sample; returns whether it is recorded.
+    fn counts(&mut self) -> bool {
+        let recorded = self.samples >= SAMPLES_MIN;
+        self.samples = (self.samples + 1).min(SAMPLES_MIN);
+        recorded
+    }
+
+    /// Records the inputs at the end of the first of two `gaps` between samples [s], before they continue the paths.
     #[inline(never)]
-    pub(super) fn take(&mut self, model: &Model, scale: &Scale, paths: &Paths, inputs: &Inputs, t: f64) {
-        let Some(gaps) = paths.gaps(t) else {
-            return;
-        };
-        if self.samples < SAMPLES_MIN {
-            self.samples += 1;
-            return;
-        }
+    fn take(&mut self, model: &Model, scale: &Scale, paths: &Paths, inputs: &Inputs, gaps: [f64; 2]) {
         let mut squares = [0.0; 3];
         let coupled = model.points.iter().zip(&inputs.points);
         let coupled = coupled.filter(|(point, _)| matches!(point.role, Role::Coupled { .. }));
@@ -91,6 +107,16 @@ impl InputRecord {
         self.add(squares, gaps[0]);
     }
 
+    /// Records the light end with its tension in a state, from the paths before and after it.
+    fn watch(&mut self, end: &LightEnd, model: &Model, state: &State, paths: [&Paths; 2], step: f64) {
+        let tension = end.tension(model, state);
+        if tension > 0.0 {
+            self.drift += step * step / JUMP * end.jump(paths);
+        }
+        self.tension[0] += step * tension;
+        self.tension[1] += step * tension * tension;
+    }
+
     fn add(&mut self, [missed, speed, bend]: Squares, step: f64) {
         let turned = step * self.frequency() / TAU;
         let kept = (1.0 - turned / PERIODS).max(0.5);
@@ -98,6 +124,8 @@ impl InputRecord {
         self.missed = kept * self.missed + missed / step;
         self.speed = kept * self.speed + step * speed;
         self.bend = kept * self.bend + step * bend;
+        self.drift *= kept;
+        self.tension = self.tension.map(|sum| kept * sum);
         self.periods += turned;
         self.step = step;
     }
@@ -111,13 +139,99 @@ impl InputRecord {
     }
 
     /// Estimated error of tension over its variation [-]; 0 where the error is negligible compared with a size [m].
-    fn error(&self, size: f64) -> f64 {
+    fn error(&self, size: f64, light: Option<&LightEnd>) -> f64 {
         let negligible = NEGLIGIBLE * size / self.step;
         if self.speed <= 0.0 || self.missed <= negligible * negligible * self.time {
             return 0.0;
         }
-        GAIN * (self.missed / self.speed).sqrt()
+        let [mean, square] = self.tension.map(|sum| sum / self.time);
+        let variance = square - mean * mean;
+        let of_waves = match light {
+            Some(end) if variance > (CONSTANT * mean).powi(2) => {
+                end.impedance * self.drift / self.time / variance.sqrt()
+            }
+            _ => 0.0,
+        };
+        (GAIN * (self.missed / self.speed).sqrt()).hypot(of_waves)
     }
+}
+
+/// End of a line that a host moves, of those the one whose impedance over its tension at rest is greatest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LightEnd {
+    line: usize,
+    segment: usize,
+    /// Impedance of axial waves, √(EA m_t) [N s/m].
+    impedance: f64,
+    mover: Mover,
+}
+
+/// What moves the end of a line.
+#[derive(Debug, Clone, Copy)]
+enum Mover {
+    /// Coupled point, by its number among these.
+    Point(usize),
+    /// Vessel by its index, with the distance of the end from its origin [m].
+    Vessel(usize, f64),
+}
+
+impl LightEnd {
+    /// Light end of a model at rest; `None` where a host moves no line in which axial waves run.
+    pub(super) fn new(model: &Model, at_rest: &State) -> Option<LightEnd> {
+        if model.solver.integrator == Integrator::QuasiStatic {
+            return None;
+        }
+        let (mut coupled, mut ends) = (0, Vec::new());
+        for point in &model.points {
+            let mover = match &point.role {
+                Role::Coupled { .. } => Mover::Point(coupled),
+                Role::Carried { vessel, arm } => Mover::Vessel(*vessel, arm.norm()),
+                _ => continue,
+            };
+            coupled += usize::from(matches!(mover, Mover::Point(_)));
+            let attached = point.attached.iter();
+            let attached = attached.filter(|(line, _)| model.lines[*line].beam.is_none());
+            ends.extend(attached.map(|&(line, end)| LightEnd::of(model, line, end, mover)));
+        }
+        let ratio = |end: &LightEnd| end.impedance / end.tension(model, at_rest).max(f64::MIN_POSITIVE);
+        ends.into_iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+    }
+
+    fn of(model: &Model, index: usize, end: End, mover: Mover) -> LightEnd {
+        let line = &model.lines[index];
+        let node = line.end_node(end);
+        let segment = node.min(line.segment_count() - 1);
+        let mass = line.nodes.mass_tangent[node] / line.nodes.length[node]; // m_t [kg/m]
+        LightEnd {
+            line: index,
+            segment,
+            impedance: (line.segments.axial_stiffness[segment] * mass).sqrt(),
+            mover,
+        }
+    }
+
+    /// Tension of its segment [N].
+    fn tension(&self, model: &Model, state: &State) -> f64 {
+        let (line, state) = (&model.lines[self.line], &state.lines[self.line]);
+        reaction::tension(line, state, self.segment, model.solver.negative_tension)
+    }
+
+    /// Jump of its acceleration between two paths [m/s²].
+    fn jump(&self, [before, after]: [&Paths; 2]) -> f64 {
+        match self.mover {
+            Mover::Point(index) => jump(&before.points[index].0, &after.points[index].0),
+            Mover::Vessel(index, lever) => {
+                let [before, after] = [before, after].map(|paths| &paths.vessels[index].0);
+                jump(&before[0], &after[0]).hypot(lever * jump(&before[1], &after[1]))
+            }
+        }
+    }
+}
+
+/// Jump of the acceleration between two paths [m/s², rad/s²].
+fn jump(before: &AxesPath, after: &AxesPath) -> f64 {
+    let ([_, [.., last]], [[.., first], _]) = (before.ends(), after.ends());
+    (first - last).xyz().norm()
 }
 
 /// Adds the squares of one path's sample, in metres at a lever [m].
@@ -139,9 +253,16 @@ impl Simulation {
         let mut record = snapshot.input_record;
         let extrapolates = self.model.solver.input_reconstruction != Reconstruction::Interpolate;
         if extrapolates && !snapshot.follows_scene {
-            let (model, time) = (&*self.model, snapshot.state.time);
+            let (model, state) = (&*self.model, &snapshot.state);
             let (paths, inputs) = (&snapshot.paths, &snapshot.inputs);
-            record.take(model, &self.scale, paths, inputs, time);
+            if let Some(gaps) = paths.gaps(state.time)
+                && record.counts()
+            {
+                record.take(model, &self.scale, paths, inputs, gaps);
+                if let Some(end) = &self.light_end {
+                    record.watch(end, model, state, [paths, &self.paths], gaps[0]);
+                }
+            }
         }
         record
     }
@@ -149,7 +270,8 @@ impl Simulation {
     /// Estimated error of tension, RMS over its standard deviation, from the extrapolation of the host's inputs over
     /// the last ten periods of the motion [-]; 0 where nothing is extrapolated.
     pub fn input_error(&self) -> f64 {
-        self.snapshot.input_record.error(self.scale.size)
+        let light = self.light_end.as_ref();
+        self.snapshot.input_record.error(self.scale.size, light)
     }
 
     /// Warning on the inputs of a host whose extrapolation costs more than the tolerance allows.
