@@ -32,7 +32,7 @@ use super::scale::Scale;
 use super::{inputs::Inputs, paths::Paths};
 use crate::dynamics::motion::AxesPath;
 use crate::dynamics::reaction;
-use crate::model::{End, Model, Role, State};
+use crate::model::{End, Line, Model, Role, State};
 use crate::scene::{Integrator, Reconstruction};
 
 /// Error of tension over the relative error of velocity [-].
@@ -160,7 +160,7 @@ impl InputRecord {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LightEnd {
     line: usize,
-    segment: usize,
+    end: End,
     /// Impedance of axial waves, √(EA m_t) [N s/m].
     impedance: f64,
     mover: Mover,
@@ -199,12 +199,11 @@ impl LightEnd {
 
     fn of(model: &Model, index: usize, end: End, mover: Mover) -> LightEnd {
         let line = &model.lines[index];
-        let node = line.end_node(end);
-        let segment = node.min(line.segment_count() - 1);
+        let (node, segment) = at(line, end);
         let mass = line.nodes.mass_tangent[node] / line.nodes.length[node]; // m_t [kg/m]
         LightEnd {
             line: index,
-            segment,
+            end,
             impedance: (line.segments.axial_stiffness[segment] * mass).sqrt(),
             mover,
         }
@@ -213,7 +212,7 @@ impl LightEnd {
     /// Tension of its segment [N].
     fn tension(&self, model: &Model, state: &State) -> f64 {
         let (line, state) = (&model.lines[self.line], &state.lines[self.line]);
-        reaction::tension(line, state, self.segment, model.solver.negative_tension)
+        reaction::tension(line, state, at(line, self.end).1, model.solver.negative_tension)
     }
 
     /// Jump of its acceleration between two paths [m/s²].
@@ -226,6 +225,12 @@ impl LightEnd {
             }
         }
     }
+}
+
+/// Node at the end of a line, and the segment there.
+fn at(line: &Line, end: End) -> (usize, usize) {
+    let node = line.end_node(end);
+    (node, node.min(line.segment_count() - 1))
 }
 
 /// Jump of the acceleration between two paths [m/s², rad/s²].

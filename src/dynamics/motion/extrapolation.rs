@@ -206,7 +206,7 @@ impl Reciprocals {
 }
 
 /// Returns 1 for steps of one length [s], 0 where the longest is at least twice the shortest, and linearly between [-].
-fn evenness(steps: &[f64; SAMPLES_MAX - 1]) -> f64 {
+pub(super) fn evenness(steps: &[f64]) -> f64 {
     let shortest = steps.iter().fold(f64::INFINITY, |least, &step| least.min(step));
     let longest = steps.iter().fold(0.0, |most: f64, &step| most.max(step));
     (2.0 - longest / shortest).clamp(0.0, 1.0)

@@ -9,19 +9,24 @@
 //! 4/(1 − θ) samples. White noise of variance σ² makes residuals of variance σ² (1 + a(θ)), a falling with θ; the motion makes residuals that
 //! rise with h⁴x⁗/(1−θ)⁴. Filters with several θ run side by side, and for each axis the one with the least mean square of its residuals gives
 //! the prediction. On smooth motion that is θ = 0, by orders of magnitude; on noisy motion the scatter of the samples decides. The path leads from
-//! its end to the prediction, and does not return to the noisy sample.
+//! its end to the prediction, and does not return to the noisy sample. With θ = 0, the residual is the fourth difference of the samples, and the velocity that of the
+//! polynomial through five of them, as in `Smooth`.
 //!
 //! Source: Morrison (1969), Introduction to Sequential Smoothing and Prediction, chapter 13 (the filter); the choice of θ is derived here.
 //! Valid for steps of about equal length: z is scaled to another step, the gains are those of equal ones.
 
 use serde::{Deserialize, Serialize};
 
+use super::extrapolation::evenness;
 use crate::math::lanes::{LANES, Lanes};
 
 /// Memories θ of the filters [-].
 const MEMORIES: [f64; 8] = [0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92];
 /// Part of the mean square of the residuals that is kept from sample to sample [-].
 const KEPT: f64 = 0.9;
+
+/// Velocity that the fourth difference of equal steps adds to that of a cubic a step later, times the step [-].
+const NEXT: f64 = 25.0 / 12.0;
 
 /// Scaled derivatives of one filter along four axes [m, rad].
 type Cubic = [Lanes; 4];
@@ -60,10 +65,15 @@ impl Fading {
             return [sample, Lanes::splat(0.0)];
         }
         let to_sample = if self.step > 0.0 { passed / self.step } else { 1.0 };
+        let even = evenness(&[step, passed, if self.step > 0.0 { self.step } else { passed }]);
+        let mut missed = Lanes::splat(0.0);
         let filters = MEMORIES.iter().zip(&mut self.cubics).zip(&mut self.residuals);
         for ((&memory, cubic), square) in filters {
             let mut there = shifted(scaled(*cubic, to_sample));
             let residual = sample - there[0];
+            if memory == 0.0 {
+                missed = residual;
+            }
             for (part, gain) in there.iter_mut().zip(gains(memory)) {
                 *part = *part + Lanes::splat(gain) * residual;
             }
@@ -78,6 +88,9 @@ impl Fading {
             let best =
                 (1..squares.len()).fold(0, |best, i| if squares[i] < squares[best] { i } else { best });
             (to[0][axis], to[1][axis]) = (ahead[best][0][axis], ahead[best][1][axis]);
+            if best == 0 {
+                to[1][axis] += even * NEXT * missed[axis];
+            }
         }
         [to[0], Lanes::splat(1.0 / step) * to[1]]
     }
@@ -138,6 +151,14 @@ mod tests {
     #[test]
     fn smooth_motion_keeps_the_fourth_order_of_the_cubic_through_the_samples() {
         let found = [0.2, 0.1, 0.05].map(|step| errors(0.0, step)[0]);
+        for pair in found.windows(2) {
+            assert!(((pair[0] / pair[1]).log2() - 4.0).abs() < 0.1, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn the_velocity_of_smooth_motion_has_the_fourth_order_of_five_samples() {
+        let found = [0.1, 0.05, 0.025].map(|step| errors(0.0, step)[1]);
         for pair in found.windows(2) {
             assert!(((pair[0] / pair[1]).log2() - 4.0).abs() < 0.1, "{found:?}");
         }
