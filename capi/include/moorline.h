@@ -148,6 +148,13 @@ int moorline_reset(moorline_simulation simulation);
 // Steps by a time [s]. Inputs hold for the start of the step, or for its end where the scene says so.
 int moorline_step(moorline_simulation simulation, double step);
 
+// Gives the warnings on the scene, the start and the steps that were not given before, a line each; an empty text where there are none. A text that
+// does not fit into `room` is given again.
+int moorline_warnings(moorline_simulation simulation,
+                      char *text,
+                      size_t room,
+                      size_t *needed);
+
 // Gives the time [s].
 int moorline_time(moorline_simulation simulation, double *time);
 

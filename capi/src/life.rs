@@ -95,6 +95,25 @@ pub unsafe extern "C" fn moorline_step(simulation: moorline_simulation, step: f6
     edge::call(simulation, "moorline_step", |session| session.step(step))
 }
 
+/// Gives the warnings on the scene, the start and the steps that were not given before, a line each; an empty text where there are none. A text that
+/// does not fit into `room` is given again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn moorline_warnings(
+    simulation: moorline_simulation,
+    text: *mut c_char,
+    room: usize,
+    needed: *mut usize,
+) -> c_int {
+    edge::call(simulation, "moorline_warnings", |session| {
+        // SAFETY: room for a text, and one number.
+        unsafe { edge::give_text(&session.warnings, text, room, needed) }?;
+        if room > session.warnings.len() {
+            session.warnings.clear();
+        }
+        Ok(())
+    })
+}
+
 /// Gives the time [s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_time(simulation: moorline_simulation, time: *mut f64) -> c_int {

@@ -7,8 +7,8 @@ use moorline::discretisation::discretised;
 use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json};
-use moorline::scene::{LoadError, Scene};
-use moorline::simulation::{self, NO_FLOW, Simulation, Snapshot, WaterFlow};
+use moorline::scene::{LoadError, Note, Scene};
+use moorline::simulation::{self, NO_FLOW, Simulation, Snapshot, Watch, WaterFlow};
 use moorline_decks::load;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -91,16 +91,23 @@ pub(crate) struct Session {
     origin: Inputs,
     start_time: f64,
     simulation: Option<Simulation>,
+    watch: Option<Watch>,
+    /// Warnings that the host has not read, a line each.
+    pub(crate) warnings: String,
 }
 
 impl Session {
     pub(crate) fn load(path: &Path) -> Outcome<Session> {
         let loaded = load(path).map_err(|error| Failure::new(MOORLINE_SCENE_ERROR, in_words(&error)))?;
-        Session::new(loaded.scene)
+        let mut session = Session::new(loaded.scene)?;
+        session.note(&loaded.notes);
+        Ok(session)
     }
 
     pub(crate) fn read(text: &str) -> Outcome<Session> {
-        Session::new(Scene::from_toml(text).map_err(scene_error)?)
+        let mut session = Session::new(Scene::from_toml(text).map_err(scene_error)?)?;
+        session.note(&session.scene.notes());
+        Ok(session)
     }
 
     fn new(scene: Scene) -> Outcome<Session> {
@@ -120,6 +127,8 @@ impl Session {
             scene,
             start_time: 0.0,
             simulation: None,
+            watch: None,
+            warnings: String::new(),
         })
     }
 
@@ -129,6 +138,7 @@ impl Session {
         let scene = discretised(&self.scene).into_owned();
         *self = Session {
             inputs: self.inputs.clone(),
+            warnings: std::mem::take(&mut self.warnings),
             ..Session::new(scene)?
         };
         Ok(())
@@ -161,7 +171,10 @@ impl Session {
                 "the start time {time} s is not finite"
             )));
         }
-        self.simulation = Some(equilibrium(&self.scene, time, &self.inputs)?);
+        let simulation = equilibrium(&self.scene, time, &self.inputs)?;
+        self.watch = Some(Watch::new(&self.scene, &simulation));
+        self.simulation = Some(simulation);
+        self.watch();
         self.origin = self.inputs.clone();
         self.start_time = time;
         Ok(())
@@ -170,6 +183,22 @@ impl Session {
     /// Goes back to before the start; parameters and inputs stay.
     pub(crate) fn reset(&mut self) {
         self.simulation = None;
+        self.watch = None;
+    }
+
+    /// Keeps notes for the host.
+    fn note(&mut self, notes: &[Note]) {
+        for note in notes {
+            self.warnings += &format!("{note}\n");
+        }
+    }
+
+    /// Notes on the present state, each once.
+    fn watch(&mut self) {
+        if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
+            let notes = watch.look(simulation);
+            self.note(&notes);
+        }
     }
 
     /// Steps by a time [s].
@@ -185,6 +214,7 @@ impl Session {
             let advanced = simulation.advance(step);
             advanced.map_err(|error| Failure::new(MOORLINE_STEP_ERROR, error.to_string()))?;
         }
+        self.watch();
         Ok(())
     }
 
@@ -488,7 +518,12 @@ impl Session {
         };
         let target = next.as_mut().unwrap_or(self);
         match (saved.snapshot, &mut target.simulation) {
-            (Some(snapshot), Some(simulation)) => simulation.restore(snapshot),
+            (Some(snapshot), Some(simulation)) => {
+                simulation.restore(snapshot);
+                if let Some(watch) = &mut target.watch {
+                    watch.resume(simulation);
+                }
+            }
             (None, simulation) => *simulation = None,
             (Some(_), None) => return Err(damaged()),
         }
@@ -516,6 +551,7 @@ impl Session {
         if saved.snapshot.is_some() {
             other.start(saved.start_time)?;
         }
+        other.warnings.clone_from(&self.warnings);
         Ok(other)
     }
 }

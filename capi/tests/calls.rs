@@ -19,6 +19,7 @@ unsafe extern "C" {
     fn moorline_start(simulation: Handle, time: f64) -> c_int;
     fn moorline_reset(simulation: Handle) -> c_int;
     fn moorline_step(simulation: Handle, step: f64) -> c_int;
+    fn moorline_warnings(simulation: Handle, text: *mut c_char, room: usize, needed: *mut usize) -> c_int;
     fn moorline_time(simulation: Handle, time: *mut f64) -> c_int;
     fn moorline_save(simulation: Handle, bytes: *mut u8, room: usize, needed: *mut usize) -> c_int;
     fn moorline_restore(simulation: Handle, bytes: *const u8, count: usize) -> c_int;
@@ -386,6 +387,46 @@ fn what_cannot_be_used_has_its_code_and_a_sentence() {
         refused(moorline_step(one, 0.1), MOORLINE_INVALID_HANDLE, "closed");
         refused(moorline_close(one), MOORLINE_INVALID_HANDLE, "closed");
         assert_eq!(moorline_close(null_mut()), MOORLINE_OK);
+    }
+}
+
+fn warnings(simulation: Handle) -> String {
+    let mut needed = 0;
+    // SAFETY: a number, and then room for the text.
+    unsafe {
+        let asked = moorline_warnings(simulation, null_mut(), 0, &raw mut needed);
+        assert_eq!(asked, MOORLINE_OK);
+        let mut text = vec![0 as c_char; needed];
+        let given = moorline_warnings(simulation, text.as_mut_ptr(), needed, null_mut());
+        assert_eq!(given, MOORLINE_OK);
+        let text = text.iter().take_while(|c| **c != 0);
+        text.map(|c| char::from(*c as u8)).collect()
+    }
+}
+
+#[test]
+fn likely_mistakes_are_told_once() {
+    let simulation = read(&SCENE.replace("1.0e8", "1.0e12"));
+    let of_scene = warnings(simulation);
+    assert!(
+        of_scene.contains("axial_stiffness") && of_scene.ends_with('\n'),
+        "{of_scene}"
+    );
+    // SAFETY: an array of three values.
+    unsafe {
+        assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK);
+        assert_eq!(warnings(simulation), "");
+        let buoy = [-12.0, 0.0, 0.0];
+        assert_eq!(
+            moorline_move(simulation, 0, buoy.as_ptr(), null(), 3),
+            MOORLINE_OK
+        );
+        assert_eq!(moorline_step(simulation, 1.0), MOORLINE_OK, "{}", message());
+        let of_step = warnings(simulation);
+        assert!(of_step.contains("buoy has moved by 12.000 m"), "{of_step}");
+        assert_eq!(moorline_step(simulation, 1.0), MOORLINE_OK, "{}", message());
+        assert_eq!(warnings(simulation), "");
+        moorline_close(simulation);
     }
 }
 

@@ -71,7 +71,6 @@ pub(crate) struct Instance {
     /// Statics with the present parameters and inputs, or the end of the last step; `None` until they are solved.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
-    has_warned_of_inputs: bool,
     /// Notes on the scene that are in the log.
     noted: Vec<Note>,
     /// Observes the steps, where warnings are logged.
@@ -119,7 +118,6 @@ impl Instance {
             time: 0.0,
             simulation: None,
             has_warned_of_time: false,
-            has_warned_of_inputs: false,
             noted: Vec::new(),
             watch: None,
             step_status: Status::Ok,
@@ -259,7 +257,6 @@ impl Instance {
         self.time = 0.0;
         self.simulation = None;
         self.has_warned_of_time = false;
-        self.has_warned_of_inputs = false;
         self.watch = None;
         self.step_status = Status::Ok;
         Ok(())
@@ -354,12 +351,6 @@ impl Instance {
         simulation.set_flow(&self.flow);
         simulation.advance(step).map_err(|e| e.to_string())?;
         self.time = at + step; // the host's clock, so that rounding does not add up
-        if !self.has_warned_of_inputs
-            && let Some(warning) = simulation.input_warning()
-        {
-            self.has_warned_of_inputs = true;
-            self.log.push(Topic::Warning, || warning);
-        }
         self.log_watch();
         Ok(())
     }

@@ -1,14 +1,16 @@
 //! A simulation that Python steps, and its saved state.
 
 use std::collections::HashMap;
+use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{Body, End, Model};
 use moorline::scene::LoadedScene;
-use moorline::simulation::{self, NO_FLOW, Simulation as Mooring, WaterFlow};
+use moorline::simulation::{self, NO_FLOW, Simulation as Mooring, Watch, WaterFlow};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
@@ -339,9 +341,20 @@ pub(crate) struct Simulation {
     start: Arc<Start>,
     given: Given,
     mooring: Held,
+    watch: Watch,
 }
 
 impl Simulation {
+    /// Gives Python's warnings on the present state, each once.
+    fn warn(&mut self, py: Python<'_>) -> PyResult<()> {
+        let notes = self.watch.look(self.mooring.change());
+        for note in notes {
+            let text = self.table.loaded.locate_note(note).to_string();
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(text)?, 1)?;
+        }
+        Ok(())
+    }
+
     /// Value of a scalar output now.
     fn output(&self, mooring: &Mooring, row: usize) -> Result<f64, Failure> {
         let variable = self.table.variable(row);
@@ -409,12 +422,15 @@ impl Simulation {
         });
         let (loaded, begun) = (table.loaded.clone(), start.clone());
         let mooring = aside(py, None, move |_| begin(&loaded, &begun))??;
-        Ok(Simulation {
+        let mut simulation = Simulation {
+            watch: Watch::new(&table.loaded.scene, &mooring),
             table: Arc::new(table),
             start,
             given,
             mooring: Held::new(mooring),
-        })
+        };
+        simulation.warn(py)?;
+        Ok(simulation)
     }
 
     /// The scene, with its discretisation.
@@ -450,14 +466,8 @@ impl Simulation {
             .collect()
     }
 
-    /// Warning on inputs whose extrapolation costs more than the tolerance.
-    #[getter]
-    fn warning(&self) -> Option<String> {
-        self.mooring.read().input_warning()
-    }
-
     /// Sets inputs, by names or as an array in the order of `input_names`, and steps from the present time to `h` [s] later. An input
-    /// that is not named keeps its value; a velocity of None is derived from the displacements.
+    /// that is not named keeps its value; a velocity of None is derived from the displacements. Likely mistakes are warned of once.
     fn advance(&mut self, py: Python<'_>, inputs: &Bound<'_, PyAny>, h: f64) -> PyResult<()> {
         if !(h.is_finite() && h >= 0.0) {
             return Err(
@@ -477,7 +487,8 @@ impl Simulation {
             given.hand_over(mooring);
             mooring.advance(h)
         });
-        Ok(advanced.map_err(Failure::Step)?)
+        advanced.map_err(Failure::Step)?;
+        self.warn(py)
     }
 
     /// An input, output or parameter by name.
@@ -677,7 +688,9 @@ impl Simulation {
             self.mooring = Held::new(aside(py, None, move |_| begin(&loaded, &start))??);
             self.start = Arc::new(saved.start.clone());
         }
-        self.mooring.change().restore(saved.snapshot.clone());
+        let mooring = self.mooring.change();
+        mooring.restore(saved.snapshot.clone());
+        self.watch.resume(mooring);
         self.given.clone_from(&saved.given);
         Ok(())
     }

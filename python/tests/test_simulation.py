@@ -3,6 +3,7 @@
 import copy
 import math
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -169,3 +170,20 @@ def test_a_vessel_is_moved_by_pose(semi):
     assert simulation.input_names == [f"platform.{axis}" for axis in ("x", "y", "z", "roll", "pitch", "yaw")]
     simulation.advance({"platform.pitch": 0.01}, 0.05)
     assert abs(simulation["platform.my"]) > 0.0
+
+
+def test_likely_mistakes_are_warned_of_once(chain):
+    simulation = moorline.Simulation(chain)
+    with pytest.warns(UserWarning, match="has moved by 50.000 m in one communication step"):
+        simulation.advance({"fairlead.x": 50.0}, 5.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulation.advance({"fairlead.x": 0.0}, 5.0)
+
+
+def test_a_motion_of_few_samples_is_warned_of(chain):
+    simulation = moorline.Simulation(chain)
+    with pytest.warns(UserWarning, match="are too few for its extrapolation") as found:
+        for k in range(60):
+            simulation.advance({"fairlead.x": 2.0 * math.sin(math.pi * k / 5)}, 0.8)
+    assert len(found) == 1

@@ -1,4 +1,4 @@
-//! Notes on likely mistakes in a run: ends that jump, lines strained beyond realistic strains, tables that are left.
+//! Notes on likely mistakes in a run: ends that jump, inputs that are too few, lines strained beyond realistic strains, tables that are left.
 
 mod left_tables;
 
@@ -17,6 +17,7 @@ const JUMP: f64 = 0.1;
 pub struct Watch {
     lines: Vec<Watched>,
     has_jumped: bool,
+    has_noted_inputs: bool,
     tables: LeftTables,
 }
 
@@ -42,6 +43,7 @@ impl Watch {
         Watch {
             lines: watched.collect(),
             has_jumped: false,
+            has_noted_inputs: false,
             tables: LeftTables::new(scene),
         }
     }
@@ -71,6 +73,12 @@ impl Watch {
                 notes.push(strained(simulation, index, strain, watched.strain_max));
                 watched.strain_max = f64::INFINITY;
             }
+        }
+        if !self.has_noted_inputs
+            && let Some(text) = simulation.input_warning()
+        {
+            self.has_noted_inputs = true;
+            notes.push(Note::new("solver.input_error", text));
         }
         self.tables.look(simulation, &mut notes);
         notes

@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use moorline::scene::Scene;
-use moorline::simulation::Snapshot;
+use moorline::simulation::{Snapshot, Watch};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -129,10 +129,12 @@ impl System {
         if self.simulation.is_none() || self.start != body.start {
             let mut simulation = self.simulation_of(&body.start)?;
             simulation.restore(body.snapshot);
+            self.watch = Some(Watch::new(&self.deck.scene, &simulation));
             self.simulation = Some(simulation);
             self.start = body.start;
-        } else if let Some(simulation) = &mut self.simulation {
+        } else if let (Some(simulation), Some(watch)) = (&mut self.simulation, &mut self.watch) {
             simulation.restore(body.snapshot);
+            watch.resume(simulation);
         }
         self.place = body.place;
         self.ahead = body.ahead;

@@ -5,7 +5,7 @@ use std::path::Path;
 use moorline::dynamics::{StepError, StepFailure};
 use moorline::model::Body;
 use moorline::scene::{AngleOrder, InitialShape, Scene};
-use moorline::simulation::Simulation;
+use moorline::simulation::{Simulation, Watch};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +58,7 @@ pub struct System {
     /// Time of the host less that of the simulation [s].
     pub(crate) ahead: f64,
     files: Option<Files>,
+    pub(crate) watch: Option<Watch>,
     pub(crate) has_stepped: bool,
     has_warned_of_time: bool,
 }
@@ -89,6 +90,7 @@ impl System {
             place: [Vec::new(), Vec::new()],
             ahead: 0.0,
             files: None,
+            watch: None,
             has_stepped: false,
             has_warned_of_time: false,
             deck,
@@ -127,8 +129,11 @@ impl System {
 
     /// Builds the simulation of a start; on failure the present one stays.
     fn begin(&mut self, start: Start) -> Outcome {
-        self.simulation = Some(self.simulation_of(&start)?);
+        let simulation = self.simulation_of(&start)?;
+        self.watch = Some(Watch::new(&self.deck.scene, &simulation));
+        self.simulation = Some(simulation);
         self.start = start;
+        self.log_watch();
         self.has_stepped = false;
         self.has_warned_of_time = false;
         self.ahead = 0.0;
@@ -240,9 +245,19 @@ impl System {
         place.extend(x.iter().zip(xd).map(|(x, v)| x + v * dt));
         rate.clear();
         rate.extend_from_slice(xd);
+        self.log_watch();
         let time = t + dt;
         self.write_channels(time)?;
         Ok(Stepped { time })
+    }
+
+    /// Logs notes on the present state, each once.
+    fn log_watch(&mut self) {
+        if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
+            for note in watch.look(simulation) {
+                self.log.write(WARNING, &note.to_string());
+            }
+        }
     }
 
     /// Takes the host's clock at the first step; later it may differ only where nothing depends on time.

@@ -371,3 +371,25 @@ fn the_host_may_begin_at_any_time() {
     assert_relative_eq!(stepped.time, 100.1, max_relative = 1e-12);
     assert_relative_eq!(case.system.time().unwrap(), 100.1, max_relative = 1e-12);
 }
+
+#[test]
+fn a_host_that_steps_too_coarsely_reads_so_in_the_log() {
+    let (folder, path) = deck(DECK);
+    let log = folder.path().join("log.txt");
+    let mut system = System::create(&path, Settings::default(), Log::from_level(NONE)).unwrap();
+    system.log.set_file(&log).unwrap();
+    system.start(&PLACE, &[0.0; 9], false).unwrap();
+    let mut place = PLACE;
+    place[6] -= 14.0;
+    let mut velocity = [0.0; 9];
+    velocity[6] = -14.0;
+    system.step(&PLACE, &velocity, 0.0, 1.0).unwrap();
+    system.step(&place, &[0.0; 9], 1.0, 1.0).unwrap();
+    let log = std::fs::read_to_string(log).unwrap();
+    assert_eq!(
+        log.matches("has moved by 14.000 m in one communication step")
+            .count(),
+        1,
+        "{log}"
+    );
+}

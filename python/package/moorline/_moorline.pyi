@@ -102,12 +102,9 @@ class Simulation:
     @property
     def units(self) -> dict[str, str]:
         """Unit of every input, output and parameter."""
-    @property
-    def warning(self) -> str | None:
-        """Warning on inputs whose extrapolation costs more than the tolerance."""
     def advance(self, inputs: dict[str, float | None] | Sequence[float] | NDArray[np.float64] | None, h: float) -> None:
         """Sets inputs, by names or as an array in the order of `input_names`, and steps from the present time to `h` [s] later. An input that
-        is not named keeps its value; a velocity of None is derived from the displacements."""
+        is not named keeps its value; a velocity of None is derived from the displacements. Likely mistakes are warned of once."""
     def __getitem__(self, name: str, /) -> Any:
         """An input, output or parameter by name."""
     def outputs(self, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
