@@ -6,7 +6,7 @@ driven; the first answer lists the runs of the ladder. Every further line asks f
 Everything else goes to standard error.
 
 Input (SI units)
-    name, gravity [m/s²], density [kg/m³], depth [m] or null, bed {stiffness [Pa/m], damping [Pa·s/m]} or null,
+    name, gravity [m/s²], density [kg/m³], depth [m] or null, seabed {stiffness [Pa/m], damping [Pa·s/m]} or null,
     line {length [m], mass [kg/m], diameter [m], axial_stiffness [N], axial_damping [N·s], drag_normal, drag_tangential,
     added_mass_normal, added_mass_tangential [-]}, anchor [m], fairlead [m],
     harmonics {x, y, z: [[amplitude [m], period [s], phase [rad]], ...], ramp [s]}, duration [s], interval [s],
@@ -56,12 +56,12 @@ MoorDyn's settings
 CableDyn's settings
     Two-node elements, generalised-α in process. A relative tolerance of 1e-2 or 1e-1 in Newton's iteration is enough
     (the default 1e-8 costs up to twice as much for the same errors; on oc3_catenary 1e-1 costs 13 to 25 % less than
-    1e-2). Where the line meets the bed: ρ∞ = 0.4 with 1/360 and 1/180 of the motion's period, best for tension, and
+    1e-2). Where the line meets the seabed: ρ∞ = 0.4 with 1/360 and 1/180 of the motion's period, best for tension, and
     ρ∞ = 0 with 1/180 and 1/90, best for position. Where it does not: ρ∞ = 0.9 and reused tangents with 1/30 and 1/20 of
     the period. A tolerance of 1 costs 1 to 2 % less than 1e-1 on taut_polyester, with the same errors as long as it
     converges; on oc4_chain it changes the tension by 13 to 80 % of its deviation. ρ∞ = 1 costs as much as 0.9, and
     diverges earlier. The cubic element with a token bending stiffness reaches the position error of 28 two-node
-    elements with 8, at the same cost, and diverges with 6; where the line meets the bed it costs several times more. It
+    elements with 8, at the same cost, and diverges with 6; where the line meets the seabed it costs several times more. It
     is left out.
     The path is exact in position, velocity and acceleration at every step, also between communication points.
     Offline, a communication point is a multiple of the output interval, or every step where the step is longer.
@@ -101,7 +101,7 @@ WALL = 20.0
 LOWERED = 10.0
 # What stands for air's density where CableDyn wants a positive one [kg/m³].
 AIR = 1e-6
-# A line shorter than this part [-] of one that just leaves the bed at its anchor is taken to hang free.
+# A line shorter than this part [-] of one that just leaves the seabed at its anchor is taken to hang free.
 HANGS_FREE = 0.97
 # Timed passes of a run: at most this many, until they add up to this much CPU time [s].
 PASSES, PASSES_CPU = 9, 0.4
@@ -113,7 +113,7 @@ PARTS = (1.1, 0.9, 0.6)
 # An aligned internal step that differs from another one of its mesh by at most this part [-] is left out.
 NEAR = 0.1
 # CableDyn's settings: steps to the motion's period [-], ρ∞ [-], reused tangents, Newton's relative tolerance [-], for a
-# line that meets the bed and for a free one.
+# line that meets the seabed and for a free one.
 LANDING = (
     (360.0, 0.4, False, 1e-2),
     (360.0, 0.4, False, 1e-1),
@@ -182,10 +182,10 @@ class Site:
         self.lowered = LOWERED if max(highest, scene["anchor"][2]) >= 0.0 else 0.0
         down = np.array([0.0, 0.0, self.lowered])
         self.anchor, self.fairlead = np.array(scene["anchor"]) - down, np.array(scene["fairlead"]) - down
-        bed = scene["bed"]
-        if bed:
+        seabed = scene["seabed"]
+        if seabed:
             self.depth = scene["depth"] + self.lowered
-            self.stiffness, self.damping = bed["stiffness"], bed["damping"]
+            self.stiffness, self.damping = seabed["stiffness"], seabed["damping"]
         else:
             self.depth = scene["line"]["length"] - min(self.anchor[2], self.fairlead[2])
             self.stiffness, self.damping = 1.0e3, 0.0
@@ -201,13 +201,13 @@ class Site:
         return times, position, velocity, acceleration
 
 
-def lies_on_bed(scene, path):
-    """Return whether the line reaches the bed, by the inextensible catenary that leaves it at the anchor.
+def lies_on_seabed(scene, path):
+    """Return whether the line reaches the seabed, by the inextensible catenary that leaves it at the anchor.
 
-    Its parameter a [m] satisfies X = a·acosh(1 + Z/a), its length is √(Z² + 2Za). This chooses settings only: the bed
+    Its parameter a [m] satisfies X = a·acosh(1 + Z/a), its length is √(Z² + 2Za). This chooses settings only: the seabed
     stays in the decks.
     """
-    if not scene["bed"]:
+    if not scene["seabed"]:
         return False
     position = path.at(np.linspace(0.0, scene["duration"], 4001))[0]
     across = np.hypot(*(position - np.array(scene["anchor"]))[:, :2].T).min()
@@ -324,7 +324,7 @@ def eigenvalues(scene, elements, bedded):
     """Return the fast modes' eigenvalues λ [1/s] of a lumped line.
 
     Axial waves of the mesh; the same segments slack, when their damping acts without their stiffness; where
-    `bedded`, contact with the bed.
+    `bedded`, contact with the seabed.
     """
     line, density = scene["line"], scene["density"]
     displaced = density * math.pi / 4.0 * line["diameter"] ** 2  # ρA [kg/m]
@@ -335,10 +335,10 @@ def eigenvalues(scene, elements, bedded):
     for part in (1.0, 0.75, 0.5, 0.25, 0.1):
         omega = part * 2.0 * wave * elements / line["length"]
         modes.append((omega, omega * line["axial_damping"] / (2.0 * line["axial_stiffness"])))
-    bed = scene["bed"]
-    if bedded and bed["stiffness"] > 0.0:
-        omega = math.sqrt(bed["stiffness"] * line["diameter"] / mass_normal)
-        modes.append((omega, bed["damping"] * line["diameter"] / (2.0 * omega * mass_normal)))
+    seabed = scene["seabed"]
+    if bedded and seabed["stiffness"] > 0.0:
+        omega = math.sqrt(seabed["stiffness"] * line["diameter"] / mass_normal)
+        modes.append((omega, seabed["damping"] * line["diameter"] / (2.0 * omega * mass_normal)))
     slack = -2.0 * modes[0][1] * modes[0][0]
     pairs = [(omega * -ratio, omega * cmath.sqrt(ratio**2 - 1.0)) for omega, ratio in modes]
     return [slack] + [centre + sign * half for centre, half in pairs for sign in (1.0, -1.0)]
@@ -487,7 +487,7 @@ def moordyn_run(elements, scheme, steps, host, family):
 
 
 def moordyn_offline(scene, period, bedded):
-    """Return the runs of MoorDyn offline; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
+    """Return the runs of MoorDyn offline; `period` [s] is the motion's, `bedded` whether the line meets the seabed."""
     runs = []
     for count in scene["elements"]:
         limits = stable_steps(scene, count, bedded)
@@ -726,7 +726,7 @@ def main():
     scene = json.loads(sys.stdin.readline())
     scene["density"] = scene["density"] or AIR
     path = Path(scene)
-    period, bedded = path.period(scene["duration"]), lies_on_bed(scene, path)
+    period, bedded = path.period(scene["duration"]), lies_on_seabed(scene, path)
     runs = moordyn_offline(scene, period, bedded) + cabledyn_runs(scene, period, bedded, None)
     for host in scene.get("hosts", []):
         runs += moordyn_hosted(scene, period, bedded, host) + cabledyn_hosted(scene, period, bedded, host)

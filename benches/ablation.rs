@@ -37,23 +37,26 @@ fn other_seabeds() -> Changes {
         Box::new(move |scene| scene.seabed.iter_mut().for_each(change))
     };
     vec![
-        ("friction", seabed(|bed| bed.friction = Friction::isotropic(0.5))),
-        ("slope", seabed(|bed| bed.slope = Some([0.01, 0.01]))),
+        (
+            "friction",
+            seabed(|seabed| seabed.friction = Friction::isotropic(0.5)),
+        ),
+        ("slope", seabed(|seabed| seabed.slope = Some([0.01, 0.01]))),
         (
             "slope and friction",
-            seabed(|bed| (bed.slope, bed.friction) = (Some([0.01, 0.01]), Friction::isotropic(0.5))),
+            seabed(|seabed| (seabed.slope, seabed.friction) = (Some([0.01, 0.01]), Friction::isotropic(0.5))),
         ),
         (
             "soundings",
-            seabed(|bed| {
+            seabed(|seabed| {
                 let line: Vec<f64> = (-10..=10).map(|i| 100.0 * f64::from(i)).collect();
                 let depth = |y: &f64| {
                     line.iter()
-                        .map(|x| bed.depth + 0.5 * (0.01 * (x + y)).sin())
+                        .map(|x| seabed.depth + 0.5 * (0.01 * (x + y)).sin())
                         .collect()
                 };
                 let depth = line.iter().map(depth).collect();
-                bed.grid = Some(DepthGrid {
+                seabed.grid = Some(DepthGrid {
                     x: line.clone(),
                     y: line,
                     depth,

@@ -1,4 +1,4 @@
-//! Cost of a communication step beside the kernel: ns per advance against elements, internal steps and who moves the fairlead, and ns per
+//! Cost of a communication step compared with the kernel: ns per advance against elements, internal steps and who moves the fairlead, and ns per
 //! read of all outputs.
 
 mod common;

@@ -1,7 +1,7 @@
 //! Cost of a step of beams of different kinds: free flight in a plane and in space, a driven power cable in water with a part on the seabed, and
 //! a short stiff arm. All are without the energy balance.
 //!
-//! `cargo bench --bench beam` prints time and factorised tangents. `-- KIND STEPS` takes so many steps of one kind and prints nothing, for a
+//! `cargo bench --bench beam` prints time and factorised tangents. `-- KIND STEPS` takes this number of steps of one kind and prints nothing, for a
 //! profiler or to count instructions.
 
 mod common;

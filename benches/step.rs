@@ -1,4 +1,4 @@
-//! Cost of an internal step: of the kernels alone, with the widest vectors of the machine and in the portable build, beside what the roots
+//! Cost of an internal step: of the kernels alone, with the widest vectors of the machine and in the portable build, compared with the time that the roots
 //! and quotients of the explicit one alone take; and of whole communication steps by both leapfrogs.
 //!
 //! `-- PART`, one of divider, explicit, axial, compared and whole, measures that part alone; `-- --write` measures all and makes the table
@@ -71,7 +71,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Three roots and three quotients for every four numbers, as many as the explicit kernel has for four nodes on the bed.
+/// Three roots and three quotients for every four numbers, as many as the explicit kernel has for four nodes on the seabed.
 struct Divide<'a> {
     of: &'a [[Lanes; 3]],
     into: &'a mut [Lanes],

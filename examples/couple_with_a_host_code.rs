@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The body belongs to the host, which integrates it by the semi-implicit Euler method: the force at t gives the new
-//! velocity, the new velocity the new place. The mooring is told where the fairleads are at t and steps to t + h; between the
-//! two it makes a smooth path of its own. Pulled 6 m to the side and let go, the body swings with the period that the
+//! velocity, the new velocity the new place. The mooring receives the places of the fairleads at t and steps to t + h; between the
+//! two, their path is smooth. Released 6 m off its rest, the body swings with the period that the
 //! mooring's static stiffness predicts, and the drag on the chains damps it.
 //!
 //! `cargo run --release --example couple_with_a_host_code`

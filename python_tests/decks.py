@@ -68,7 +68,7 @@ def volturnus(segments=25):
 
 
 def taut(segments=20):
-    """A taut polyester line, off the bed."""
+    """A taut polyester line, off the seabed."""
     return deck("a taut rope", ["rope 0.15 18.0 2.0E7 -0.5 0 1.2 1.0 0.05 0.0"],
                 ["1 Fixed 700 0 -300 0 0 0 0", "2 Vessel 10 0 -10 0 0 0 0"], [f"1 rope 1 2 745 {segments} -"],
                 {"WtrDpth": 300.0})

@@ -4,10 +4,10 @@
 
 Each row is chosen by its forces: they give the positions of the ends, which are rounded to 12 digits; the forces that belong to
 the rounded positions are then found by Newton's method from there. Nothing is shared with the Rust solver: the unknowns are the
-forces at A (and what lies on the bed), the formulas those of the textbook with asinh, and every row is checked by
+forces at A (and what lies on the seabed), the formulas those of the textbook with asinh, and every row is checked by
 Gauss-Legendre quadrature of dx/ds = H/T + H/EA, dz/ds = V/T + V/EA, dV/ds = w.
 
-Frame: A at (0, 0), B at (XF, ZF), the bed at z = bed_height; sections from A to B: unstretched length L [m], weight w [N/m], EA [N]; CB is
+Frame: A at (0, 0), B at (XF, ZF), the seabed at z = seabed_height; sections from A to B: unstretched length L [m], weight w [N/m], EA [N]; CB is
 Coulomb friction. V > 0: the tension vector points up going from A to B.
 """
 
@@ -20,7 +20,7 @@ from mpmath import asinh, findroot, mp, mpf, nstr, quad, sqrt
 mp.dps = 60
 OUT = pathlib.Path(__file__).parents[1] / "tests" / "reference" / "catenary.csv"
 COLUMNS = (
-    "id cls XF ZF seabed bed_height CB nseg L1 w1 EA1 L2 w2 EA2 L3 w3 EA3 "
+    "id cls XF ZF seabed seabed_height CB nseg L1 w1 EA1 L2 w2 EA2 L3 w3 EA3 "
     "H_fair V_fair T_fair H_anch V_anch T_anch laid_unstretched mid_x mid_z stretched_length"
 ).split()
 
@@ -50,7 +50,7 @@ def cut(sections, start, stop):
 
 
 def walk(sections, friction, h_a, v_a, lies=None, until=None):
-    """End of the walk from A: x, z, H, V, elongation, lowest z. `lies`: arc lengths from, to of what is on the bed."""
+    """End of the walk from A: x, z, H, V, elongation, lowest z. `lies`: arc lengths from, to of what is on the seabed."""
     total = sum(s[0] for s in sections)
     until = total if until is None else until
     a, b = lies or (total, total)
@@ -109,7 +109,7 @@ def rounded(value):
 ROWS = []
 
 
-def add(cls, sections, unknowns, forces, friction=0.0, bed=None, positions=3):
+def add(cls, sections, unknowns, forces, friction=0.0, seabed=None, positions=3):
     """Adds the row whose positions the starting `unknowns` give, rounded; `forces` maps unknowns to h_a, v_a, lies."""
     sections = [tuple(mpf(rounded(mpf(v))) for v in s) for s in sections]
     friction = mpf(rounded(mpf(friction)))
@@ -142,8 +142,8 @@ def add(cls, sections, unknowns, forces, friction=0.0, bed=None, positions=3):
     assert all(abs(p - t) < mpf(10) ** -45 * total for p, t in zip([end[0], end[1], end[5]][:positions], target))
     check(sections, friction, h_a, v_a, lies, end)
     middle = walk(sections, friction, h_a, v_a, lies, until=total / 2)
-    row = {"id": len(ROWS) + 1, "cls": cls, "XF": text[0], "ZF": text[1], "seabed": int(bed is not None), "CB": rounded(friction)}
-    row["bed_height"] = text[2] if positions == 3 else rounded(mpf(bed or 0))
+    row = {"id": len(ROWS) + 1, "cls": cls, "XF": text[0], "ZF": text[1], "seabed": int(seabed is not None), "CB": rounded(friction)}
+    row["seabed_height"] = text[2] if positions == 3 else rounded(mpf(seabed or 0))
     row["nseg"] = len(sections)
     for i, s in enumerate(sections, 1):
         row |= {f"L{i}": rounded(s[0]), f"w{i}": rounded(s[1]), f"EA{i}": rounded(s[2])}
@@ -165,14 +165,14 @@ def weight_at(sections, s):
 
 
 def from_anchor(sections, friction, h_b, lift):
-    """A on the bed: H at B and the arc length where the line lifts off."""
-    on_bed = weight_at(sections, lift) * friction
-    assert on_bed < h_b, "friction would hold all tension before A: choose more"
-    return h_b - on_bed, mpf(0), (mpf(0), lift)
+    """A on the seabed: H at B and the arc length where the line lifts off."""
+    on_seabed = weight_at(sections, lift) * friction
+    assert on_seabed < h_b, "friction would hold all tension before A: choose more"
+    return h_b - on_seabed, mpf(0), (mpf(0), lift)
 
 
-def over_bed(sections, friction, h_a, drop, lift):
-    """A above the bed: H at A, the arc lengths of touchdown and of lift-off."""
+def over_seabed(sections, friction, h_a, drop, lift):
+    """A above the seabed: H at A, the arc lengths of touchdown and of lift-off."""
     return h_a, -weight_at(sections, drop), (drop, lift)
 
 
@@ -208,24 +208,24 @@ def make():
     for h, share in ((4.0, 0.4), (0.3, 0.7), (30.0, 0.05), (0.01, 0.5), (200.0, 0.9)):
         length, w = spread(1, 3), spread(0, 3)
         section = (length, w, w * length * spread(2.3, 5))
-        add("touching down", [section], [h * w * length, share * length], from_anchor, bed=0, positions=2)
+        add("touching down", [section], [h * w * length, share * length], from_anchor, seabed=0, positions=2)
     for h, share, mu in ((4.0, 0.4, 0.8), (0.6, 0.5, 1.0), (30.0, 0.05, 0.3), (0.2, 0.55, 0.3), (90.0, 0.7, 1.4)):
         length, w = spread(1, 3), spread(0, 3)
         section = (length, w, w * length * spread(2.3, 5))
-        add("touching down with friction", [section], [h * w * length, share * length], from_anchor, mu, bed=0, positions=2)
+        add("touching down with friction", [section], [h * w * length, share * length], from_anchor, mu, seabed=0, positions=2)
     for drop, lift, h, mu in ((0.2, 0.5, 0.4, 0.0), (0.35, 0.4, 3.0, 0.0), (0.1, 0.9, 0.02, 0.0), (0.2, 0.5, 0.4, 0.7), (0.05, 0.6, 2.0, 0.2)):
-        add("touching down between raised ends", [(400.0, 150.0, 8e7)], [h * 6e4, 400 * drop, 400 * lift], over_bed, mu, bed=1)
+        add("touching down between raised ends", [(400.0, 150.0, 8e7)], [h * 6e4, 400 * drop, 400 * lift], over_seabed, mu, seabed=1)
 
     chain = [(300.0, 1200.0, 6e8), (450.0, 120.0, 6e7), (90.0, 1500.0, 6e8)]
     for h, v in ((1.5e5, -2e5), (9e5, 1e5), (3e4, -3.9e5)):
         add("three sections, suspended", chain, [h, v], suspended, positions=2)
     for h, lift, mu in ((6e5, 180.0, 0.0), (2e5, 420.0, 0.0), (7e5, 150.0, 0.6), (5e5, 390.0, 0.9)):
-        add("three sections, touching down", chain, [h, lift], from_anchor, mu, bed=0, positions=2)
+        add("three sections, touching down", chain, [h, lift], from_anchor, mu, seabed=0, positions=2)
     for h, drop, lift, mu in ((2e5, 60.0, 200.0, 0.0), (2e5, 60.0, 330.0, 0.5)):
-        add("three sections between raised ends", chain, [h, drop, lift], over_bed, mu, bed=1)
+        add("three sections between raised ends", chain, [h, drop, lift], over_seabed, mu, seabed=1)
     wave = [(300.0, 300.0, 5e8), (120.0, -420.0, 5e8), (260.0, 300.0, 5e8)]
     for h, lift in ((3e4, 190.0), (1e4, 210.0)):
-        add("lazy wave", wave, [h, lift], from_anchor, 0.2 if h > 2e4 else 0.0, bed=0, positions=2)
+        add("lazy wave", wave, [h, lift], from_anchor, 0.2 if h > 2e4 else 0.0, seabed=0, positions=2)
     # H = 0: what hangs is as long as its weight stretches it to, the rest of the line lies in any shape
     for length, w, ea, rise, span in ((90.0, 40.0, 3e5, 30.0, 20.0), (700.0, 900.0, 1e9, 320.0, 100.0)):
         slack(length, w, ea, rise, span)
@@ -238,11 +238,11 @@ def make():
 
 
 def slack(length, w, ea, rise, span):
-    """A row whose line hangs vertically from B and has length to spare on the bed; only the forces are its own."""
+    """A row whose line hangs vertically from B and has length to spare on the seabed; only the forces are its own."""
     length, w, ea, rise = (mpf(v) for v in (length, w, ea, rise))
     # hung + w hung²/2EA = rise
     hung = 2 * rise / (1 + sqrt(1 + 2 * w * rise / ea))
-    row = {"id": len(ROWS) + 1, "cls": "degenerate slack", "XF": span, "ZF": rounded(rise), "seabed": 1, "bed_height": 0}
+    row = {"id": len(ROWS) + 1, "cls": "degenerate slack", "XF": span, "ZF": rounded(rise), "seabed": 1, "seabed_height": 0}
     row |= {"CB": 0, "nseg": 1, "L1": rounded(length), "w1": rounded(w), "EA1": rounded(ea)}
     force = nstr(w * hung, 22)
     row |= {"H_fair": 0, "V_fair": force, "T_fair": force, "H_anch": 0, "V_anch": 0, "T_anch": 0}

@@ -42,7 +42,7 @@ CHAIN_PROFILE = CHAIN.replace("interval = 0.05", "interval = 0.05\nprofile = tru
 
 CURRENT = CHAIN.replace("density = 1025.0", "density = 1025.0\ncurrent = { velocity = [1.0, 0.5, 0.0] }")
 
-# Given by its weight and off the bed: water acts by its flow alone.
+# Given by its weight and off the seabed: water acts by its flow alone.
 CURRENT_ALONE = CURRENT.replace("mass = 113.35", "weight = 975.0").replace("[seabed]\ndepth = 200.0\n", "").replace(
     "length = 835.35", "length = 820.0")
 
@@ -129,7 +129,7 @@ END
 """
 
 WINCH = scene(
-    '"a chain on a winch above a bed"', SEA, table("seabed", "depth = 60.0"),
+    '"a chain on a winch above a seabed"', SEA, table("seabed", "depth = 60.0"),
     table("line_types.chain", "mass = 20.0", "diameter = 0.05", "axial_stiffness = 1.0e6", "drag_normal = 1.2"),
     point("anchor", [0.0, 0.0, -60.0], "fixed"), point("fairlead", [60.0, 0.0, -20.0], "coupled"),
     line("line1", ("anchor", "fairlead"), [("chain", 100.0, 25)], 'winch = { end = "b", length_max = 30.0 }'),

@@ -161,7 +161,7 @@ def test_outputs_depend_on_what_is_declared_and_on_nothing_else(slave, version, 
                 influences[unknown].add(known)
     undeclared = {u: known - d.initial_dependencies[u] for u, known in influences.items()}
     assert {u: known for u, known in undeclared.items() if known} == {}
-    # What carries force is moved by all that is declared; a result that cannot change here, like a sag on the bed, may not.
+    # What carries force is moved by all that is declared; a result that cannot change here, like a sag on the seabed, may not.
     for name in unknowns:
         if name.endswith(("tension_b", "catenary_tension_b")):
             missing = d.initial_dependencies[name] - influences[name]

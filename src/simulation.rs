@@ -117,7 +117,7 @@ impl Simulation {
     /// As [`Simulation::new`].
     pub fn at_rest(scene: &Scene) -> Result<Simulation, Error> {
         let mut model = Model::new(scene)?;
-        settle(&mut model);
+        make_still(&mut model);
         Simulation::start(model, start::Shapes::Equilibrium)
     }
 
@@ -148,7 +148,7 @@ impl Simulation {
     pub fn in_equilibrium(&self) -> Result<Simulation, Error> {
         let mut still = self.clone();
         still.snapshot.inputs = Inputs::new(&self.model);
-        settle(Arc::make_mut(&mut still.model));
+        make_still(Arc::make_mut(&mut still.model));
         still.begin(0.0, false, start::Shapes::Equilibrium)?;
         Ok(still)
     }
@@ -342,7 +342,7 @@ impl Simulation {
 }
 
 /// Removes waves, a host's flow of the water and initial shapes, for an equilibrium.
-fn settle(model: &mut Model) {
+fn make_still(model: &mut Model) {
     (model.waves, model.host_flow) = (None, false);
     // the initial shape of a beam may be the one free of bending moments, and is the start of its search
     for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {

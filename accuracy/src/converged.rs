@@ -2,7 +2,7 @@
 //!
 //! Meshes are refined step by step, and the one closest to the mesh before it is taken; their distance is its
 //! uncertainty. Under a well-posed law that is the finest. Where damping acts in compression a slack line without
-//! bending stiffness is ill posed: its short waves grow, and meshes beyond some fineness diverge again. A bed
+//! bending stiffness is ill posed: its short waves grow, and meshes beyond some fineness diverge again. A seabed
 //! softened with the mesh and one as given have the same limit and converge to it at different rates; the better of
 //! the two is used.
 

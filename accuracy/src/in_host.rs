@@ -112,7 +112,7 @@ impl Study {
             match run(scene, step, package) {
                 Ok((timed, fmu)) => {
                     let errors = converged.errors(&timed.histories);
-                    let (label, how) = (label(&setting, &timed, self.on_bed), How::InHost(hosted.len()));
+                    let (label, how) = (label(&setting, &timed, self.on_seabed), How::InHost(hosted.len()));
                     self.runs.push(Run {
                         tolerance: Some(tolerance),
                         ..Run::new(code(&setting), label, timed.cost, errors, how)

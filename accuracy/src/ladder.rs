@@ -94,7 +94,7 @@ impl Setting {
         }
     }
 
-    /// The scene with this setting in place of its own mesh, integrator and step. Default settings are found by convergence trials, as in
+    /// The scene with this setting in place of its mesh, integrator and step. Default settings are found by convergence trials, as in
     /// `moorline run` and `fmu`; with any other setting a host gives the motion at the end of a step, as it does to other codes.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
@@ -113,8 +113,8 @@ impl Setting {
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         // Processor time is that of one thread, as that of other codes.
         scene.solver.threads = Threads::Number(1);
-        if let (Some(bed), Some(contact)) = (&mut scene.seabed, self.contact) {
-            bed.contact = contact;
+        if let (Some(seabed), Some(contact)) = (&mut scene.seabed, self.contact) {
+            seabed.contact = contact;
         }
         if let Some(tolerance) = self.tolerance {
             scene.solver.tolerance = tolerance;
@@ -132,8 +132,8 @@ impl Setting {
         }
     }
 
-    /// The same on a bed with exactly the scene's coefficients.
-    pub fn on_bed_as_given(self) -> Setting {
+    /// The same on a seabed with exactly the scene's coefficients.
+    pub fn on_seabed_as_given(self) -> Setting {
         Setting {
             contact: Some(ContactLaw::AsGiven),
             ..self
@@ -158,14 +158,14 @@ pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
         period,
         interval,
     ));
-    let softened = |bed: &moorline::scene::Seabed| bed.contact == ContactLaw::Regularised;
+    let softened = |seabed: &moorline::scene::Seabed| seabed.contact == ContactLaw::Regularised;
     if scene.seabed.as_ref().is_some_and(softened) {
         let cheap = |setting: &&Setting| match setting.integrator {
             Integrator::Leapfrog => [1, 4].contains(&setting.communication),
             integrator => integrator == Integrator::AxialImplicit,
         };
         let again: Vec<Setting> = settings.iter().filter(cheap).copied().collect();
-        settings.extend(again.into_iter().map(Setting::on_bed_as_given));
+        settings.extend(again.into_iter().map(Setting::on_seabed_as_given));
     }
     settings.extend([10, 40].map(quasi_static));
     settings
@@ -235,7 +235,7 @@ fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
 }
 
 /// Families of settings for a converged solution, in the order they are tried: the first that applies to the scene is taken. Each holds one or
-/// more sequences of finer and finer settings, the best of which is followed to its end: a bed may be softened with the mesh, or have the
+/// more sequences of finer and finer settings, the best of which is followed to its end: a seabed may be softened with the mesh, or have the
 /// scene's own coefficients.
 pub(crate) fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
     if is_quasi_static(scene) {
@@ -251,13 +251,14 @@ pub(crate) fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
     let axial: Vec<Setting> = meshes
         .map(|n| Setting::new(n, Integrator::AxialImplicit, axial_step))
         .into();
-    let as_given = axial.iter().copied().map(Setting::on_bed_as_given);
+    let as_given = axial.iter().copied().map(Setting::on_seabed_as_given);
     let mut both = vec![as_given.collect()];
     if scene.seabed.is_some() {
         both.push(axial);
     }
-    let explicit = |n: &usize| Setting::new(*n, Integrator::Leapfrog, None).on_bed_as_given();
-    let implicit = |n: usize, steps: f64| Setting::new(n, Integrator::Auto, stepped(steps)).on_bed_as_given();
+    let explicit = |n: &usize| Setting::new(*n, Integrator::Leapfrog, None).on_seabed_as_given();
+    let implicit =
+        |n: usize, steps: f64| Setting::new(n, Integrator::Auto, stepped(steps)).on_seabed_as_given();
     let finest = CONVERGED_ELEMENTS_IMPLICIT;
     vec![
         both,

@@ -145,7 +145,7 @@ pub struct Study {
     /// Damping acts in compression, the peers' law.
     pub negative_tension: bool,
     /// The scene has a seabed.
-    pub on_bed: bool,
+    pub on_seabed: bool,
     /// Mesh and step of the converged solution, in words.
     pub converged: String,
     /// Distance from a solution of half its resolution.
@@ -276,14 +276,14 @@ pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
 impl Study {
     /// A study without runs, offline or in a host of a communication step [s].
     fn new((name, host_step): (&str, Option<f64>), scene: &Scene, converged: &Converged) -> Study {
-        let on_bed = scene.seabed.is_some();
+        let on_seabed = scene.seabed.is_some();
         Study {
             name: name.to_string(),
             title: scene.title.clone(),
             host_step,
             negative_tension: scene.solver.negative_tension,
-            on_bed,
-            converged: label(&converged.setting, &converged.fine, on_bed),
+            on_seabed,
+            converged: label(&converged.setting, &converged.fine, on_seabed),
             uncertainty: converged.uncertainty,
             runs: Vec::new(),
             failed: Vec::new(),
@@ -346,7 +346,7 @@ impl Study {
             match trial.and_then(|trial| run(&trial)) {
                 Ok(timed) => self.runs.push(Run::new(
                     code(setting),
-                    label(setting, &timed, self.on_bed),
+                    label(setting, &timed, self.on_seabed),
                     timed.cost,
                     converged.errors(&timed.histories),
                     How::Own(*setting),
@@ -420,17 +420,17 @@ fn code(setting: &Setting) -> Code {
     }
 }
 
-/// Mesh and step of a run, in words, with the treatment of the bed, where there is one.
-fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
+/// Mesh and step of a run, in words, with the treatment of the seabed, where there is one.
+fn label(setting: &Setting, timed: &Timed, on_seabed: bool) -> String {
     let communication = timed.communication.filter(|_| setting.tolerance.is_none());
     let communication = communication.map_or(String::new(), |step| {
         format!(", communication step {}", seconds(step))
     });
-    let bed = match setting.contact {
-        Some(ContactLaw::AsGiven) if on_bed => ", bed as given",
+    let seabed = match setting.contact {
+        Some(ContactLaw::AsGiven) if on_seabed => ", seabed as given",
         _ => "",
     };
-    let step = format!("step {}{communication}{bed}", seconds(timed.step));
+    let step = format!("step {}{communication}{seabed}", seconds(timed.step));
     match setting.tolerance {
         Some(tolerance) => format!(
             "tolerance {} %: {}, n = {}, {step}",
@@ -498,7 +498,7 @@ mod tests {
             title: "a scene".to_string(),
             host_step: None,
             negative_tension: true,
-            on_bed: true,
+            on_seabed: true,
             converged: String::new(),
             uncertainty: Errors::all(0.001),
             runs,

@@ -29,7 +29,7 @@ const ELEMENTS: [usize; 23] = [
     3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80,
 ];
 /// Those of them that a line on a seabed starts from: with fewer it means nothing.
-const ELEMENTS_ON_BED: usize = 5;
+const ELEMENTS_ON_SEABED: usize = 5;
 /// Processor time that all passes of a single run of a peer may take [s].
 const TIME_LIMIT: f64 = 60.0;
 
@@ -293,14 +293,14 @@ fn question(name: &str, scene: &Scene) -> Option<Value> {
     let Some(MotionPath::Harmonic(motion)) = scene.motion.get(&fairlead.name) else {
         return None;
     };
-    let bed = scene.seabed.as_ref();
+    let seabed = scene.seabed.as_ref();
     let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
     Some(json!({
         "name": name,
         "gravity": scene.gravity,
         "density": scene.water.as_ref().map(|water| water.density),
-        "depth": bed.map(|bed| bed.depth),
-        "bed": bed.map(|bed| json!({ "stiffness": bed.stiffness, "damping": bed.damping })),
+        "depth": seabed.map(|seabed| seabed.depth),
+        "seabed": seabed.map(|seabed| json!({ "stiffness": seabed.stiffness, "damping": seabed.damping })),
         "line": {
             "length": line.sections[0].length,
             "mass": line_type.mass?,
@@ -317,7 +317,7 @@ fn question(name: &str, scene: &Scene) -> Option<Value> {
         "harmonics": { "x": motion.x, "y": motion.y, "z": motion.z, "ramp": or_zero(motion.ramp) },
         "duration": scene.output.duration,
         "interval": scene.output.interval,
-        "elements": &ELEMENTS[if bed.is_some() { ELEMENTS_ON_BED } else { 0 }..],
+        "elements": &ELEMENTS[if seabed.is_some() { ELEMENTS_ON_SEABED } else { 0 }..],
         "hosts": HOST_STEPS,
         "time_limit_seconds": TIME_LIMIT,
     }))

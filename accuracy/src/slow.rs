@@ -47,7 +47,7 @@ fn compared(scene: &Scene, factor: f64) -> Option<Slow> {
     let period = shortest_period(scene);
     let step = Some(period / STEPS_PER_PERIOD);
     let with = |integrator| {
-        let setting = Setting::new(ELEMENTS, integrator, step).on_bed_as_given();
+        let setting = Setting::new(ELEMENTS, integrator, step).on_seabed_as_given();
         histories(scene, &setting)
     };
     let dynamic = with(Integrator::AxialImplicit).or_else(|| with(Integrator::Auto))?;

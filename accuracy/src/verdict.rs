@@ -15,7 +15,7 @@ pub struct Verdict<'a> {
     pub metric: Metric,
     /// Error level [-].
     pub level: f64,
-    /// moorline is held to this level: 3 % of RMS tension, 1 % in position; of lines without a bed 1 % of RMS tension; in a host the
+    /// moorline is held to this level: 3 % of RMS tension, 1 % in position; of lines without a seabed 1 % of RMS tension; in a host the
     /// tolerances of its default settings, of RMS tension.
     pub key: bool,
     /// The converged solution is certain enough to judge this level.
@@ -83,7 +83,7 @@ impl Study {
             level,
             key: match metric {
                 _ if self.host_step.is_some() => metric == Metric::Rms && TOLERANCES.contains(&level),
-                Metric::Rms => level == 0.03 || (level == 0.01 && !self.on_bed),
+                Metric::Rms => level == 0.03 || (level == 0.01 && !self.on_seabed),
                 Metric::Position => level == 0.01,
                 Metric::LowPassed | Metric::Peak => false,
             },

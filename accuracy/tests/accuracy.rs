@@ -39,7 +39,7 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
     let runs: Vec<_> = study.runs.iter().filter(|run| leapfrog(&run.code)).collect();
     assert!(runs.len() >= 30);
     // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh. From 30 elements on, driven by a host at points
-    // in time, the tension stays 5.4e-4 beside the converged solution, which follows the motion exactly.
+    // in time, the tension differs by 5.4e-4 from the converged solution, which follows the motion exactly.
     let position = |run: &moorline_accuracy::Run| run.errors.of(Metric::Position);
     assert!(position(runs[runs.len() - 1]) < 0.01 * position(runs[0]));
     assert!(rms(runs[runs.len() - 1]) < 6e-4);

@@ -65,7 +65,7 @@ pub(crate) enum Command {
         /// Drive the run as a host does: set the motion at every multiple of H [s], then step by H; a row of results each. With input_reconstruction = "interpolate" the motion set is that of the end of the step
         #[arg(long, value_name = "H", value_parser = positive_number)]
         communication_step: Option<f64>,
-        /// Set velocities beside displacements
+        /// Set velocities as well as displacements
         #[arg(long, requires = "communication_step")]
         velocities: bool,
         /// Continue the interrupted run in DIR from its saved state, to the same rows as without the interruption

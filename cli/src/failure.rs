@@ -75,7 +75,7 @@ impl Failure {
     }
 
     /// Reports the failure on standard error, and returns the exit code. A closed pipe is no failure of the reader.
-    pub(crate) fn tell(self) -> u8 {
+    pub(crate) fn report(self) -> u8 {
         let (code, text) = match self {
             Failure::Print(error) if error.kind() == ErrorKind::BrokenPipe => {
                 return 0;

@@ -30,7 +30,7 @@ use moorline::output::package::PackageError;
 
 use arguments::{Arguments, Command};
 use failure::Failure;
-use run::Pace;
+use run::Stepping;
 
 /// Exit code of a program that was called with wrong arguments.
 const USAGE: u8 = 2;
@@ -81,7 +81,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>, library: Library<'_>)
     folder::end_on_interrupt();
     match call(command, library) {
         Ok(()) => 0,
-        Err(failure) => failure.tell(),
+        Err(failure) => failure.report(),
     }
 }
 
@@ -111,8 +111,13 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
             until,
             moved,
         } => {
-            let pace = communication_step.map_or(Pace::Scene, |step| Pace::Host { step, velocities });
-            let course = run::Course { pace, resume, until };
+            let stepping =
+                communication_step.map_or(Stepping::Scene, |step| Stepping::Host { step, velocities });
+            let course = run::Course {
+                stepping,
+                resume,
+                until,
+            };
             run::run(&input, &moved.into(), &output, &course)
         }
         Command::Sweep {

@@ -24,7 +24,7 @@ const SAVED_EVERY: Duration = Duration::from_secs(60);
 
 /// Coupling of the motion to the mooring.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Pace {
+pub(crate) enum Stepping {
     /// Exactly.
     Scene,
     /// The scene's motion as a host gives it, at communication points only: before every step where it starts, or where it ends if
@@ -37,12 +37,12 @@ pub(crate) enum Pace {
     },
 }
 
-impl Pace {
+impl Stepping {
     /// Time between rows of the results [s].
     fn interval(self, scene: &Scene) -> f64 {
         match self {
-            Pace::Scene => scene.output.interval,
-            Pace::Host { step, .. } => step,
+            Stepping::Scene => scene.output.interval,
+            Stepping::Host { step, .. } => step,
         }
     }
 }
@@ -51,7 +51,7 @@ impl Pace {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Course {
     /// Coupling of the motion to the mooring.
-    pub pace: Pace,
+    pub stepping: Stepping,
     /// True if an interrupted run is continued.
     pub resume: bool,
     /// Time at which the run stops, to be continued [s].
@@ -60,9 +60,9 @@ pub(crate) struct Course {
 
 /// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
 pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) -> Result<(), Failure> {
-    let pace = course.pace;
+    let stepping = course.stepping;
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
-    if let Pace::Host { .. } = pace
+    if let Stepping::Host { .. } = stepping
         && let Some(packaged) = discretisation::frozen(&loaded.scene)
     {
         // The elements of the FMU do not depend on the motion and duration of this run.
@@ -74,7 +74,7 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
         motion = loaded.scene.drive(drive).map_err(Failure::Argument)?;
         remark_driven(&loaded, &before, drive);
     }
-    let given = Given::of(&loaded.scene, pace);
+    let given = Given::of(&loaded.scene, stepping);
     let saved = match course.resume {
         true => Some(given.saved_in(folder)?),
         false => None,
@@ -89,7 +89,7 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
     let _open = Folder::open(folder)?;
     match &saved {
         Some(saved) => loaded.scene = given.discretised(saved)?,
-        None if pace == Pace::Scene => discretise(&mut loaded, discretisation::select),
+        None if stepping == Stepping::Scene => discretise(&mut loaded, discretisation::select),
         None => {}
     }
     let run = Run::start(&loaded, folder, course, given, saved)?;
@@ -142,12 +142,12 @@ struct Given {
 
 impl Given {
     /// The scene as given, with the motion of the command line.
-    fn of(scene: &Scene, pace: Pace) -> Given {
+    fn of(scene: &Scene, stepping: Stepping) -> Given {
         Given {
             scene: scene.to_toml(),
-            coupling: match pace {
-                Pace::Scene => "the motion of the scene".to_string(),
-                Pace::Host { step, velocities } => {
+            coupling: match stepping {
+                Stepping::Scene => "the motion of the scene".to_string(),
+                Stepping::Host { step, velocities } => {
                     let velocities = if velocities { " --velocities" } else { "" };
                     format!("--communication-step {step}{velocities}")
                 }
@@ -225,14 +225,14 @@ impl<'r> Run<'r> {
         given: Given,
         saved: Option<RunState>,
     ) -> Result<Run<'r>, Failure> {
-        let (scene, pace) = (&loaded.scene, course.pace);
+        let (scene, stepping) = (&loaded.scene, course.stepping);
         let mut simulation = simulate(loaded)?;
-        let expense = discretisation::expense(scene, &simulation, pace.interval(scene));
+        let expense = discretisation::expense(scene, &simulation, stepping.interval(scene));
         remark_all(loaded, expense.into_iter().chain(scene.without_host()).collect());
         let still = simulation.in_equilibrium().ok();
-        let start = match pace {
-            Pace::Scene => simulation.follow_scene(),
-            Pace::Host { velocities, .. } => {
+        let start = match stepping {
+            Stepping::Scene => simulation.follow_scene(),
+            Stepping::Host { velocities, .. } => {
                 set_motion(&mut simulation, 0.0, velocities);
                 simulation.restart(0.0)
             }
@@ -240,7 +240,7 @@ impl<'r> Run<'r> {
         start.map_err(|error| Failure::of_simulation(error, loaded))?;
         let recorder =
             Recorder::new(scene, simulation.model()).map_err(|mistake| Failure::of_scene(mistake, loaded))?;
-        let times = Times::new(scene.output.duration, pace.interval(scene));
+        let times = Times::new(scene.output.duration, stepping.interval(scene));
         let columns = (recorder.columns(simulation.model()), times.count + 1);
         let mut record = collect::record(scene, &simulation, still.as_ref(), columns);
         let mut watch = Watch::new(scene, &simulation);
@@ -324,7 +324,7 @@ impl<'r> Run<'r> {
         let Run {
             times, simulation, ..
         } = self;
-        if let Pace::Host { velocities, .. } = self.course.pace {
+        if let Stepping::Host { velocities, .. } = self.course.stepping {
             let solver = &self.loaded.scene.solver;
             let ahead = usize::from(solver.input_reconstruction == Reconstruction::Interpolate);
             set_motion(simulation, times.at(index - 1 + ahead), velocities);

@@ -27,7 +27,7 @@ impl<T> Placed<T> {
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     pub mistakes: Vec<SceneError>,
-    /// Mistakes in what is given beside the file.
+    /// Mistakes in what is given with the file.
     pub beside: Vec<String>,
     remarks: Vec<Remark>,
 }

@@ -11,7 +11,8 @@ use super::scenes::*;
 
 /// All cases, in the order of the page.
 pub const ALL: [fn() -> Page; 14] = [
-    snap, stiffness, bed, damping, short, clump, massless, fall, whip, dragged, jump, resonance, hours, steps,
+    snap, stiffness, seabed, damping, short, clump, massless, fall, whip, dragged, jump, resonance, hours,
+    steps,
 ];
 
 /// Most points of a curve.
@@ -137,11 +138,11 @@ fn stiffness() -> Page {
     }
 }
 
-fn bed() -> Page {
+fn seabed() -> Page {
     let run = |factor| {
-        let mut scene = harder_bed(shipped("oc3_catenary"), factor);
-        if let Some(bed) = &mut scene.seabed {
-            bed.contact = ContactLaw::AsGiven;
+        let mut scene = harder_seabed(shipped("oc3_catenary"), factor);
+        if let Some(seabed) = &mut scene.seabed {
+            seabed.contact = ContactLaw::AsGiven;
         }
         Run::of(&scene, 40.0, 0.05)
     };
@@ -153,7 +154,7 @@ fn bed() -> Page {
         stem: "hard_03_bed",
         panels: vec![
             panel(
-                "OC3 line on a bed as given and 100 times as hard",
+                "OC3 line on a seabed as given and 100 times as hard",
                 TENSION_MN,
                 vec![
                     series("3 MPa/m", Look::Line, tension(&given, span, MN)),
@@ -166,7 +167,7 @@ fn bed() -> Page {
                 vec![series("", Look::Line, apart)],
             ),
         ],
-        runs: named([("as given", &given), ("bed × 100", &harder)]),
+        runs: named([("as given", &given), ("seabed × 100", &harder)]),
     }
 }
 

@@ -88,21 +88,21 @@ pub fn more_damped(mut scene: Scene, factor: f64) -> Scene {
     scene
 }
 
-/// The same scene over a bed whose spring and damper are multiplied by a factor [-].
-pub fn harder_bed(mut scene: Scene, factor: f64) -> Scene {
-    if let Some(bed) = &mut scene.seabed {
-        bed.stiffness *= factor;
-        bed.damping *= factor;
+/// The same scene over a seabed whose spring and damper are multiplied by a factor [-].
+pub fn harder_seabed(mut scene: Scene, factor: f64) -> Scene {
+    if let Some(seabed) = &mut scene.seabed {
+        seabed.stiffness *= factor;
+        seabed.damping *= factor;
     }
     scene
 }
 
-/// The OC4 chain on a bed with friction [-], its fairlead driven 40 m towards the anchor and back at 10 m/s, reached in a second; at rest again
+/// The OC4 chain on a seabed with friction [-], its fairlead driven 40 m towards the anchor and back at 10 m/s, reached in a second; at rest again
 /// after 10 s.
 pub fn dragged_through_touchdown(friction: f64) -> Scene {
     let mut scene = shipped("oc4_chain");
-    if let Some(bed) = &mut scene.seabed {
-        bed.friction = Friction::isotropic(friction);
+    if let Some(seabed) = &mut scene.seabed {
+        seabed.friction = Friction::isotropic(friction);
     }
     let rows = (0..=1000).map(|k| {
         let t = 0.1 * f64::from(k);
@@ -227,7 +227,7 @@ pub fn release(simulation: &mut Simulation) {
     simulation.set_release(0, now);
 }
 
-/// A chain over a bed whose middle element is `ratio` times shorter than its neighbours; without it where `ratio` is 0.
+/// A chain over a seabed whose middle element is `ratio` times shorter than its neighbours; without it where `ratio` is 0.
 pub fn short_segment(ratio: f64) -> Scene {
     let piece = |length, elements| piece("chain", length, elements);
     let sections = if ratio > 0.0 {

@@ -492,7 +492,7 @@ fn same_bits(these: &[f64], those: &[f64]) -> bool {
 fn hand_over(inputs: &[BodyInput], simulation: &mut Simulation) {
     for (index, input) in inputs.iter().enumerate() {
         let body = simulation.model().body(index);
-        simulation.set_body(body, input.displacement, input.told());
+        simulation.set_body(body, input.displacement, input.given());
     }
 }
 

@@ -82,7 +82,7 @@ impl Log {
         }
     }
 
-    /// Hands over the messages.
+    /// Passes the messages on.
     pub(crate) fn take(&mut self) -> Vec<(Topic, String)> {
         std::mem::take(&mut self.messages)
     }

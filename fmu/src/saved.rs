@@ -40,11 +40,11 @@ pub(crate) struct BodyInput {
 impl BodyInput {
     /// Velocities given by the host; none along or about all axes where it gives only 0 for a body that has moved.
     /// Hosts that write all inputs at every communication point write 0 to unconnected ones.
-    pub(crate) fn told(&self) -> [Option<f64>; 6] {
+    pub(crate) fn given(&self) -> [Option<f64>; 6] {
         std::array::from_fn(|axis| {
             let kind = axis / 3;
-            let tells = self.has_speed[kind] || !self.has_moved[kind];
-            (tells && self.has_velocity[axis]).then_some(self.velocity[axis])
+            let gives = self.has_speed[kind] || !self.has_moved[kind];
+            (gives && self.has_velocity[axis]).then_some(self.velocity[axis])
         })
     }
 }
@@ -166,13 +166,13 @@ mod tests {
             has_velocity: [true, true, true, true, false, true],
             ..BodyInput::default()
         };
-        assert_eq!(input.told()[..4], [Some(0.0); 4]);
-        assert_eq!(input.told()[4], None);
+        assert_eq!(input.given()[..4], [Some(0.0); 4]);
+        assert_eq!(input.given()[4], None);
         input.has_moved = [true, false];
-        assert_eq!(input.told()[..3], [None; 3]);
-        assert_eq!(input.told()[3], Some(0.0));
+        assert_eq!(input.given()[..3], [None; 3]);
+        assert_eq!(input.given()[3], Some(0.0));
         input.has_speed = [true, false];
-        assert_eq!(input.told()[..4], [Some(0.0); 4]);
+        assert_eq!(input.given()[..4], [Some(0.0); 4]);
     }
 
     #[test]

@@ -23,7 +23,7 @@ use crate::scene::Scene;
 /// Parts of a run to be kept.
 #[derive(Debug, Clone, Default)]
 struct Kept {
-    /// Columns beside the time; all where absent.
+    /// Columns in addition to the time; all where absent.
     columns: Option<Vec<String>>,
     /// Interval of shapes [s]; none where absent.
     shapes: Option<f64>,

@@ -655,7 +655,7 @@ impl Simulation {
         ))
     }
 
-    /// Tensions of the segments beside the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn.
+    /// Tensions of the segments next to the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn.
     fn segment_tensions<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mooring = self.mooring.read();
         let line = Self::line(&mooring, line)?;

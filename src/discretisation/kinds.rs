@@ -21,12 +21,12 @@ pub(super) struct Kinds {
 }
 
 impl Kinds {
-    /// None where every network is of a kind of its own.
+    /// None where no two networks are of one kind.
     pub(super) fn of(scene: &Scene, networks: &Networks) -> Option<Kinds> {
         let level = scene
             .seabed
             .as_ref()
-            .is_none_or(|bed| bed.slope.is_none() && bed.file.is_none() && bed.grid.is_none());
+            .is_none_or(|seabed| seabed.slope.is_none() && seabed.file.is_none() && seabed.grid.is_none());
         if !level || networks.lines.len() < 2 {
             return None;
         }

@@ -27,7 +27,7 @@ const PERIODS: f64 = 20.0;
 const DURATION: f64 = 200.0;
 /// Samples in a period of the fastest sine, at least [-].
 const SAMPLES: f64 = 25.0;
-/// Elements below those of the rung that are worth a trial, over them [-].
+/// Elements below those of the level that are worth a trial, over them [-].
 const FEWER: f64 = 0.93;
 
 /// State of the search.
@@ -115,7 +115,7 @@ impl Ladder {
         Some(distance(run, fine) * if smooth.is_finite() { smooth } else { 1.0 })
     }
 
-    /// Elements between a rung that is too coarse and the next, which is not, where they are worth a trial.
+    /// Elements between a level that is too coarse and the next, which is not, where they are worth a trial.
     fn between(&self, aim: f64) -> Option<usize> {
         let [.., before, found] = &self.trials[..] else {
             return None;
@@ -161,12 +161,12 @@ impl<'a> Search<'a> {
         if !leapfrog {
             return None;
         }
-        let pace = Pace::of(scene)?;
+        let times = MotionTimes::of(scene)?;
         let output = &scene.output;
         let mut scene = scene.clone();
-        scene.output.duration = output.duration.min(pace.duration);
-        scene.output.interval = output.interval.min(pace.shortest / SAMPLES);
-        let start = (0.5 * scene.output.duration).max(pace.ramp.min(0.75 * scene.output.duration));
+        scene.output.duration = output.duration.min(times.duration);
+        scene.output.interval = output.interval.min(times.shortest / SAMPLES);
+        let start = (0.5 * scene.output.duration).max(times.ramp.min(0.75 * scene.output.duration));
         Some(Search {
             from: (start / scene.output.interval) as usize,
             scene,
@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
     }
 
     /// The same with steps that add little to the error of the mesh, explicit ones where they cost less.
-    fn rung(&self, elements: &[usize]) -> Scene {
+    fn at_level(&self, elements: &[usize]) -> Scene {
         let mut scene = self.with(elements);
         if let Some(step) = self.step {
             let explicit = self.explicit_work(&scene);
@@ -263,7 +263,7 @@ impl<'a> Search<'a> {
             .iter()
             .map(|ladder| assessed(ladder).unwrap_or(LADDER[0]));
         let elements: Vec<usize> = elements.collect();
-        let mut scene = self.rung(&elements);
+        let mut scene = self.at_level(&elements);
         if scene.solver.integrator != Integrator::AxialImplicit {
             return true;
         }
@@ -287,14 +287,14 @@ impl<'a> Search<'a> {
     fn climb(&mut self, aim: f64) -> f64 {
         let before = self.work;
         let mut last = 0.0;
-        for rung in LADDER {
+        for level in LADDER {
             let open = self.ladders.iter().any(|ladder| ladder.found.is_none());
             if !open || self.work + 2.0 * last > WORK_MAX {
                 break;
             }
-            let elements = self.ladders.iter().map(|ladder| ladder.found.unwrap_or(rung));
+            let elements = self.ladders.iter().map(|ladder| ladder.found.unwrap_or(level));
             let elements: Vec<usize> = elements.collect();
-            let record = match self.run(&self.rung(&elements)) {
+            let record = match self.run(&self.at_level(&elements)) {
                 Ok(Some(record)) => Some(record),
                 Ok(None) => break,
                 Err(_) => None, // too coarse to be solved
@@ -302,7 +302,7 @@ impl<'a> Search<'a> {
             last = record.as_ref().map_or(0.0, |record| record.work);
             for ladder in self.ladders.iter_mut().filter(|ladder| ladder.found.is_none()) {
                 match &record {
-                    Some(record) => ladder.climb(ladder.part(rung, record), aim),
+                    Some(record) => ladder.climb(ladder.part(level, record), aim),
                     None => ladder.runs.clear(),
                 }
             }
@@ -317,11 +317,11 @@ impl<'a> Search<'a> {
             return vec![None; wanted.len()];
         }
         let elements = self.ladders.iter().zip(&wanted).map(|(ladder, wanted)| {
-            let rung = ladder.found.or(ladder.trials.last().map(|trial| trial.elements));
-            wanted.or(rung).unwrap_or(LADDER[0])
+            let level = ladder.found.or(ladder.trials.last().map(|trial| trial.elements));
+            wanted.or(level).unwrap_or(LADDER[0])
         });
         let elements: Vec<usize> = elements.collect();
-        let Ok(Some(record)) = self.run(&self.rung(&elements)) else {
+        let Ok(Some(record)) = self.run(&self.at_level(&elements)) else {
             return vec![None; wanted.len()];
         };
         let trials = self.ladders.iter().zip(wanted).map(|(ladder, wanted)| {
@@ -332,7 +332,7 @@ impl<'a> Search<'a> {
         trials.collect()
     }
 
-    /// The scene with so many elements in every network, tried ones, and the cheapest leapfrog that keeps the error with them.
+    /// The scene with the tried number of elements in every network, and the cheapest leapfrog that keeps the error with them.
     pub(super) fn with_integrator(&mut self, elements: &[usize]) -> Scene {
         let mut scene = self.with(elements);
         if scene.solver.integrator != Integrator::Auto {
@@ -441,7 +441,7 @@ impl Explicit {
 }
 
 /// Speed and duration of a scene's motion.
-struct Pace {
+struct MotionTimes {
     /// Shortest period [s].
     shortest: f64,
     /// Time after which the motion is fully developed [s].
@@ -450,9 +450,9 @@ struct Pace {
     duration: f64,
 }
 
-impl Pace {
+impl MotionTimes {
     /// None for a scene that gives no motion.
-    fn of(scene: &Scene) -> Option<Pace> {
+    fn of(scene: &Scene) -> Option<MotionTimes> {
         let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
         let paths: Vec<&MotionPath> = scene.motion.values().chain(own).collect();
         let (mut shortest, mut longest, mut ramp) = (f64::INFINITY, 0.0_f64, 0.0_f64);
@@ -472,7 +472,7 @@ impl Pace {
         } else {
             PERIODS * longest
         };
-        (!paths.is_empty()).then_some(Pace {
+        (!paths.is_empty()).then_some(MotionTimes {
             shortest,
             ramp,
             duration: ramp + duration,

@@ -245,7 +245,7 @@ impl Integrators {
         choices.try_for_each(|(number, choice)| step.check_length(number, choice, part))
     }
 
-    /// Samples the waves where a span of theirs is over; returns whether one was.
+    /// Samples the waves where one of their spans is over; returns whether one was.
     fn renew_waves(&mut self, model: &Model, waves: &Waves, state: &mut State, step: f64) -> bool {
         let threads = (&mut self.threads, self.estimate.threads_for_waves());
         self.sea.renew((model, waves), state, step, threads)

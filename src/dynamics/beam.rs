@@ -8,7 +8,7 @@
 //!
 //! where f̄, m̄ gather −L B̄ᵀS̄ of the elements (the gradient B̄ at the mean of both ends of the step, S̄ the mean
 //! stress), weight, loads, and the forces of water and seabed. The strains are bilinear, so that B̄ is a discrete
-//! gradient: without water, bed and damping the energy ½ vᵀM v + ½ W·J W + Σ U + Σ w z changes by the work of the
+//! gradient: without water, seabed and damping the energy ½ vᵀM v + ½ W·J W + Σ U + Σ w z changes by the work of the
 //! loads alone, and both momenta by their impulses, to rounding.
 //!
 //! Loads are means over the step, so that an impulse is exact wherever the load jumps. Viscous damping adds D (E₁ − E)/Δt to S̄. Added mass
@@ -391,10 +391,12 @@ impl BeamWork {
     /// Adds the seabed under the elements.
     fn add_seabed(&mut self, case: &BeamStep, tangent: bool) {
         for element in 0..case.beam.elements.len() {
-            for (part, bed) in self.contact(case, element) {
-                let force = part.shares.map(|share| share * bed.force);
+            for (part, seabed) in self.contact(case, element) {
+                let force = part.shares.map(|share| share * seabed.force);
                 if tangent {
-                    let slope = part.products().map(|row| row.map(|product| product * bed.slope));
+                    let slope = part
+                        .products()
+                        .map(|row| row.map(|product| product * seabed.slope));
                     add_rise(&mut self.chain, element, force, slope);
                 } else {
                     add_lift(&mut self.chain, element, force);
@@ -459,7 +461,7 @@ impl BeamWork {
             .sum()
     }
 
-    /// Energy that water, bed and mass damping dissipate at a node [J].
+    /// Energy that water, seabed and mass damping dissipate at a node [J].
     fn node_loss(&self, case: &BeamStep, shape: &LineState, i: usize) -> f64 {
         let moved = self.now[i].position - self.before[i].position;
         let mut lost = 0.0;
@@ -468,8 +470,10 @@ impl BeamWork {
         }
         if let Some(contact) = &case.nodes.contact {
             for (element, _) in contact.beside(i) {
-                let beds = self.contact(case, element).into_iter();
-                let push: f64 = beds.map(|(part, bed)| part.shares[i - element] * bed.force).sum();
+                let seabeds = self.contact(case, element).into_iter();
+                let push: f64 = seabeds
+                    .map(|(part, seabed)| part.shares[i - element] * seabed.force)
+                    .sum();
                 lost -= push * moved.z;
             }
         }

@@ -190,11 +190,11 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
         .winch_state
         .map(|winch_state| line_before(line, shape, winch_state, lag));
     let line = then.as_ref().unwrap_or(line);
-    let passing = passing(line, shape, lag);
+    let transport = material_transport(line, shape, lag);
     let position = |i: usize| {
         let place = shape.position[i] - lag * velocity[i];
         if i + 1 == shape.position.len() {
-            place - passing
+            place - transport
         } else {
             place
         }
@@ -261,8 +261,8 @@ pub fn jump_flow(
     }
     if let Some(winch_state) = shape.winch_state.filter(|_| lag > 0.0) {
         let then = line_before(line, moved, winch_state, lag);
-        let passing = passing(&then, moved, lag) / lag;
-        moved.half_step.velocity[last] -= passing;
+        let transport = material_transport(&then, moved, lag) / lag;
+        moved.half_step.velocity[last] -= transport;
     }
     let shapes = [&*moved, shape];
     let [after, before] = shapes.map(|shape| line_energy(model, state, index, shape));
@@ -292,7 +292,7 @@ fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64
 
 /// Distance that the material at a winch has moved beyond the winch in `lag` [s], by which its velocity misses the
 /// winch's place [m].
-fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
+fn material_transport(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     let Some(winch_state) = shape.winch_state else {
         return Vector3::zeros();
     };

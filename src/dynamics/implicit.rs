@@ -20,9 +20,9 @@
 //! The second correction of a step uses the tangent and the factors of the first one, if that is small. Most steps then evaluate one tangent.
 //!
 //! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The
-//! seabed's damper fades in over two static penetrations above and below the bed, or over the displacement of the
+//! seabed's damper fades in over two static penetrations above and below the seabed, or over the displacement of the
 //! node in a step if that is larger. A damper that switches on at touch would prevent the convergence of Newton's
-//! method. Nodes at rest on the bed are not affected.
+//! method. Nodes at rest on the seabed are not affected.
 //!
 //! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer.
 //! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound

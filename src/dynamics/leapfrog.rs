@@ -66,7 +66,7 @@ pub trait Kernel: Debug + Clone + Sized {
     /// Allocates for the free points of a network.
     fn points(model: &Model, network: &Network) -> Self::Points;
 
-    /// Loads the quantities that a line keeps beside those of the layout.
+    /// Loads the quantities that a line keeps in addition to those of the layout.
     fn load(work: &mut LeapfrogLine<Self>, state: &LineState);
 
     /// Continues from the state that was stored last.

@@ -102,10 +102,10 @@ impl InputSample {
 
 /// Velocities from the host, 0 where it gives none [m/s, rad/s]; and 1 where it gives one, else 0 [-].
 #[inline(always)]
-pub fn rates<const N: usize>(told: [Option<f64>; N]) -> [[f64; N]; 2] {
+pub fn rates<const N: usize>(given: [Option<f64>; N]) -> [[f64; N]; 2] {
     [
-        told.map(|rate| rate.unwrap_or(0.0)),
-        told.map(|rate| f64::from(u8::from(rate.is_some()))),
+        given.map(|rate| rate.unwrap_or(0.0)),
+        given.map(|rate| f64::from(u8::from(rate.is_some()))),
     ]
 }
 

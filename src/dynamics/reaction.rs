@@ -2,7 +2,7 @@
 //!
 //! The end's half node belongs to the line, so that the force on the vessel is
 //!
-//! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_bed],
+//! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_seabed],
 //!
 //! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Without the
 //! half node the end force would be of first order in the segment length. A line on its closed-form catenary uses the
@@ -24,7 +24,7 @@
 //!
 //! The velocities in d are relative to the water, that of the middle being the mean of the ends', so that a line in a
 //! current has the end forces of one that is towed in still water. Where the line bends, S adds to T q on both sides
-//! of the next node; the contact force of the bed is given at both nodes and is treated as their weight.
+//! of the next node; the contact force of the seabed is given at both nodes and is treated as their weight.
 //!
 //! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴), and at the surface by |p_e|²/(|p_e|² + 16 |Δ|²), Δ being the part of the load, buoyancy included,
 //! that p_e would gain or lose were the end as far out of the water as the next node.
@@ -74,7 +74,7 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
 }
 
 /// Force of the material that the winch accelerates and its half node holds, over −λq [N]: m ℓ̇² + M ℓ̈.
-fn passing(line: &Line, winch_state: WinchState) -> f64 {
+fn transport_force(line: &Line, winch_state: WinchState) -> f64 {
     let (node, nodes) = (line.segment_count(), &line.nodes);
     let density = nodes.mass[node] / nodes.length[node]; // [kg/m]
     density * winch_state.rate.powi(2) + nodes.mass_tangent[node] * winch_state.acceleration
@@ -205,7 +205,7 @@ impl<'a> HalfNode<'a> {
         };
         let mut force = pull + load;
         if let (Some(winch_state), End::B) = (state.winch_state, end) {
-            force -= passing(line, winch_state) * chord / line.segments.length[node - 1];
+            force -= transport_force(line, winch_state) * chord / line.segments.length[node - 1];
         }
         force.z -= nodes.weight[node] + self.dry.weight;
         if let Some(contact) = &nodes.contact {

@@ -1,7 +1,7 @@
 //! Threads that share the networks of a communication step.
 //!
-//! Networks are independent within a communication step: each advances on one thread, by the same operations in the same order whatever
-//! the number of threads, and sums over networks are formed afterwards in their order. Results are therefore bit-identical on any number
+//! Networks are independent within a communication step: each advances on one thread, by the same operations in the same order for any
+//! number of threads, and sums over networks are formed afterwards in their order. Results are therefore bit-identical on any number
 //! of threads. Each thread gets an equal, contiguous part of the networks.
 //!
 //! Worker threads are used from [`WORTH`] of work on; the work of a step is estimated from its nodes and internal

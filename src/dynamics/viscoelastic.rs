@@ -191,7 +191,7 @@ impl ViscoelasticArrays {
         self.half[0][at] = strain;
     }
 
-    /// Hands the slow strains back.
+    /// Copies the slow strains back.
     pub fn store(&self, slow: &mut Vec<f64>, half: &mut Vec<f64>) {
         for (values, column) in [(slow, &self.slow), (half, &self.half[1])] {
             values.clear();

@@ -194,7 +194,7 @@ impl BeamCase<'_> {
             let at = body.at(height);
             chain.right[node].z -= share.force * at.weight;
             chain.diagonal[node][(2, 2)] += share.force * at.weight_slope;
-            if let Some((stiffness, push)) = body.bed_at_rest(height) {
+            if let Some((stiffness, push)) = body.seabed_at_rest(height) {
                 chain.right[node].z += push;
                 chain.diagonal[node][(2, 2)] += stiffness;
             }
@@ -244,8 +244,8 @@ impl BeamCase<'_> {
             add(-split(&self.ends[end].load).0.dot(position));
             if let Some(body) = self.bodies[end] {
                 add(body.potential(position.z));
-                let bed = body.bed_at_rest(position.z);
-                add(bed.map_or(0.0, |(stiffness, push)| 0.5 * push * push / stiffness));
+                let seabed = body.seabed_at_rest(position.z);
+                add(seabed.map_or(0.0, |(stiffness, push)| 0.5 * push * push / stiffness));
             }
         }
         Energy { value, size }
@@ -385,7 +385,7 @@ struct AddElements<'a> {
 }
 
 /// Subtracts the forces of all elements, with the sections `now` after a step or at rest, from the right-hand side and, with a `tangent`, adds
-/// their slopes with positions and spins to the matrix, where the blocks beside the diagonal are set.
+/// their slopes with positions and spins to the matrix, where the blocks off the diagonal are set.
 pub(crate) fn add_elements(
     chain: &mut PivotedChain,
     elements: &[FourElements],

@@ -1,6 +1,6 @@
 //! The seabed under the segments of a line in the assembled system.
 //!
-//! The force on a node is the sum over the parts of the two segments beside it ([`crate::physics::seabed`]); it has slopes with the penetration of
+//! The force on a node is the sum over the parts of the two segments next to it ([`crate::physics::seabed`]); it has slopes with the penetration of
 //! the node and with those of its neighbours.
 
 use nalgebra::Vector3;
@@ -10,11 +10,11 @@ use crate::model::{Contact, Line, LineState};
 use crate::physics::fading_damper::{FadingContact, damper_reach};
 use crate::physics::seabed::{ContactCoefficients, PARTS};
 
-/// Seabed under the segments beside a node.
+/// Seabed under the segments next to a node.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Bearing {
     /// Force on the node, and its slopes with the penetration and the velocity of the node.
-    pub bed: FadingContact,
+    pub seabed: FadingContact,
     /// Slope of the force with the penetration of the node after [N/m].
     pub stiffness_after: f64,
     /// Negative slope of the force with the velocity ż of the node after [N s/m].
@@ -47,7 +47,7 @@ impl Stand {
 }
 
 impl Bearing {
-    /// Sum over the parts of the segments beside a node, from the positions of nodes; the damper of a segment fades in over ± `reach` [m]. `None`
+    /// Sum over the parts of the segments next to a node, from the positions of nodes; the damper of a segment fades in over ± `reach` [m]. `None`
     /// where the seabed does not act.
     pub(super) fn new(
         contact: &Contact,
@@ -62,7 +62,7 @@ impl Bearing {
                 sum.add(&both[node - segment]);
             }
         }
-        (sum.bed.force > 0.0).then_some(sum)
+        (sum.seabed.force > 0.0).then_some(sum)
     }
 
     /// Bearing of both nodes of a segment whose damper fades in over ± `reach` [m]; `None` where the seabed does not act.
@@ -75,33 +75,33 @@ impl Bearing {
         let mut ends = [Bearing::default(); 2];
         for part in PARTS {
             let [penetration, rise] = [part.between(low, high), part.between(low_rise, high_rise)];
-            let Some(bed) = FadingContact::new(k, penetration, rise, reach) else {
+            let Some(seabed) = FadingContact::new(k, penetration, rise, reach) else {
                 continue;
             };
             let products = part.products();
             for (side, end) in ends.iter_mut().enumerate() {
-                end.bed.force += part.shares[side] * bed.force;
-                end.bed.stiffness += products[side][side] * bed.stiffness;
-                end.bed.damping += products[side][side] * bed.damping;
+                end.seabed.force += part.shares[side] * seabed.force;
+                end.seabed.stiffness += products[side][side] * seabed.stiffness;
+                end.seabed.damping += products[side][side] * seabed.damping;
             }
-            ends[0].stiffness_after += products[0][1] * bed.stiffness;
-            ends[0].damping_after += products[0][1] * bed.damping;
+            ends[0].stiffness_after += products[0][1] * seabed.stiffness;
+            ends[0].damping_after += products[0][1] * seabed.damping;
         }
         Some(ends)
     }
 
     #[inline(always)]
     fn add(&mut self, other: &Bearing) {
-        self.bed.force += other.bed.force;
-        self.bed.stiffness += other.bed.stiffness;
-        self.bed.damping += other.bed.damping;
+        self.seabed.force += other.seabed.force;
+        self.seabed.stiffness += other.seabed.stiffness;
+        self.seabed.damping += other.seabed.damping;
         self.stiffness_after += other.stiffness_after;
         self.damping_after += other.damping_after;
     }
 }
 
 impl LineWork {
-    /// Finds the position of every node relative to the seabed and the bearing of the segments beside it; at rest nothing moves and no damper
+    /// Finds the position of every node relative to the seabed and the bearing of the segments next to it; at rest nothing moves and no damper
     /// fades.
     pub(super) fn find_bearings(&mut self, contact: &Contact, state: &LineState, moves: bool) {
         self.bearing.fill(Bearing::default());

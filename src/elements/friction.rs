@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::contact::{Bearing, Stand};
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
-use crate::model::{Bottom, Contact, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::model::{Contact, FreePoint, Line, LineState, Model, Network, PointState, Seabed, State};
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::friction::{Axes, Friction, node_friction};
 use crate::physics::ground::Touch;
@@ -136,16 +136,16 @@ impl<'a> Resting<'a> {
             turning,
             ..
         } = self.touch;
-        let bed = self.bearing.bed;
+        let seabed = self.bearing.seabed;
         let across = normal * self.normal_after.transpose();
-        let by_place = bed.stiffness * slope - bed.damping * turning.transpose() * self.velocity;
-        let by_velocity = -bed.damping * normal;
+        let by_place = seabed.stiffness * slope - seabed.damping * turning.transpose() * self.velocity;
+        let by_velocity = -seabed.damping * normal;
         let mut push = Push {
-            force: bed.force * normal,
+            force: seabed.force * normal,
             friction: Vector3::zeros(),
-            normal_force: bed.force,
+            normal_force: seabed.force,
             stiffness: [
-                -normal * by_place.transpose() - bed.force * turning,
+                -normal * by_place.transpose() - seabed.force * turning,
                 Matrix3::zeros(),
             ],
             damping: [-normal * by_velocity.transpose(), Matrix3::zeros()],
@@ -154,12 +154,12 @@ impl<'a> Resting<'a> {
         if let Some(rub) = &self.rub {
             let axes = Axes::new(normal, rub.tangent);
             let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
-            let normal_force = rub.normal_force.unwrap_or(bed.force);
+            let normal_force = rub.normal_force.unwrap_or(seabed.force);
             let limits = rub.limit * Vector2::from(rub.friction.limits(axes.share, normal_force));
             let held = node_friction(wanted, [1.0, 1.0].into(), limits);
             let slope = held.slope(limits);
             let grows = match rub.normal_force {
-                None => axes.vector(&(held.force - slope * wanted)) / bed.force,
+                None => axes.vector(&(held.force - slope * wanted)) / seabed.force,
                 Some(_) => Vector3::zeros(),
             };
             let [along, across] = [axes.along, axes.across];
@@ -218,17 +218,17 @@ pub fn resting_node<'a>(
 /// there is none. `None` where the seabed does not act.
 pub fn resting_point<'a>(
     free: &FreePoint,
-    bottom: &'a Bottom,
+    seabed: &'a Seabed,
     state: &PointState,
     reach: Option<f64>,
 ) -> Option<Resting<'a>> {
     let contact = free.contact.as_ref()?;
     let place = state.position;
-    let friction = bottom.friction.as_ref().zip(state.anchor);
-    let touch = bottom.touch(place, contact.lift());
+    let friction = seabed.friction.as_ref().zip(state.anchor);
+    let touch = seabed.touch(place, contact.lift());
     let velocity = reach.map_or(Vector3::zeros(), |_| state.velocity);
     let rise = touch.normal.dot(&velocity);
-    let bed = FadingContact::new(
+    let seabed = FadingContact::new(
         contact.coefficients,
         touch.penetration,
         rise,
@@ -237,7 +237,7 @@ pub fn resting_point<'a>(
     Some(Resting {
         touch,
         bearing: Bearing {
-            bed,
+            seabed,
             ..Bearing::default()
         },
         normal_after: touch.normal,
@@ -322,7 +322,7 @@ impl LineWork {
     ) -> Option<Resting<'a>> {
         let bearing = self.bearing[i];
         let after = self.stand[(i + 1).min(self.stand.len() - 1)].normal;
-        (bearing.bed.force > 0.0).then(|| Resting::on(contact, line, state, i, (bearing, after), moves))
+        (bearing.seabed.force > 0.0).then(|| Resting::on(contact, line, state, i, (bearing, after), moves))
     }
 
     /// Keeps the friction on a node, where the seabed is more than a level plane without friction.
@@ -335,14 +335,14 @@ impl LineWork {
 
 impl PointWork {
     /// Adds the seabed under a point at rest.
-    pub(super) fn add_static_bottom(
+    pub(super) fn add_static_seabed(
         &mut self,
         free: &FreePoint,
-        bottom: &Bottom,
+        seabed: &Seabed,
         state: &PointState,
         case: &StaticCase,
     ) {
-        let push = resting_point(free, bottom, state, None)
+        let push = resting_point(free, seabed, state, None)
             .map(|resting| resting.at_rest(case, self.pressed).push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if !case.keeps_pressure {
@@ -355,14 +355,14 @@ impl PointWork {
     }
 
     /// Adds the seabed under a moving point.
-    pub(super) fn add_bottom<const TANGENT: bool>(
+    pub(super) fn add_seabed<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
-        bottom: &Bottom,
+        seabed: &Seabed,
         state: &PointState,
         weights: &Weights,
     ) {
-        let push = resting_point(free, bottom, state, Some(self.reach)).map(|point| point.push());
+        let push = resting_point(free, seabed, state, Some(self.reach)).map(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
             self.residual -= push.weighted(weights);
@@ -380,7 +380,7 @@ pub(super) fn move_anchors(model: &Model, network: &Network, state: &mut State, 
         if line.friction().is_none() {
             continue;
         }
-        let Some((contact, _)) = line.bottom() else {
+        let Some((contact, _)) = line.seabed() else {
             continue;
         };
         for (i, anchor) in shape.anchor.iter_mut().enumerate() {
@@ -459,52 +459,52 @@ mod tests {
         transverse: 0.7,
     };
 
-    fn bottom(ground: Ground) -> Bottom {
-        Bottom {
+    fn seabed(ground: Ground) -> Seabed {
+        Seabed {
             ground,
             level: false,
             friction: Some(ROUGH),
         }
     }
 
-    fn slope() -> Bottom {
-        bottom(Ground::Plane {
+    fn slope() -> Seabed {
+        seabed(Ground::Plane {
             height: -5.0,
             slope: [0.3, -0.2],
         })
     }
 
-    fn hill() -> Bottom {
+    fn hill() -> Seabed {
         let rows = vec![
             vec![-5.0, -4.6, -5.3],
             vec![-5.2, -4.2, -4.9],
             vec![-5.0, -4.8, -5.1],
         ];
         let lines = [-2.0, 0.5, 2.0];
-        bottom(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
+        seabed(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
     }
 
     /// A node a little under the seabed that moves, `slid` from its anchor.
     fn resting(
-        bottom: &Bottom,
+        seabed: &Seabed,
         shift: Vector3<f64>,
         velocity: Vector3<f64>,
         slid: Option<Vector3<f64>>,
     ) -> Resting<'_> {
-        let under = Vector3::new(0.2, -0.1, bottom.ground.height(0.2, -0.1) - 0.01);
+        let under = Vector3::new(0.2, -0.1, seabed.ground.height(0.2, -0.1) - 0.01);
         let place = under + shift;
         let (touch, k) = (
-            bottom.touch(place, 0.0),
+            seabed.touch(place, 0.0),
             ContactCoefficients {
                 stiffness: 1e4,
                 damping: 50.0,
             },
         );
-        let bed = FadingContact::new(k, touch.penetration, touch.normal.dot(&velocity), 0.03);
+        let seabed = FadingContact::new(k, touch.penetration, touch.normal.dot(&velocity), 0.03);
         Resting {
             touch,
             bearing: Bearing {
-                bed: bed.expect("the node is under the seabed"),
+                seabed: seabed.expect("the node is under the seabed"),
                 ..Bearing::default()
             },
             normal_after: touch.normal,
@@ -521,12 +521,12 @@ mod tests {
         }
     }
 
-    fn assert_tangent(bottom: &Bottom, slid: Option<Vector3<f64>>) {
+    fn assert_tangent(seabed: &Seabed, slid: Option<Vector3<f64>>) {
         let (zero, velocity) = (Vector3::zeros(), Vector3::new(0.05, -0.1, -0.2));
-        let push = resting(bottom, zero, velocity, slid).push();
+        let push = resting(seabed, zero, velocity, slid).push();
         for axis in 0..3 {
             let step = 1e-7 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
-            let force = |shift, velocity| resting(bottom, shift, velocity, slid).push().force;
+            let force = |shift, velocity| resting(seabed, shift, velocity, slid).push().force;
             let by_place = (force(-step, velocity) - force(step, velocity)) / 2e-7;
             let by_velocity = (force(zero, velocity - step) - force(zero, velocity + step)) / 2e-7;
             let stiffness = push.stiffness[0] + push.stiffness[1];
@@ -559,11 +559,11 @@ mod tests {
     }
 
     #[test]
-    fn friction_pulls_towards_the_anchor_in_the_plane_of_the_bed_up_to_its_limit() {
-        let bed = slope();
+    fn friction_pulls_towards_the_anchor_in_the_plane_of_the_seabed_up_to_its_limit() {
+        let seabed = slope();
         let still = Vector3::zeros();
         let slid = Vector3::new(0.4, -0.3, 0.1);
-        let node = resting(&bed, still, still, Some(slid));
+        let node = resting(&seabed, still, still, Some(slid));
         let push = node.push();
         assert_relative_eq!(push.friction.dot(&node.touch.normal), 0.0, epsilon = 1e-10);
         assert!(push.friction.dot(&slid) < 0.0);

@@ -235,14 +235,14 @@ fn couples(position: &[Vector3<f64>], moments: [Vector3<f64>; 2]) -> impl Iterat
         .map(|(moment, i)| (Couple::new(moment, position[i + 1] - position[i]), i))
 }
 
-/// Power [W], or work [J], of moments [N m] on the ends of a line whose nodes pass at velocities [m/s], or by displacements [m].
+/// Power [W], or work [J], of moments [N m] on the ends of a line whose nodes move at velocities [m/s], or by displacements [m].
 pub fn end_moment_power(
     position: &[Vector3<f64>],
     moments: [Vector3<f64>; 2],
-    passing: impl Fn(usize) -> Vector3<f64>,
+    motion: impl Fn(usize) -> Vector3<f64>,
 ) -> f64 {
     couples(position, moments)
-        .map(|(couple, i)| couple.force.dot(&(passing(i + 1) - passing(i))))
+        .map(|(couple, i)| couple.force.dot(&(motion(i + 1) - motion(i))))
         .sum()
 }
 
@@ -265,7 +265,7 @@ pub fn joint_damping_power(
     line: &Line,
     state: &LineState,
     clamps: [Option<Vector3<f64>>; 2],
-    passing: impl Fn(usize) -> Vector3<f64>,
+    motion: impl Fn(usize) -> Vector3<f64>,
 ) -> f64 {
     let Some(damping) = line.bending.as_ref().and_then(|bending| bending.damping.as_ref()) else {
         return 0.0;
@@ -277,8 +277,8 @@ pub fn joint_damping_power(
         };
         let resisted = rates(i, last, |node| state.velocity[node]);
         let drag = turn.damper(*damping).product(resisted);
-        let passing = rates(i, last, &passing);
-        drag[0].dot(&passing[0]) + drag[1].dot(&passing[1])
+        let rates = rates(i, last, &motion);
+        drag[0].dot(&rates[0]) + drag[1].dot(&rates[1])
     };
     damping.iter().enumerate().map(power).sum()
 }

@@ -45,7 +45,7 @@ pub(crate) struct LineWork {
     pub history: Vec<Vector3<f64>>,
     /// Half the range of penetrations over which the seabed damper fades in, per segment [m].
     pub reach: Vec<f64>,
-    /// Position of every node relative to the seabed, and the bearing of the segments beside it, at the last assembly; empty without a seabed.
+    /// Position of every node relative to the seabed, and the bearing of the segments next to it, at the last assembly; empty without a seabed.
     pub(super) stand: Vec<Stand>,
     pub(super) bearing: Vec<Bearing>,
     /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
@@ -123,8 +123,8 @@ impl LineWork {
             load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
             dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
-            rubbed: vec![Vector3::zeros(); line.bottom().map_or(0, |_| n + 1)],
-            pressed: vec![0.0; line.bottom().map_or(0, |_| n + 1)],
+            rubbed: vec![Vector3::zeros(); line.seabed().map_or(0, |_| n + 1)],
+            pressed: vec![0.0; line.seabed().map_or(0, |_| n + 1)],
             viscoelastic: ViscoelasticWork::new(line),
             released: [false; 2],
             loose: None,

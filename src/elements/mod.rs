@@ -255,8 +255,8 @@ impl Workspace {
             let point = &mut self.points[index];
             let (data, state) = (&model.points[index], &state.points[index]);
             point.assemble_static(data, free, state, stream, case);
-            match model.bottom.as_deref() {
-                Some(bottom) => point.add_static_bottom(free, bottom, state, case),
+            match model.seabed.as_deref() {
+                Some(seabed) => point.add_static_seabed(free, seabed, state, case),
                 None => point.add_seabed_at_rest(free, state.position.z),
             }
         });
@@ -293,9 +293,9 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
-            let (bottom, state_of) = (model.bottom.as_deref(), &state.points[index]);
+            let (seabed, state_of) = (model.seabed.as_deref(), &state.points[index]);
             let water = (stream, state.waves_at_point(index, t));
-            point.assemble_dynamic::<TANGENT>(free, bottom, state_of, load, water, weights);
+            point.assemble_dynamic::<TANGENT>(free, seabed, state_of, load, water, weights);
         });
         self.gather(model, network);
     }
@@ -473,9 +473,9 @@ impl Workspace {
                 let PointState {
                     position, velocity, ..
                 } = state.points[index];
-                let rise = match &model.bottom {
+                let rise = match &model.seabed {
                     None => velocity.z,
-                    Some(bottom) => bottom.rise(position, velocity),
+                    Some(seabed) => seabed.rise(position, velocity),
                 };
                 let moved = rise.abs() * dt;
                 self.points[index].reach = resting.max(moved);

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{StaticCase, Weights};
-use crate::model::{Bottom, FreePoint, Model, Network, Point, PointForces, PointState};
+use crate::model::{FreePoint, Model, Network, Point, PointForces, PointState, Seabed};
 use crate::physics::airy::Orbit;
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::flow::Stream;
@@ -72,7 +72,7 @@ impl PointWork {
 
     /// Adds a level seabed without friction under a point at rest at a height `z` [m].
     pub(super) fn add_seabed_at_rest(&mut self, free: &FreePoint, z: f64) {
-        if let Some((stiffness, push)) = free.bed_at_rest(z) {
+        if let Some((stiffness, push)) = free.seabed_at_rest(z) {
             self.residual.z -= push;
             self.diagonal[(2, 2)] += stiffness;
         }
@@ -82,7 +82,7 @@ impl PointWork {
     pub(super) fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
-        bottom: Option<&Bottom>,
+        seabed: Option<&Seabed>,
         state: &PointState,
         load: Vector3<f64>,
         water: (Option<Stream>, Option<Orbit>),
@@ -106,17 +106,18 @@ impl PointWork {
             self.diagonal
                 .set_column(2, &(self.diagonal.column(2) + by_height));
         }
-        if let (Some(contact), None) = (&free.contact, bottom)
-            && let Some(bed) = FadingContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
+        if let (Some(contact), None) = (&free.contact, seabed)
+            && let Some(seabed) = FadingContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
         {
-            force.z += bed.force;
+            force.z += seabed.force;
             if TANGENT {
-                self.diagonal[(2, 2)] += weights.position * bed.stiffness + weights.velocity * bed.damping;
+                self.diagonal[(2, 2)] +=
+                    weights.position * seabed.stiffness + weights.velocity * seabed.damping;
             }
         }
         self.residual = weights.inertia * at.mass * a - weights.force * force;
-        if let Some(bottom) = bottom {
-            self.add_bottom::<TANGENT>(free, bottom, state, weights);
+        if let Some(seabed) = seabed {
+            self.add_seabed::<TANGENT>(free, seabed, state, weights);
         }
     }
 }

@@ -174,13 +174,13 @@ fn stiffen(model: &mut Model) {
 }
 
 const WATER: &str = "water.density = 1025.0";
-const BED: &str = "seabed = { depth = 0.05, stiffness = 2.0e4, damping = 900.0, contact = 'as_given' }";
+const SEABED: &str = "seabed = { depth = 0.05, stiffness = 2.0e4, damping = 900.0, contact = 'as_given' }";
 
 #[test]
-fn the_stiffness_is_the_slope_of_the_residual_stretched_and_on_the_bed() {
+fn the_stiffness_is_the_slope_of_the_residual_stretched_and_on_the_seabed() {
     for law in ["'engineering'", "'green'", "{ logarithmic = 0.3 }"] {
         let line_type = format!("mass = 2.0, diameter = 0.05, strain = {law}");
-        let model = network(BED, &line_type);
+        let model = network(SEABED, &line_type);
         assert!(model.lines.iter().all(|line| line.nodes.contact.is_some()));
         assert_tangent(&model, &random_state(&model, 1.0), Varied::Position);
     }
@@ -251,10 +251,10 @@ fn the_convex_tangent_of_a_bent_line_has_positive_pivots() {
 }
 
 #[test]
-fn the_damping_is_the_slope_of_the_residual_in_water_and_on_the_bed() {
+fn the_damping_is_the_slope_of_the_residual_in_water_and_on_the_seabed() {
     let line_type = "mass = 2.0, diameter = 0.05, drag_normal = 1.2, drag_tangential = 0.3, \
                      rayleigh = { ratios = [0.02, 0.02], frequencies = [1.0, 9.0] }";
-    let model = network(&format!("{WATER}\n{BED}"), line_type);
+    let model = network(&format!("{WATER}\n{SEABED}"), line_type);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
 }
 
@@ -373,7 +373,7 @@ fn rotating_the_world_rotates_the_forces() {
 
 #[test]
 fn the_linear_solution_satisfies_the_system_of_both_lines_and_the_point() {
-    let model = network(BED, "mass = 2.0, diameter = 0.05");
+    let model = network(SEABED, "mass = 2.0, diameter = 0.05");
     let state = random_state(&model, 1.0);
     let mut work = Workspace::new(&model);
     let weights = Weights {

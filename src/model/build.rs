@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use self::reach::may_touch_bed;
+use self::reach::may_touch_seabed;
 use super::{
-    Bending, Bottom, Contact, Current, Drag, End, FreePoint, FroudeKrylov, Line, Model, Motion, Network,
-    Nodes, Point, PointContact, Release, Role, Section, Segments, Surface, Vessel, Winch, mesh,
+    Bending, Contact, Current, Drag, End, FreePoint, FroudeKrylov, Line, Model, Motion, Network, Nodes,
+    Point, PointContact, Release, Role, Seabed, Section, Segments, Surface, Vessel, Winch, mesh,
 };
 use crate::math::circle;
 use crate::physics::bending;
@@ -35,7 +35,7 @@ use crate::scene::{
 };
 
 /// Greatest number of segments that a winch pays out.
-const REEL_SEGMENTS_MAX: f64 = 1e5;
+const WINCH_SEGMENTS_MAX: f64 = 1e5;
 
 /// Elements of every line over those of a line alone [-]: its length over that of the longest line that it meets at free points.
 pub fn line_shares(scene: &Scene) -> Vec<f64> {
@@ -56,7 +56,7 @@ impl Model {
             .iter()
             .map(|point| build_point(scene, &names, &vessels, point))
             .collect();
-        let bottom = scene.seabed.as_ref().and_then(bottom).map(Arc::new);
+        let seabed = scene.seabed.as_ref().and_then(seabed).map(Arc::new);
         let mut lines = Vec::with_capacity(scene.lines.len());
         let elements = spacing::elements(scene);
         let damped = spacing::damping_lengths(scene);
@@ -64,7 +64,7 @@ impl Model {
             let sizes = (elements[index], &damped[index][..]);
             let mut built = build_line((scene, &names), index, line, (&points, &vessels), sizes)?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
-            lay_on(&mut built, bottom.as_ref());
+            lay_on(&mut built, seabed.as_ref());
             resting::sink(&mut built, &points);
             points[built.ends[0]].attached.push((index, End::A));
             points[built.ends[1]].attached.push((index, End::B));
@@ -77,9 +77,9 @@ impl Model {
         })?;
         Ok(Model {
             gravity: scene.gravity,
-            bed: scene.seabed.as_ref().map(|bed| -bed.depth),
-            bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction.axial),
-            bottom,
+            seabed_level: scene.seabed.as_ref().map(|seabed| -seabed.depth),
+            seabed_friction: scene.seabed.as_ref().map_or(0.0, |seabed| seabed.friction.axial),
+            seabed,
             current: scene.water.as_ref().and_then(current),
             waves: waves::waves(scene),
             host_flow: scene.water.as_ref().is_some_and(|water| water.flow.is_some()),
@@ -102,38 +102,38 @@ impl Model {
     }
 }
 
-/// Properties of the bed other than a level plane without friction.
-fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
-    let ground = match (&bed.grid, bed.slope) {
+/// Properties of the seabed other than a level plane without friction.
+fn seabed(seabed: &scene::Seabed) -> Option<Seabed> {
+    let ground = match (&seabed.grid, seabed.slope) {
         (Some(grid), _) => {
             let heights = grid.depth.iter().map(|row| row.iter().map(|d| -d).collect());
             let heights: Vec<Vec<f64>> = heights.collect();
             Ground::Grid(Grid::new(&grid.x, &grid.y, &heights)?)
         }
         (None, slope) => Ground::Plane {
-            height: -bed.depth,
+            height: -seabed.depth,
             slope: slope.unwrap_or_default(),
         },
     };
-    let friction = bed.friction.acts().then_some(Friction {
-        axial: bed.friction.axial,
-        transverse: bed.friction.transverse,
+    let friction = seabed.friction.acts().then_some(Friction {
+        axial: seabed.friction.axial,
+        transverse: seabed.friction.transverse,
     });
-    (!bed.is_level() || friction.is_some()).then_some(Bottom {
+    (!seabed.is_level() || friction.is_some()).then_some(Seabed {
         ground,
-        level: bed.is_level(),
+        level: seabed.is_level(),
         friction,
     })
 }
 
-/// Stiffness along the bed of a node that sticks, over the greatest axial stiffness of its segments [-]: the
+/// Stiffness along the seabed of a node that sticks, over the greatest axial stiffness of its segments [-]: the
 /// displacement before a node slides is then a small part of the stretch between two nodes.
 const STICK: f64 = 10.0;
 
-/// Sets the bed's surface of a line.
-fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
+/// Sets the seabed's surface of a line.
+fn lay_on(line: &mut Line, seabed: Option<&Arc<Seabed>>) {
     if let Some(winch) = &mut line.winch {
-        lay_on(winch.longest_mut(), bottom);
+        lay_on(winch.longest_mut(), seabed);
     }
     let springs: Vec<f64> = line
         .segments
@@ -143,11 +143,11 @@ fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
         .map(|(ea, length)| ea / length)
         .collect();
     if line.beam.is_some() {
-        return; // beams know a level bed without friction only
+        return; // beams know a level seabed without friction only
     }
-    if let (Some(contact), Some(bottom)) = (&mut line.nodes.contact, bottom) {
-        contact.bottom = Some(bottom.clone());
-        if bottom.friction.is_some() {
+    if let (Some(contact), Some(seabed)) = (&mut line.nodes.contact, seabed) {
+        contact.seabed = Some(seabed.clone());
+        if seabed.friction.is_some() {
             let at = |i: usize| springs.get(i).copied().unwrap_or(0.0);
             let stick = |i: usize| STICK * at(i).max(at(i.wrapping_sub(1)));
             contact.stick = (0..=springs.len()).map(stick).collect();
@@ -255,20 +255,20 @@ fn point_contact(
     axes: [bool; 3],
     dry: f64,
 ) -> Option<PointContact> {
-    let bed = scene.seabed.as_ref()?;
+    let seabed = scene.seabed.as_ref()?;
     let in_reach = scene.lines.iter().any(|line| {
         let tied = line.from == point.name || line.to == point.name;
-        tied && may_touch_bed(scene, names, line)
+        tied && may_touch_seabed(scene, names, line)
     });
-    if !axes[2] || dry == 0.0 || bed.stiffness <= 0.0 || !in_reach {
+    if !axes[2] || dry == 0.0 || seabed.stiffness <= 0.0 || !in_reach {
         return None;
     }
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
     let wet = dry - density * scene.gravity * point.volume.unwrap_or(0.0);
-    let coefficients = under_point(dry, bed.damping / bed.stiffness);
+    let coefficients = under_point(dry, seabed.damping / seabed.stiffness);
     Some(PointContact {
-        bed: -bed.depth,
-        level: -bed.depth + wet.max(0.0) / coefficients.stiffness,
+        seabed_level: -seabed.depth,
+        level: -seabed.depth + wet.max(0.0) / coefficients.stiffness,
         coefficients,
     })
 }
@@ -370,10 +370,10 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
         .seabed
         .as_ref()
         .zip(line_type.diameter)
-        .and_then(|(bed, diameter)| {
-            (bed.stiffness > 0.0).then_some(ContactCoefficients {
-                stiffness: bed.stiffness * diameter,
-                damping: bed.damping * diameter,
+        .and_then(|(seabed, diameter)| {
+            (seabed.stiffness > 0.0).then_some(ContactCoefficients {
+                stiffness: seabed.stiffness * diameter,
+                damping: seabed.damping * diameter,
             })
         });
     LineLaw {
@@ -436,7 +436,7 @@ fn build_line(
     check_mixture(index, &laws)?;
     let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
     let mut lengths = mesh::lengths(&pieces(line), elements, &wanted);
-    let reeled = reel(index, line, &mut lengths)?;
+    let at_winch = winch_segments(index, line, &mut lengths)?;
     let beam = beam::build(scene, index, line, &laws, &lengths)?;
     let parts = segment_parts(&laws, &lengths);
     let sections = line.sections.iter().zip(&laws).map(|(section, law)| Section {
@@ -449,7 +449,7 @@ fn build_line(
         name: line.name.clone(),
         ends,
         segments: segments(&parts),
-        nodes: nodes(scene, &parts, may_touch_bed(scene, names, line)),
+        nodes: nodes(scene, &parts, may_touch_seabed(scene, names, line)),
         bending: None,
         surface: None,
         sections: sections.collect(),
@@ -459,7 +459,7 @@ fn build_line(
         winch: None,
         linear_load: [false; 2],
     };
-    if let (Some(winch), Some(segments)) = (&line.winch, reeled) {
+    if let (Some(winch), Some(segments)) = (&line.winch, at_winch) {
         return on_winch(index, built, segments, winch);
     }
     built.bending = line_bending(index, line, &parts, &built)?;
@@ -472,7 +472,7 @@ fn build_line(
 
 /// Lengthens the mesh of a line on a winch by all that can be paid out, and a segment more for paths that overshoot. Returns the first
 /// segment of the last section, and the number of segments at no change.
-fn reel(
+fn winch_segments(
     index: usize,
     line: &scene::Line,
     lengths: &mut [Vec<f64>],
@@ -482,7 +482,7 @@ fn reel(
     };
     let (within, length) = (last.len(), last.last().copied().unwrap_or(1.0));
     let more = (winch.length_max / length).ceil() + 1.0;
-    if more > REEL_SEGMENTS_MAX {
+    if more > WINCH_SEGMENTS_MAX {
         return Err(SceneError::new(
             format!("lines[{index}].winch.length_max"),
             format!(
@@ -633,7 +633,7 @@ fn segments(parts: &[SegmentPart]) -> Segments {
     }
 }
 
-fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
+fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_seabed: bool) -> Nodes {
     let lump = |density: &dyn Fn(&LineLaw) -> f64| lumped(parts, density);
     let length = lump(&|_| 1.0);
     let weight = lump(&|law| law.weight);
@@ -648,7 +648,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
         tangent: lump(&|law| law.displaced + law.added_tangent),
     });
     let mass_normal = lump(&|law| law.mass + law.added_normal);
-    let contact = (may_touch_bed && any(&|law| law.contact.is_some())).then(|| contact(scene, parts));
+    let contact = (may_touch_seabed && any(&|law| law.contact.is_some())).then(|| contact(scene, parts));
     let mut arc = vec![0.0];
     arc.extend(parts.iter().scan(0.0, |arc, part| {
         *arc += part.length;
@@ -680,7 +680,7 @@ fn lumped(parts: &[SegmentPart], density: &dyn Fn(&LineLaw) -> f64) -> Vec<f64> 
 }
 
 fn contact(scene: &Scene, parts: &[SegmentPart]) -> Contact {
-    let bed = scene
+    let seabed = scene
         .seabed
         .as_ref()
         .expect("contact is built only over a seabed");
@@ -691,7 +691,7 @@ fn contact(scene: &Scene, parts: &[SegmentPart]) -> Contact {
     let mut stiffness = of(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
     let mut damping = of(&|law| law.contact.map_or(0.0, |contact| contact.damping));
     let mut sinks = vec![0.0; parts.len()]; // compression of softened contact under a segment at rest [m]
-    if bed.contact == ContactLaw::Regularised {
+    if seabed.contact == ContactLaw::Regularised {
         for i in 0..parts.len() {
             let given = ContactCoefficients {
                 stiffness: stiffness[i],
@@ -704,17 +704,19 @@ fn contact(scene: &Scene, parts: &[SegmentPart]) -> Contact {
             (stiffness[i], damping[i]) = (soft.stiffness, soft.damping);
         }
     }
-    // a line at rest lies on the bed; see also `resting`
+    // a line at rest lies on the seabed; see also `resting`
     let beside = |i: usize| &sinks[i.saturating_sub(1)..(i + 1).min(sinks.len())];
     let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     Contact {
-        bed: -bed.depth,
-        level: (0..=parts.len()).map(|i| mean(beside(i)) - bed.depth).collect(),
+        seabed_level: -seabed.depth,
+        level: (0..=parts.len())
+            .map(|i| mean(beside(i)) - seabed.depth)
+            .collect(),
         stiffness,
         damping,
         weight,
         mass,
-        bottom: None,
+        seabed: None,
         stick: Vec::new(),
     }
 }

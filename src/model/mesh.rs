@@ -11,14 +11,14 @@
 //!
 //! h(s) = min(h_section, h_other + G·distance to it, h_fine + G·distance to its place).
 //!
-//! A cable that bends follows a clamp, and lifts off the bed, over √(EI/T): h_fine is half of that at the touchdown. At a clamp it follows from
+//! A cable that bends follows a clamp, and lifts off the seabed, over √(EI/T): h_fine is half of that at the touchdown. At a clamp it follows from
 //! the tolerance: elements of h there have an error of the curvature of 0.125 h²T/EI.
 //!
 //! Sections with a given number of elements have elements of equal length, regardless of their neighbours; an open
 //! neighbour with longer elements adapts.
 //!
 //! Alternatives that were measured and rejected, on the public scenes and ten variants with n = 14 to 40:
-//! * elements of three times the length on the part that always lies on the bed: 12 % less work on average, 26 % at most, and 8 % more
+//! * elements of three times the length on the part that always lies on the seabed: 12 % less work on average, 26 % at most, and 8 % more
 //!   RMS error, 24 to 36 % on the lines that lie most: worse than fewer elements all along;
 //! * unstretched lengths shortened by (hκ)²/24 of the static curvature κ, chords for arcs: with 14 elements the position half-way along has 0.45
 //!   of its error on oc3_catenary and 0.64 on oc4_chain, the tension 0.94 on average, and none less where the line slackens. It moves
@@ -78,7 +78,7 @@ pub(crate) enum Place {
     ClampA,
     /// The clamp at end B.
     ClampB,
-    /// Lift-off of the line from the bed.
+    /// Lift-off of the line from the seabed.
     Touchdown,
 }
 

@@ -5,13 +5,13 @@
 
 mod beam;
 mod bending;
-mod bottom;
 mod build;
 mod initial;
 pub(crate) mod mesh;
 mod motion;
 mod moving;
 mod sea;
+mod seabed;
 mod state;
 mod surface;
 mod vessel;
@@ -34,11 +34,11 @@ use crate::scene::{ForceOutput, InitialShape, PointForce, PointMoment, Solver, T
 
 pub use beam::{Beam, BeamElement, BeamState, Course};
 pub use bending::{Bending, joint, joint_of_segments};
-pub use bottom::Bottom;
 pub use build::line_shares;
 pub use motion::{Derivatives, Kinematics, Motion, Pose};
 pub use moving::Moving;
 pub use sea::{WaterAlong, WaveSpan, WaveSpans, WavesAlong};
+pub use seabed::Seabed;
 pub use state::{ClosedForm, LineState, PointState, State, WinchState};
 pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
@@ -53,11 +53,11 @@ pub struct Model {
     /// Gravitational acceleration [m/s²].
     pub gravity: f64,
     /// z of the seabed [m]: of a level one; of others at the depth that the scene gives.
-    pub bed: Option<f64>,
+    pub seabed_level: Option<f64>,
     /// Coulomb friction of the seabed along a line [-].
-    pub bed_friction: f64,
+    pub seabed_friction: f64,
     /// Properties of the seabed other than a level plane without friction.
-    pub bottom: Option<Arc<Bottom>>,
+    pub seabed: Option<Arc<Seabed>>,
     /// The current, where the water flows.
     pub current: Option<Current>,
     /// The waves, where there are some.
@@ -190,12 +190,12 @@ pub struct FreePoint {
     pub contact: Option<PointContact>,
 }
 
-/// Contact of a free point with the bed.
+/// Contact of a free point with the seabed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointContact {
-    /// z of the bed [m].
-    pub bed: f64,
-    /// z below which the spring pushes [m]: such that the point lies on the bed when it rests with all of its weight.
+    /// z of the seabed [m].
+    pub seabed_level: f64,
+    /// z below which the spring pushes [m]: such that the point lies on the seabed when it rests with all of its weight.
     pub level: f64,
     /// Spring and damper.
     pub coefficients: ContactCoefficients,
@@ -380,9 +380,9 @@ impl FroudeKrylov {
 /// Contact of the segments with the seabed.
 #[derive(Debug, Clone)]
 pub struct Contact {
-    /// z of the bed [m].
-    pub bed: f64,
-    /// z below which the springs push, per node [m]: the bed, or the level of regularised contact at which a line at rest lies
+    /// z of the seabed [m].
+    pub seabed_level: f64,
+    /// z below which the springs push, per node [m]: the seabed, or the level of regularised contact at which a line at rest lies
     /// on it.
     pub level: Vec<f64>,
     /// Stiffness, per segment [N/m].
@@ -393,9 +393,9 @@ pub struct Contact {
     pub weight: Vec<f64>,
     /// Mass across the line with the added mass, per segment [kg].
     pub mass: Vec<f64>,
-    /// Properties of the bed other than a level plane without friction.
-    pub bottom: Option<Arc<Bottom>>,
-    /// Stiffness along the bed of a node that sticks [N/m]; empty without friction.
+    /// Properties of the seabed other than a level plane without friction.
+    pub seabed: Option<Arc<Seabed>>,
+    /// Stiffness along the seabed of a node that sticks [N/m]; empty without friction.
     pub stick: Vec<f64>,
 }
 
@@ -639,8 +639,8 @@ impl FreePoint {
         self.drag(self.at(z).wetted, -stream.velocity(z))
     }
 
-    /// Stiffness [N/m] and upward force [N] of the bed's spring at a height z [m], at rest.
-    pub fn bed_at_rest(&self, z: f64) -> Option<(f64, f64)> {
+    /// Stiffness [N/m] and upward force [N] of the seabed's spring at a height z [m], at rest.
+    pub fn seabed_at_rest(&self, z: f64) -> Option<(f64, f64)> {
         let contact = self.contact.as_ref()?;
         let (stiffness, penetration) = (contact.coefficients.stiffness, contact.level - z);
         (penetration > 0.0).then_some((stiffness, stiffness * penetration))

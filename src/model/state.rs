@@ -56,7 +56,7 @@ pub struct LineState {
     pub released: [bool; 2],
     /// Frames and rates of the nodes of a beam.
     pub beam: Option<BeamState>,
-    /// Places of the nodes at which the friction of the bed would vanish [m]; empty without friction.
+    /// Places of the nodes at which the friction of the seabed would vanish [m]; empty without friction.
     pub anchor: Vec<Vector3<f64>>,
     /// Position of the line's winch, where it is on one.
     pub winch_state: Option<WinchState>,
@@ -93,11 +93,11 @@ impl WinchState {
 pub struct ClosedForm {
     /// Effective tension at every node [N].
     pub tension: Vec<f64>,
-    /// Horizontal part of the tension [N]: grows towards end B on a bed with friction, and nowhere else.
+    /// Horizontal part of the tension [N]: grows towards end B on a seabed with friction, and nowhere else.
     pub horizontal: Vec<f64>,
     /// Forces of the line on the points at ends A and B [N].
     pub end_force: [Vector3<f64>; 2],
-    /// Unstretched length on the bed [m].
+    /// Unstretched length on the seabed [m].
     pub laid_length: f64,
     /// Stretched length [m].
     pub stretched_length: f64,

@@ -121,7 +121,7 @@ fn library_in(folder: &Path) -> Result<PathBuf, PackageError> {
         })
 }
 
-/// FMU library that Cargo built beside the running program, or one folder up.
+/// FMU library that Cargo built next to the running program, or one folder up.
 ///
 /// # Errors
 /// Names the library and the folder where it was expected.

@@ -118,7 +118,7 @@ fn column(name: &str, source: Source, model: &Model) -> Column {
         Quantity::Velocity(axis) => ("m/s", format!("velocity along {}", letter(axis))),
         Quantity::Force(axis) => ("N", format!("force of the lines along {}", letter(axis))),
         Quantity::Tension => match source {
-            Source::Node { .. } => ("N", "tension of the segments beside it".to_string()),
+            Source::Node { .. } => ("N", "tension of the segments next to it".to_string()),
             Source::Point { .. } => ("N", "size of the force of the lines".to_string()),
         },
     };
@@ -197,7 +197,7 @@ mod tests {
         let first = channels.columns().next().unwrap();
         assert_eq!(
             first.description,
-            "tension of the segments beside it, node 10 of line1"
+            "tension of the segments next to it, node 10 of line1"
         );
     }
 

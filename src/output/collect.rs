@@ -33,7 +33,7 @@ pub fn record(
         .collect();
     record.surroundings = Surroundings {
         water: scene.water.is_some(),
-        seabed: model.bed.filter(|_| model.bed_is_level()),
+        seabed: model.seabed_level.filter(|_| model.seabed_is_level()),
     };
     record
 }

@@ -329,7 +329,7 @@ fn add_nodes(profile: &mut Table, frame: &Frame, row: &mut Vec<f64>) -> Result<(
     Ok(())
 }
 
-/// Removes the results of an earlier run, so that none of them stands beside those of this one. A name that belongs to something other than a
+/// Removes the results of an earlier run, so that none of them remains among those of this one. A name that belongs to something other than a
 /// file is left: the file that takes its place is refused.
 fn remove_old(folder: &Path) {
     let tables =

@@ -110,7 +110,7 @@ pub fn open_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Removes incomplete files of this process from a folder of a run, and beside the targets of links in it.
+/// Removes incomplete files of this process from a folder of a run, and next to the targets of links in it.
 pub fn remove_partial(folder: &Path) {
     let ending = partial_ending();
     for folder in [folder.to_path_buf(), folder.join(vtk::FRAME_FOLDER)] {

@@ -356,7 +356,7 @@ mod tests {
         assert!(found.iter().enumerate().all(|(i, row)| *row == expected(i)));
     }
 
-    /// Values that are kept until they are written, whatever the number of rows.
+    /// Values that are kept until they are written, for any number of rows.
     #[test]
     fn a_table_keeps_a_bounded_number_of_values() {
         let folder = tempfile::tempdir().unwrap();

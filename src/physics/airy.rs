@@ -144,7 +144,7 @@ struct Table {
     /// cos θ and sin θ [-].
     heading: [Vec<f64>; 2],
     /// q = e^{−2kh} [-], 0 in deep water.
-    bed: Vec<f64>,
+    seabed: Vec<f64>,
     /// 1/(1 − q) [-].
     whole: Vec<f64>,
 }
@@ -212,7 +212,7 @@ impl Waves {
                     column(&|c, _| c.direction.cos()),
                     column(&|c, _| c.direction.sin()),
                 ],
-                bed: column(&|_, k| depth.map_or(0.0, |h| (-2.0 * k * h).exp())),
+                seabed: column(&|_, k| depth.map_or(0.0, |h| (-2.0 * k * h).exp())),
                 whole: column(&|_, k| depth.map_or(1.0, |h| -1.0 / (-2.0 * k * h).exp_m1())),
             },
             reach: reach(&components, &numbers),
@@ -360,7 +360,7 @@ impl Waves {
         if self.depth.is_none() {
             return [grown; 2];
         }
-        let mirrored = Lanes::load(&self.table.bed, at) * grown.recip();
+        let mirrored = Lanes::load(&self.table.seabed, at) * grown.recip();
         let whole = Lanes::load(&self.table.whole, at);
         [(grown + mirrored) * whole, (grown - mirrored) * whole]
     }
@@ -598,7 +598,7 @@ mod tests {
     }
 
     #[test]
-    fn the_surface_rises_as_fast_as_the_water_and_nothing_crosses_the_bed() {
+    fn the_surface_rises_as_fast_as_the_water_and_nothing_crosses_the_seabed() {
         let waves = sea(Some(30.0));
         let (x, y, t, d) = (5.0, 2.0, 7.0, 1e-3);
         let surface = waves.elevation(x, y, t);
@@ -607,8 +607,8 @@ mod tests {
         assert_relative_eq!(water.velocity.z, rise, max_relative = 1e-6);
         assert_relative_eq!(water.rise, rise, max_relative = 1e-6);
         assert_eq!(water.elevation, surface);
-        let bed = orbit(&waves, Vector3::new(x, y, -30.0), t);
-        assert!(bed.velocity.z.abs() < 1e-18 && bed.velocity.x != 0.0);
+        let seabed = orbit(&waves, Vector3::new(x, y, -30.0), t);
+        assert!(seabed.velocity.z.abs() < 1e-18 && seabed.velocity.x != 0.0);
         let above = orbit(&waves, Vector3::new(x, y, surface + 9.0), t);
         assert_eq!(above, water);
     }

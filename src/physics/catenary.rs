@@ -1,13 +1,13 @@
-//! The elastic catenary in closed form: a line held at two ends, with or without a bed under it.
+//! The elastic catenary in closed form: a line held at two ends, with or without a seabed under it.
 //!
 //! ```text
 //!  z ↑          ● B (span, rise)        H    horizontal tension, constant in flight
 //!    │        ╱                         V    vertical tension, V' = w; up going from A to B
 //!    ● A    ╱                           T    √(H² + V²)
-//!     ╲___╱        bed, z = height      s    unstretched arc length from A
+//!     ╲___╱        seabed, z = height      s    unstretched arc length from A
 //! ```
 //!
-//! dx/ds = H/T + H/EA,   dz/ds = V/T + V/EA,   dV/ds = w in flight;   V = 0, dH/ds = μw (or H = 0) on the bed
+//! dx/ds = H/T + H/EA,   dz/ds = V/T + V/EA,   dV/ds = w in flight;   V = 0, dH/ds = μw (or H = 0) on the seabed
 //!
 //! # One stretch
 //! Over a uniform stretch ℓ with V from Vₐ to V_b = Vₐ + W, W = wℓ, tensions Tₐ and T_b, mean Vₘ and mean σ = (Tₐ + T_b)/2:
@@ -31,29 +31,29 @@
 //! whose left side increases with λ, so there is exactly one root. Without stretch it is the classical X sinh λ/λ = √(L² − Z²).
 //! `uniform` balances it so that no digit is lost.
 //!
-//! # The bed
-//! A flight from the bed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and the part between
+//! # The seabed
+//! A flight from the seabed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and the part between
 //! them must reach X. The excess of a flight's length over its span, (H/w)(sinh β − β) with sinh β = V/H, makes this
 //! one balance in H (`touchdown`). Without tension the flights hang and the rest of the line is slack: H = 0, the
 //! layout is one of many, and the returned one spreads the slack evenly. Friction acts towards A, as on a line laid
-//! from A and hauled at B; towards B where B lies on the bed and A does not ([`is_laid_from_b`]).
+//! from A and hauled at B; towards B where B lies on the seabed and A does not ([`is_laid_from_b`]).
 //!
 //! # Several sections
 //! The line is laid out from A under a trial tension, which is searched (`sections`). Buoyant sections rise off the
-//! bed without an upper limit.
+//! seabed without an upper limit.
 //!
 //! # Source and validity
 //! The elastic catenary: H. M. Irvine, Cable Structures, MIT Press, 1981. Touchdown with friction as a model: J. M. Jonkman,
 //! Dynamics Modeling and Loads Analysis of an Offshore Floating Wind Turbine, NREL/TP-500-41958, 2007. The forms solved
 //! here are derived above. Linear stretch (tension EA times engineering strain), weight per unstretched length, no bending
-//! stiffness, a flat bed that does not yield.
+//! stiffness, a flat seabed that does not yield.
 //!
 //! ```
-//! use moorline::physics::catenary::{Bed, Section, solve};
+//! use moorline::physics::catenary::{FlatSeabed, Section, solve};
 //!
 //! let chain = Section { length: 902.2, weight: 698.094, axial_stiffness: 384.243e6 };
-//! let bed = Bed { height: 0.0, friction: 0.0 };
-//! let line = solve(&[chain], 848.67, 250.0, Some(bed))?;
+//! let seabed = FlatSeabed { height: 0.0, friction: 0.0 };
+//! let line = solve(&[chain], 848.67, 250.0, Some(seabed))?;
 //! assert!((line.tension_b() - 911_088.36).abs() < 0.01);
 //! assert!((line.laid_length() - 134.7855).abs() < 1e-4);
 //! # Ok::<(), moorline::physics::catenary::CatenaryError>(())
@@ -73,10 +73,10 @@ use shape::{Kind, Piece, Shape};
 use touchdown::Touchdown;
 use uniform::{EndForces, Uniform};
 
-/// Height above the bed, over the length of the line, up to which an end lies on it as far as friction is concerned [-].
-const ON_BED: f64 = 0.02;
-/// An end this far under the bed, over the length of the line, is taken to lie on it: rounding of positions [-].
-const BED_TOLERANCE: f64 = 1e-12;
+/// Height above the seabed, over the length of the line, up to which an end lies on it as far as friction is concerned [-].
+const ON_SEABED: f64 = 0.02;
+/// An end this far under the seabed, over the length of the line, is taken to lie on it: rounding of positions [-].
+const SEABED_TOLERANCE: f64 = 1e-12;
 
 /// A stretch of line of one kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,12 +89,12 @@ pub struct Section {
     pub axial_stiffness: f64,
 }
 
-/// A flat bed that the line may lie on.
+/// A flat seabed that the line may lie on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bed {
-    /// z of the bed relative to end A [m]: 0 where A lies on it, negative below.
+pub struct FlatSeabed {
+    /// z of the seabed relative to end A [m]: 0 where A lies on it, negative below.
     pub height: f64,
-    /// Coulomb friction along the line [-]: tension falls towards A by friction × weight per metre on the bed, not below 0; towards B of a line
+    /// Coulomb friction along the line [-]: tension falls towards A by friction × weight per metre on the seabed, not below 0; towards B of a line
     /// that is laid from there.
     pub friction: f64,
 }
@@ -119,7 +119,7 @@ pub enum CatenaryError {
         /// Valid range.
         wanted: &'static str,
     },
-    /// Span, rise, or a property of the bed is out of range.
+    /// Span, rise, or a property of the seabed is out of range.
     #[error("{key}: {value} {unit} is not {wanted}")]
     Input {
         /// Name of the input.
@@ -131,17 +131,17 @@ pub enum CatenaryError {
         /// Valid range.
         wanted: &'static str,
     },
-    /// An end lies below the bed.
+    /// An end lies below the seabed.
     #[error(
-        "bed.height: the bed at z = {bed} m is above end {end} at z = {z} m; it must be at or below both ends"
+        "seabed.height: the seabed at z = {seabed} m is above end {end} at z = {z} m; it must be at or below both ends"
     )]
-    EndBelowBed {
+    EndBelowSeabed {
         /// Name of the end, A or B.
         end: char,
         /// Height of that end relative to A [m].
         z: f64,
-        /// Height of the bed relative to A [m].
-        bed: f64,
+        /// Height of the seabed relative to A [m].
+        seabed: f64,
     },
 }
 
@@ -172,32 +172,32 @@ pub struct Catenary {
 /// Solves the line of `sections`, from end A to end B, whose ends are `span` apart horizontally and B `rise` above A [m].
 ///
 /// Every valid line has a solution, so the only errors are inputs that are not finite, not positive where they must
-/// be, or an end below the bed.
+/// be, or an end below the seabed.
 pub fn solve(
     sections: &[Section],
     span: f64,
     rise: f64,
-    bed: Option<Bed>,
+    seabed: Option<FlatSeabed>,
 ) -> Result<Catenary, CatenaryError> {
-    let bed = check(sections, span, rise, bed)?;
+    let seabed = check(sections, span, rise, seabed)?;
     let length: f64 = sections.iter().map(|section| section.length).sum();
-    let rubs = |bed: &Bed| bed.friction > 0.0;
-    let (shape, held) = match bed.filter(rubs) {
-        Some(bed) if is_laid_from_b([-bed.height, rise - bed.height], length) => {
+    let has_friction = |seabed: &FlatSeabed| seabed.friction > 0.0;
+    let (shape, held) = match seabed.filter(has_friction) {
+        Some(seabed) if is_laid_from_b([-seabed.height, rise - seabed.height], length) => {
             let reversed: Vec<Section> = sections.iter().rev().copied().collect();
-            let bed = Bed {
-                height: bed.height - rise,
-                ..bed
+            let seabed = FlatSeabed {
+                height: seabed.height - rise,
+                ..seabed
             };
-            let (shape, held) = solve_from_a(&reversed, span, -rise, Some(bed));
+            let (shape, held) = solve_from_a(&reversed, span, -rise, Some(seabed));
             (shape.reversed(), held.reversed())
         }
-        _ => solve_from_a(sections, span, rise, bed),
+        _ => solve_from_a(sections, span, rise, seabed),
     };
     let forces = held.horizontal_a + held.horizontal_b + held.vertical_a + held.vertical_b;
     assert!(
         forces.is_finite(),
-        "a valid line has finite end forces: {sections:?}, span {span}, rise {rise}, {bed:?}, {held:?}"
+        "a valid line has finite end forces: {sections:?}, span {span}, rise {rise}, {seabed:?}, {held:?}"
     );
     Ok(Catenary {
         shape,
@@ -208,16 +208,21 @@ pub fn solve(
 }
 
 /// Returns whether friction acts as on a line that was laid from end B and hauled at end A: of ends at these heights
-/// above the bed [m], B lies on it and A does not. `length` is the length of the line [m].
+/// above the seabed [m], B lies on it and A does not. `length` is the length of the line [m].
 pub fn is_laid_from_b([a, b]: [f64; 2], length: f64) -> bool {
-    b <= ON_BED * length && a > ON_BED * length
+    b <= ON_SEABED * length && a > ON_SEABED * length
 }
 
 /// [`solve`] of a line that is laid from end A.
-fn solve_from_a(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, EndForces) {
+fn solve_from_a(
+    sections: &[Section],
+    span: f64,
+    rise: f64,
+    seabed: Option<FlatSeabed>,
+) -> (Shape, EndForces) {
     match uniform(sections) {
-        Some(section) => solve_uniform(&section, span, rise, bed),
-        None => solve_sections(sections, span, rise, bed),
+        Some(section) => solve_uniform(&section, span, rise, seabed),
+        None => solve_sections(sections, span, rise, seabed),
     }
 }
 
@@ -229,40 +234,40 @@ fn uniform(sections: &[Section]) -> Option<Section> {
     sections.iter().all(alike).then_some(Section { length, ..first })
 }
 
-fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (Shape, EndForces) {
+fn solve_uniform(section: &Section, span: f64, rise: f64, seabed: Option<FlatSeabed>) -> (Shape, EndForces) {
     let line = Uniform {
         length: section.length,
         weight: section.weight,
         axial_stiffness: section.axial_stiffness,
     };
     let held = line.suspend(span, rise);
-    match bed {
-        Some(bed) if lowest(section, &held) < bed.height => {
-            if bed.friction > 0.0 && bed.height < 0.0 {
+    match seabed {
+        Some(seabed) if lowest(section, &held) < seabed.height => {
+            if seabed.friction > 0.0 && seabed.height < 0.0 {
                 let mut shape = Shape::default();
                 let frictionless = Touchdown {
                     span,
-                    height_a: -bed.height,
-                    height_b: rise - bed.height,
+                    height_a: -seabed.height,
+                    height_b: rise - seabed.height,
                     friction: 0.0,
                 };
                 let guess = line.touch_down(&frictionless);
                 let laid = section.length - (guess.vertical_b - guess.vertical_a) / section.weight;
-                // without friction H is about the mean along the bed
-                let horizontal_a = guess.horizontal_a - 0.5 * bed.friction * section.weight * laid;
-                let mut line = Sections::new(std::slice::from_ref(section), span, rise, Some(bed));
+                // without friction H is about the mean along the seabed
+                let horizontal_a = guess.horizontal_a - 0.5 * seabed.friction * section.weight * laid;
+                let mut line = Sections::new(std::slice::from_ref(section), span, rise, Some(seabed));
                 let held = line.solve((horizontal_a, guess.vertical_a), &mut shape);
                 return (shape, held);
             }
-            let height_b = rise - bed.height;
+            let height_b = rise - seabed.height;
             let at = Touchdown {
                 span,
-                height_a: -bed.height,
+                height_a: -seabed.height,
                 height_b,
-                friction: bed.friction,
+                friction: seabed.friction,
             };
             let held = line.touch_down(&at);
-            (touchdown_shape(section, &held, bed, span), held)
+            (touchdown_shape(section, &held, seabed, span), held)
         }
         _ => (suspended_shape(section, &held, span, rise), held),
     }
@@ -287,7 +292,7 @@ fn suspended_shape(section: &Section, held: &EndForces, span: f64, rise: f64) ->
                 x,
                 z,
                 weight: section.weight,
-                on_bed: false,
+                on_seabed: false,
             },
         );
     } else {
@@ -296,13 +301,13 @@ fn suspended_shape(section: &Section, held: &EndForces, span: f64, rise: f64) ->
     shape
 }
 
-fn touchdown_shape(section: &Section, held: &EndForces, bed: Bed, span: f64) -> Shape {
+fn touchdown_shape(section: &Section, held: &EndForces, seabed: FlatSeabed, span: f64) -> Shape {
     let mut shape = Shape::default();
     let (a, b) = (
         -held.vertical_a / section.weight,
         held.vertical_b / section.weight,
     );
-    let growth = bed.friction * section.weight;
+    let growth = seabed.friction * section.weight;
     shape.fly(section, a, held.horizontal_a, held.vertical_a);
     let laid = (section.length - a - b).max(0.0);
     let slack = held.horizontal_a == 0.0 && held.horizontal_b == 0.0;
@@ -320,7 +325,12 @@ fn touchdown_shape(section: &Section, held: &EndForces, bed: Bed, span: f64) -> 
     shape
 }
 
-fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, EndForces) {
+fn solve_sections(
+    sections: &[Section],
+    span: f64,
+    rise: f64,
+    seabed: Option<FlatSeabed>,
+) -> (Shape, EndForces) {
     let length: f64 = sections.iter().map(|s| s.length).sum();
     let flexibility: f64 = sections.iter().map(|s| s.length / s.axial_stiffness).sum();
     let mut shape = Shape::default();
@@ -335,10 +345,10 @@ fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) 
         axial_stiffness: length / flexibility,
     };
     let suspended = alike.suspend(span, rise);
-    let guess = match bed {
-        Some(bed) if alike.weight > 0.0 && suspended.vertical_a < 0.0 => {
-            let (height_a, height_b) = (-bed.height, rise - bed.height);
-            let friction = if height_a == 0.0 { bed.friction } else { 0.0 };
+    let guess = match seabed {
+        Some(seabed) if alike.weight > 0.0 && suspended.vertical_a < 0.0 => {
+            let (height_a, height_b) = (-seabed.height, rise - seabed.height);
+            let friction = if height_a == 0.0 { seabed.friction } else { 0.0 };
             alike.touch_down(&Touchdown {
                 span,
                 height_a,
@@ -348,7 +358,7 @@ fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) 
         }
         _ => suspended,
     };
-    let mut line = Sections::new(sections, span, rise, bed);
+    let mut line = Sections::new(sections, span, rise, seabed);
     let held = line.solve((guess.horizontal_a, guess.vertical_a), &mut shape);
     (shape, held)
 }
@@ -370,7 +380,7 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
                     x: span / length,
                     z: rise / length,
                     weight: section.weight,
-                    on_bed: false,
+                    on_seabed: false,
                 },
             );
         } else {
@@ -380,8 +390,13 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
     held
 }
 
-/// Refuses input that is not a line; returns the bed, lowered to ends that are below it only by rounding.
-fn check(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result<Option<Bed>, CatenaryError> {
+/// Refuses input that is not a line; returns the seabed, lowered to ends that are below it only by rounding.
+fn check(
+    sections: &[Section],
+    span: f64,
+    rise: f64,
+    seabed: Option<FlatSeabed>,
+) -> Result<Option<FlatSeabed>, CatenaryError> {
     if sections.is_empty() {
         return Err(CatenaryError::NoSections);
     }
@@ -425,25 +440,25 @@ fn check(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result
     if !rise.is_finite() {
         return complain("rise", rise, "m", "finite");
     }
-    let Some(bed) = bed else { return Ok(None) };
-    if !(bed.friction >= 0.0 && bed.friction.is_finite()) {
-        return complain("bed.friction", bed.friction, "[-]", "at least 0 and finite");
+    let Some(seabed) = seabed else { return Ok(None) };
+    if !(seabed.friction >= 0.0 && seabed.friction.is_finite()) {
+        return complain("seabed.friction", seabed.friction, "[-]", "at least 0 and finite");
     }
-    if !bed.height.is_finite() {
-        return complain("bed.height", bed.height, "m", "finite");
+    if !seabed.height.is_finite() {
+        return complain("seabed.height", seabed.height, "m", "finite");
     }
     let (end, z) = if rise < 0.0 { ('B', rise) } else { ('A', 0.0) };
     let length: f64 = sections.iter().map(|section| section.length).sum();
-    if bed.height > z + BED_TOLERANCE * length {
-        return Err(CatenaryError::EndBelowBed {
+    if seabed.height > z + SEABED_TOLERANCE * length {
+        return Err(CatenaryError::EndBelowSeabed {
             end,
             z,
-            bed: bed.height,
+            seabed: seabed.height,
         });
     }
-    Ok(Some(Bed {
-        height: bed.height.min(z),
-        ..bed
+    Ok(Some(FlatSeabed {
+        height: seabed.height.min(z),
+        ..seabed
     }))
 }
 
@@ -453,7 +468,7 @@ impl Catenary {
         self.held.horizontal_b
     }
 
-    /// Horizontal tension at end A [N]: the tension at B less the friction of the bed.
+    /// Horizontal tension at end A [N]: the tension at B less the friction of the seabed.
     pub fn horizontal_a(&self) -> f64 {
         self.held.horizontal_a
     }
@@ -478,8 +493,8 @@ impl Catenary {
         self.held.horizontal_b.hypot(self.held.vertical_b)
     }
 
-    /// Coulomb friction in use along the tight part on the bed [-]: the coefficient of the bed. It is less only where
-    /// sections float and no state uses all of it; 0 where nothing lies on the bed.
+    /// Coulomb friction in use along the tight part on the seabed [-]: the coefficient of the seabed. It is less only where
+    /// sections float and no state uses all of it; 0 where nothing lies on the seabed.
     pub fn friction(&self) -> f64 {
         if self.laid().next().is_some() {
             self.held.friction
@@ -488,15 +503,15 @@ impl Catenary {
         }
     }
 
-    /// Unstretched length on the bed [m].
+    /// Unstretched length on the seabed [m].
     pub fn laid_length(&self) -> f64 {
         self.laid().map(|(from, to)| to - from).sum()
     }
 
-    /// The stretches on the bed, as arc lengths (from, to) [m], unstretched from end A.
+    /// The stretches on the seabed, as arc lengths (from, to) [m], unstretched from end A.
     pub fn laid(&self) -> impl Iterator<Item = (f64, f64)> {
-        let on_bed = self.shape.pieces.iter().filter(|piece| piece.on_bed());
-        on_bed.map(|piece| (piece.s, piece.s + piece.length))
+        let on_seabed = self.shape.pieces.iter().filter(|piece| piece.on_seabed());
+        on_seabed.map(|piece| (piece.s, piece.s + piece.length))
     }
 
     /// Length of the line under its tension [m].

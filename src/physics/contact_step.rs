@@ -11,7 +11,7 @@
 use super::fading_damper::fade;
 use super::seabed::ContactCoefficients;
 
-/// Action of the bed on a part of a segment over a step.
+/// Action of the seabed on a part of a segment over a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactStep {
     /// Upward force [N].
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bed_never_pulls_and_its_damper_takes_energy() {
+    fn the_seabed_never_pulls_and_its_damper_takes_energy() {
         for [before, after] in PAIRS {
             let at = contact_step(K, [before, after], 0.15, 0.01);
             assert!(at.force >= 0.0);

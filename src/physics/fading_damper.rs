@@ -33,7 +33,7 @@ pub fn fade(penetration: f64, reach: f64) -> (f64, f64) {
     (u * u * (3.0 - 2.0 * u), 3.0 * u * (1.0 - u) / reach)
 }
 
-/// Action of a bed whose damper fades on a node.
+/// Action of a seabed whose damper fades on a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FadingContact {
     /// Upward force [N].
@@ -46,7 +46,7 @@ pub struct FadingContact {
 
 impl FadingContact {
     /// Contact at a penetration [m] and vertical velocity ż [m/s], the damper fading in over ± `reach` [m]; `None`
-    /// where the bed does not act.
+    /// where the seabed does not act.
     #[inline(always)]
     pub fn new(k: ContactCoefficients, penetration: f64, velocity: f64, reach: f64) -> Option<FadingContact> {
         if penetration <= -reach {
@@ -77,7 +77,7 @@ mod tests {
     const REACH: f64 = 0.01;
 
     fn force(penetration: f64, velocity: f64) -> f64 {
-        FadingContact::new(K, penetration, velocity, REACH).map_or(0.0, |bed| bed.force)
+        FadingContact::new(K, penetration, velocity, REACH).map_or(0.0, |seabed| seabed.force)
     }
 
     #[test]

@@ -1,12 +1,12 @@
-//! Coulomb friction between a line and the bed it lies on, with stick.
+//! Coulomb friction between a line and the seabed it lies on, with stick.
 //!
-//! In the plane of the bed, with the axes a along the line and b across it and the normal force N, the friction (f_a, f_b) stays in an ellipse,
+//! In the plane of the seabed, with the axes a along the line and b across it and the normal force N, the friction (f_a, f_b) stays in an ellipse,
 //!
 //! ```text
 //! (f_a/D_a)² + (f_b/D_b)² ≤ 1,   D_a = N √(μ_a² s² + μ_b² (1 − s²)),   D_b = μ_b N
 //! ```
 //!
-//! with s the part of the line's tangent that lies in the plane: a line that stands on the bed is across it all around. Inside the
+//! with s the part of the line's tangent that lies in the plane: a line that stands on the seabed is across it all around. Inside the
 //! ellipse nothing slides. On it the line slides in the direction of greatest dissipation, v_i ∝ −f_i/D_i², so that
 //! the friction is D_a against a line dragged along its axis, D_b across.
 //! With the force f* that would hold a node, and the compliance W_i of sliding to force along the axes,
@@ -16,7 +16,7 @@
 //! ```
 //!
 //! Source: maximal dissipation for anisotropic friction, Michałowski & Mróz (1978), Archives of Mechanics 30, 259-276; γ by the
-//! iteration of Moré & Sorensen (1983), SIAM J. Sci. Stat. Comput. 4, 553-572. Valid for a bed that keeps its shape: no embedment.
+//! iteration of Moré & Sorensen (1983), SIAM J. Sci. Stat. Comput. 4, 553-572. Valid for a seabed that keeps its shape: no embedment.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
@@ -42,7 +42,7 @@ pub struct Axes<V: RealVector = Vector3<f64>> {
     pub share: V::Real,
 }
 
-/// Part of the tangent below which a line stands on the bed [-].
+/// Part of the tangent below which a line stands on the seabed [-].
 const STANDING: f64 = 1e-9;
 /// Nodes closer to the ellipse than this slide: rounding of their places must not decide [-].
 const BORDER: f64 = 1e-7;
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_stands_on_the_bed_is_across_it_all_around() {
+    fn a_line_that_stands_on_the_seabed_is_across_it_all_around() {
         let friction = Friction {
             axial: 0.4,
             transverse: 0.7,

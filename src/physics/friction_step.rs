@@ -1,6 +1,6 @@
 //! Normal contact and Coulomb friction of a node over a step of the leapfrogs, both implicit.
 //!
-//! Without contact the node would leave the step with the velocity u. With M = m_n I + (m_t − m_n) t tᵀ, the bed's
+//! Without contact the node would leave the step with the velocity u. With M = m_n I + (m_t − m_n) t tᵀ, the seabed's
 //! normal n and its plane's axes a, b, the actual velocity v and the impulses λ obey
 //!
 //! ```text
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A node that sticks leaves with v_a = v_b = 0 to the last digit and does not drift. λ_n of the ellipse is that of a
-//! sticking node, which is exact where the line lies in the plane of the bed.
+//! sticking node, which is exact where the line lies in the plane of the seabed.
 //!
 //! Source: backward Euler on Coulomb's law, as in Moreau (1988), Unilateral contact and dry friction in finite freedom
 //! dynamics, CISM 302; friction by [`super::friction`]. Stable for any stiffness; valid as `seabed` is.
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_node_that_sticks_does_not_move_along_the_bed_by_a_digit() {
+    fn a_node_that_sticks_does_not_move_along_the_seabed_by_a_digit() {
         let velocity = landing()
             .solve(Vector3::new(1e-3, 2e-3, 0.0), Some(&ROUGH))
             .velocity;

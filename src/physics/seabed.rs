@@ -1,6 +1,6 @@
 //! Normal contact with a horizontal seabed: a spring and a damper that only push, integrated along the segments of a line.
 //!
-//! f = max(0, k·p − c·ż) per unstretched length, for a penetration p = z_bed − z > 0, else 0.
+//! f = max(0, k·p − c·ż) per unstretched length, for a penetration p = z_seabed − z > 0, else 0.
 //!
 //! A segment is straight between its nodes: p and ż are linear in ξ from 0 to 1. The integral of f over it is the sum over four equal parts, each
 //! with the f in its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A segment that
@@ -96,8 +96,8 @@ pub fn regularised(
     }
 }
 
-/// Contact of a point of `weight` [N], which has no length or diameter for the bed's coefficients to refer to. Its
-/// stiffness gives a penetration of [`POINT_PENETRATION`], with the bed's ratio of damping to stiffness `lag` [s].
+/// Contact of a point of `weight` [N], which has no length or diameter for the seabed's coefficients to refer to. Its
+/// stiffness gives a penetration of [`POINT_PENETRATION`], with the seabed's ratio of damping to stiffness `lag` [s].
 pub fn under_point(weight: f64, lag: f64) -> ContactCoefficients {
     let stiffness = weight.abs() / POINT_PENETRATION;
     ContactCoefficients {
@@ -127,7 +127,7 @@ mod tests {
     };
 
     #[test]
-    fn the_bed_never_pulls() {
+    fn the_seabed_never_pulls() {
         assert_eq!(normal_force(GIVEN, 1e-3, 1.0), 0.0);
         assert_eq!(normal_force(GIVEN, -1e-3, -1.0), 0.0);
     }
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_soft_bed_is_never_stiffened() {
+    fn a_soft_seabed_is_never_stiffened() {
         let soft = ContactCoefficients {
             stiffness: 1.0,
             damping: 0.0,

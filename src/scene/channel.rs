@@ -51,7 +51,7 @@ pub enum Quantity {
     Velocity(usize),
     /// `Fx`: force of the lines on a point [N].
     Force(usize),
-    /// `T`, `Ten`: tension of the segments beside a node, or size of the force on a point [N].
+    /// `T`, `Ten`: tension of the segments next to a node, or size of the force on a point [N].
     Tension,
 }
 

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::motion_file::{Moves, axis_number, read_moves};
 use super::{HarmonicMotion, MotionPath, MotionRow, PointKind, Scene};
 
-/// Motions of a run, beside those of its scene. A body that moves here does not move as its scene says.
+/// Motions of a run, in addition to those of its scene. A body that moves here does not move as its scene says.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Drive {
     /// A CSV file. With the columns time [s], x, y, z [m] and perhaps roll, pitch, yaw [rad] it moves the scene's one vessel, or
@@ -210,7 +210,7 @@ impl Scene {
 
     fn movable_in_words(&self) -> String {
         match self.moved_by_a_host()[..] {
-            [] => "nothing in the scene moves as a host wants".to_string(),
+            [] => "nothing in the scene can be moved by a host".to_string(),
             [one] => format!("what moves is {one}"),
             ref all => format!("what moves are {}", all.join(", ")),
         }

@@ -47,7 +47,7 @@ impl Scene {
             .iter()
             .any(|line| self.types_of(line).any(|kind| kind.diameter.is_some()));
         let wet = |point: &Point| point.volume.is_some() || point.drag_area.is_some();
-        let damped = |bed: &Seabed| bed.damping != Seabed::level(bed.depth).damping;
+        let damped = |seabed: &Seabed| seabed.damping != Seabed::level(seabed.depth).damping;
         rules! { &mut notes, "";
             "water" if surface.is_some() && self.all_beams() =>
                 "beams are under water throughout: `surface` changes nothing";

@@ -24,7 +24,7 @@
 //! The doc comment is the text of the reference page, the unit in it that of the number, its beginning the name of the property in messages
 //! and in the FMU. A field of type `Option`, or with a default after `=`, may be left out. Behind `=>` stands a [`table::Rule`]: bounds, the
 //! range of moorings, names in other programs, when the property acts, whether the FMU has it as a parameter. The macro makes the struct
-//! and implements [`table::Table`] for it: a list of [`table::Key`]s and the values beside them, each a [`table::Value`] that reads, writes and
+//! and implements [`table::Table`] for it: a list of [`table::Key`]s and their values, each a [`table::Value`] that reads, writes and
 //! checks itself. Choices of words are made by `choice!` in the same manner, and by `choice_of_values!` where words hold values. Everything
 //! else is a loop over keys and values:
 //!
@@ -33,7 +33,7 @@
 //! | `Table::read` in [`table`] | reading, required and unknown keys, "did you mean" (with `nearest`), units in messages |
 //! | `Table::write` | TOML; `commented` adds the units |
 //! | `check_table` | bounds; `check/` adds the refusals that concern several keys |
-//! | `plausibility` | notes on unusual values; rules on several keys stand beside it |
+//! | `plausibility` | notes on unusual values; rules on several keys stand next to it |
 //! | `idle` | notes on keys that change nothing |
 //! | `words` | sentences of `moorline check` |
 //! | [`crate::interface`] | parameters of the FMU, and the results that depend on them |
@@ -43,7 +43,7 @@
 //! Refusals and notes that concern several keys stand in tables too: each row of `rules!` is a key, a condition and a sentence.
 //!
 //! Values that are not single numbers (tension over strain, friction by direction, functions of time, motions, seas) implement
-//! [`table::Value`] by hand beside their type; their keys stand in a `table!` too.
+//! [`table::Value`] by hand next to their type; their keys stand in a `table!` too.
 
 mod bathymetry_file;
 pub mod channel;
@@ -113,7 +113,7 @@ pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// of the line and the same on every mesh, so that finer meshes have a limit.
 pub(crate) const DAMPING_ELEMENTS: usize = 40;
 /// Axial damping of a line whose type leaves it open, as a part of critical of one of [`DAMPING_ELEMENTS`] elements and of every longer one [-].
-/// A line that slackens and snaps without damping is driven by the kink of its own tension law when the step is explicit; codes of that kind
+/// A line that slackens and snaps without damping is driven by the kink of its tension law when the step is explicit; codes of that kind
 /// damp the highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
 pub(crate) const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
 /// Least spectral radius at infinite frequency of `axial_implicit` [-], at which it damps most.

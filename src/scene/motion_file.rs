@@ -1,6 +1,6 @@
 //! Motion tables in text files: a header row, then time, x, y, z, and for vessels roll, pitch, yaw; or time and columns that name
 //! what they move, such as `platform.x` and `buoy.z`; or the results of a run. Between the columns stand commas, semicolons, tabs or
-//! blanks; units stand in the header, in a row below it, or in a file `….units.csv` beside it, and are SI where there are none.
+//! blanks; units stand in the header, in a row below it, or in a file `….units.csv` next to it, and are SI where there are none.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
@@ -113,7 +113,7 @@ fn parse(input: impl BufRead, beside: &BTreeMap<String, String>) -> Result<Moves
     Ok(table.moves(&rows))
 }
 
-/// Units of columns by name, in the file that a run writes beside its results; none where there is no such file.
+/// Units of columns by name, in the file that a run writes next to its results; none where there is no such file.
 fn units_beside(path: &Path) -> Result<BTreeMap<String, String>, String> {
     let path = path.with_extension("units.csv");
     if !path.is_file() {

@@ -192,10 +192,10 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
         true => "",
         false => "; `surface = true` in [water] ends it at z = 0",
     };
-    let bed = scene.seabed.as_ref().filter(|seabed| !seabed.is_level());
-    let buried = bed
+    let seabed = scene.seabed.as_ref().filter(|seabed| !seabed.is_level());
+    let buried = seabed
         .zip(place)
-        .map_or(0.0, |(bed, [x, y, z])| bed.lowest_at([x, y]) - z);
+        .map_or(0.0, |(seabed, [x, y, z])| seabed.lowest_at([x, y]) - z);
     rules! { notes, at;
         "" if alone => "no line ends at this point";
         "position" if water.is_some() && height > 0.0 => "above z = 0, {everywhere}";

@@ -43,7 +43,7 @@ pub(super) fn push(path: &mut String, step: Step<'_>) {
     }
 }
 
-/// Keys whose values may stand in the `file` beside them.
+/// Keys whose values may stand in the `file` of the same table.
 const IN_FILE: [&str; 3] = [".profile", ".components", ".grid"];
 
 /// The path of the `file` that holds the value at a path, where the text has that in its place.

@@ -87,7 +87,7 @@ fn outside(value: f64, [lower, upper]: [f64; 2]) -> bool {
     !(lower..=upper).contains(&value)
 }
 
-/// Rows of a current's profile, and its factor; the velocity has a usual range of its own.
+/// Rows of a current's profile, and its factor; the velocity has its own usual range.
 fn current(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(current) = scene.current() else {
         return;

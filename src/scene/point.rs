@@ -57,7 +57,7 @@ choice! {
         Fixed = "fixed",
         /// The host moves it: a fairlead.
         Coupled = "coupled",
-        /// A path of its own in time moves it, in every host.
+        /// Its own path in time moves it, in every host.
         Prescribed = "prescribed",
         /// The forces on it move it.
         Free = "free",
@@ -109,7 +109,7 @@ table! {
         pub position: [f64; 3] = [0.0; 3] => magnitude(1e7),
         /// Reference attitude: roll, pitch, yaw [rad], body to global by yaw about z, then pitch about y', then roll about x''.
         pub attitude: [f64; 3] = [0.0; 3] => magnitude(TAU),
-        /// Order of the rotations by roll, pitch and yaw in the motion of a run, in `[motion]` or beside the scene.
+        /// Order of the rotations by roll, pitch and yaw in the motion of a run, in `[motion]` or given with the run.
         pub motion_angles: AngleOrder = AngleOrder::Zyx,
     }
 }

@@ -94,14 +94,14 @@ impl Scene {
             }
         }
         // two shapes are refused by the checks
-        if let Some(bed) = self.seabed.as_mut().filter(|bed| bed.grid.is_none())
+        if let Some(seabed) = self.seabed.as_mut().filter(|seabed| seabed.grid.is_none())
             && let Some(grid) = files.read(
-                bed.file.as_deref(),
+                seabed.file.as_deref(),
                 || "seabed.file".into(),
                 bathymetry_file::read,
             )
         {
-            (bed.grid, bed.file) = (Some(grid), None);
+            (seabed.grid, seabed.file) = (Some(grid), None);
         }
         files.mistakes
     }

@@ -27,7 +27,7 @@ table! {
         /// Slope dz/dx and dz/dy of a plane through (0, 0, −depth) [-].
         pub slope: Option<[f64; 2]> => magnitude(SLOPE_MAX)
             .usual([-1.0, 1.0], "-1 to 1 is usual, a slope being a rise over a length and no angle in degrees")
-            .hint("steeper than any bed; the slope is dz/dx and dz/dy, 0.1 rises by 1 m in 10 m"),
+            .hint("steeper than any seabed; the slope is dz/dx and dz/dy, 0.1 rises by 1 m in 10 m"),
         /// File of soundings, a table in CSV or a bathymetry file of MoorDyn-F or MoorDyn-C, relative to the scene.
         pub file: Option<String> => PLAIN.instead_of(&["slope", "grid"]),
         /// Use of stiffness and damping.
@@ -39,7 +39,7 @@ table! {
     }
 }
 
-/// Steepest bed [-]: 63 degrees.
+/// Steepest seabed [-]: 63 degrees.
 const SLOPE_MAX: f64 = 2.0;
 
 table! {
@@ -90,7 +90,7 @@ impl Friction {
 }
 
 impl Seabed {
-    /// A level bed at a depth [m], with the default stiffness and damping.
+    /// A level seabed at a depth [m], with the default stiffness and damping.
     pub fn level(depth: f64) -> Seabed {
         Seabed {
             depth,
@@ -98,12 +98,12 @@ impl Seabed {
         }
     }
 
-    /// Returns whether the bed is a horizontal plane.
+    /// Returns whether the seabed is a horizontal plane.
     pub fn is_level(&self) -> bool {
         self.grid.is_none() && self.file.is_none() && self.slope.is_none_or(|slope| slope == [0.0; 2])
     }
 
-    /// Height of the bed at a place [m]; between soundings the lowest of those around.
+    /// Height of the seabed at a place [m]; between soundings the lowest of those around.
     pub(super) fn lowest_at(&self, [x, y]: [f64; 2]) -> f64 {
         let around = |line: &[f64], place: f64| {
             let next = line.partition_point(|known| *known <= place);

@@ -150,7 +150,7 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// Words of the key, beside `true` and `false`.
+    /// Words of the key, in addition to `true` and `false`.
     const WORDS: Words = Words {
         name: "Profile",
         words: &[
@@ -222,7 +222,7 @@ choice! {
 choice! {
     /// Format of tables.
     pub enum Format {
-        /// Comma-separated values, with `results.units.csv` beside them.
+        /// Comma-separated values, with their units in `results.units.csv`.
         Csv = "csv",
         /// Apache Parquet, with the units in the metadata of the fields.
         Parquet = "parquet",

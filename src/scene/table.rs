@@ -13,7 +13,7 @@ pub struct Key {
     pub(super) field: &'static str,
     /// Lines of the doc comment of the field.
     pub(super) doc: &'static [&'static str],
-    /// Bounds, spellings and other facts beside the type and the doc comment.
+    /// Bounds, spellings and other facts in addition to the type and the doc comment.
     pub rule: Rule,
     pub(super) kind: fn() -> Kind,
     pub(super) is_optional: fn() -> bool,
@@ -232,7 +232,7 @@ impl Rule {
         Rule { is_parameter, ..self }
     }
 
-    /// Parameter of the FMU with a description of its own.
+    /// Parameter of the FMU with its own description.
     pub(super) const fn described(self, description: &'static str) -> Rule {
         self.parameter().in_fmu(description)
     }
@@ -440,7 +440,7 @@ pub(super) fn check_table<T: Table>(table: &T, findings: &mut Findings) {
     }
 }
 
-/// Declares a table of the scene format: its struct, and beside each field the rule of its key. The doc comment of a field is the text of the
+/// Declares a table of the scene format: its struct, and next to each field the rule of its key. The doc comment of a field is the text of the
 /// reference page, the unit in it that of the number. A field has a default after `=`, is optional by its type, or is required.
 macro_rules! table {
     (

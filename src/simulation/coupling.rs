@@ -28,7 +28,7 @@
 //! **Derivatives** ([`Simulation::derivative`]). The step just made is repeated from the state at its start, with the end of the path at x ± δ or v ±
 //! δ/h, and the quotient of central differences is taken. So every integrator, its contact, friction and seabed are differentiated as they
 //! were computed: the exact derivative of the discrete step, but for O(δ²) and rounding over δ. δ is 1e-8 of the longest line: rounding
-//! of positions is 1e-8 of it, and it is small beside ah²/6, the displacement that changes the acceleration at the end of the cubic by that of the motion
+//! of positions is 1e-8 of it, and it is small compared with ah²/6, the displacement that changes the acceleration at the end of the cubic by that of the motion
 //! itself, a, beyond which the load of the last element is not linear. Derivatives are one-sided averages where a node lands, slackens or slips within δ.
 //! A pair of steps is made for each motion that is differentiated by; nothing is computed where none is.
 //!

@@ -292,7 +292,7 @@ impl Simulation {
         Some(format!(
             "at t = {time:.6} s, about {points:.0} communication steps a period of the motion are too few for its extrapolation: tension is off \
              by about {:.2} % of its variation, {:.2} % are allowed (solver.tolerance); communication steps of {} s or \
-             velocities beside the displacements would do, or solver.input_reconstruction = \"interpolate\"; said once",
+             velocities as well as displacements would do, or solver.input_reconstruction = \"interpolate\"; said once",
             100.0 * error,
             100.0 * tolerance,
             rounded_down(step),

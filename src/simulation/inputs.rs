@@ -87,8 +87,8 @@ impl Simulation {
 
     /// Velocity of a coupled point as set [m/s].
     pub fn velocity(&self, point: usize) -> [Option<f64>; 3] {
-        let [velocity, told] = self.snapshot.inputs.points[point].rates;
-        std::array::from_fn(|axis| (told[axis] > 0.0).then_some(velocity[axis]))
+        let [velocity, given] = self.snapshot.inputs.points[point].rates;
+        std::array::from_fn(|axis| (given[axis] > 0.0).then_some(velocity[axis]))
     }
 
     /// Sets where a vessel is now: displacement from its reference position [m]; roll, pitch and yaw added to those of its reference

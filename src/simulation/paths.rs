@@ -116,7 +116,7 @@ impl Paths {
         step: f64,
     ) -> Result<(), StepError> {
         let (time, changes) = (snapshot.state.time, &snapshot.inputs.length_changes);
-        let told = match model.solver.input_reconstruction {
+        let sample_time = match model.solver.input_reconstruction {
             Reconstruction::Interpolate => time + step,
             _ => time,
         };
@@ -128,7 +128,7 @@ impl Paths {
                 _ => {
                     winches::check(line, changes[index])
                         .map_err(|reason| out_of_bounds(line, time, reason))?;
-                    winch_state.extend(winch.speed_max, [told, changes[index]], extrapolation);
+                    winch_state.extend(winch.speed_max, [sample_time, changes[index]], extrapolation);
                 }
             }
         }
@@ -196,7 +196,7 @@ impl Simulation {
         let (time, extrapolation) = (snapshot.state.time, &mut self.extrapolation);
         paths.clock = before.clock;
         let reconstruction = model.solver.input_reconstruction;
-        paths.clock.tell(time, step, reconstruction, extrapolation);
+        paths.clock.add_sample(time, step, reconstruction, extrapolation);
         if !snapshot.follows_scene {
             let inputs = &snapshot.inputs;
             unit::of_four().dispatch(Extend {

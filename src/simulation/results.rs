@@ -215,7 +215,7 @@ impl Simulation {
     }
 
     /// This mooring at rest as it is now, without waves, with every network that has one on its closed-form catenaries and the others on
-    /// their elements. The closed form has bed friction and no error of a mesh.
+    /// their elements. The closed form has seabed friction and no error of a mesh.
     pub fn on_catenaries(&self) -> Simulation {
         let mut hung = self.clone();
         hung.snapshot.state.waves = None;
@@ -377,7 +377,7 @@ impl Simulation {
         self.snapshot.state.lines[line].closed_form.as_ref()
     }
 
-    /// Elastic catenary of the reference configuration, where the line's ends are prescribed, its strain is engineering strain, a bed
+    /// Elastic catenary of the reference configuration, where the line's ends are prescribed, its strain is engineering strain, a seabed
     /// in reach is level, and it does not come out of the water.
     pub fn catenary(&self, line: usize) -> Option<&Catenary> {
         self.catenaries[line].as_ref()

@@ -15,7 +15,7 @@ use crate::elements;
 use crate::model::{End, Line, LineState, Model, PointState, State, WinchState};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator};
-use crate::statics::catenary::{self, Bed, Catenary};
+use crate::statics::catenary::{self, Catenary, FlatSeabed};
 use crate::statics::{self, StaticsError, catenary_network, equilibrium, guess};
 
 /// Treatment of lines with an initial shape.
@@ -153,7 +153,7 @@ fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The closed-form catenary between two places, where it applies: engineering strain, and a level bed if any is in reach.
+/// The closed-form catenary between two places, where it applies: engineering strain, and a level seabed if any is in reach.
 fn solve_catenary(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) -> Option<Catenary> {
     if line
         .sections
@@ -162,7 +162,7 @@ fn solve_catenary(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) 
     {
         return None;
     }
-    if line.nodes.contact.is_some() && !model.bed_is_level() {
+    if line.nodes.contact.is_some() && !model.seabed_is_level() {
         return None;
     }
     let sections: Vec<catenary::Section> = line
@@ -174,12 +174,12 @@ fn solve_catenary(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) 
             axial_stiffness: section.axial_stiffness,
         })
         .collect();
-    let bed = line.nodes.contact.as_ref().map(|contact| Bed {
-        height: contact.bed - a.z,
-        friction: model.bed_friction,
+    let seabed = line.nodes.contact.as_ref().map(|contact| FlatSeabed {
+        height: contact.seabed_level - a.z,
+        friction: model.seabed_friction,
     });
     let span = (b.x - a.x).hypot(b.y - a.y);
-    catenary::solve(&sections, span, b.z - a.z, bed).ok()
+    catenary::solve(&sections, span, b.z - a.z, seabed).ok()
 }
 
 /// Closed-form catenary of a line in its reference configuration; none where an end is free, or where the line would

@@ -14,7 +14,7 @@ pub(super) struct WinchPath {
     /// Length change [m] in time.
     pub path: AxisPath,
     /// Time of the winch's last input [s], and its length change within the speed limit [m].
-    told: [f64; 2],
+    given: [f64; 2],
 }
 
 impl WinchPath {
@@ -26,10 +26,10 @@ impl WinchPath {
         [time, wanted]: [f64; 2],
         extrapolation: &Extrapolation,
     ) {
-        let [last, before] = self.told;
+        let [last, before] = self.given;
         let reach = speed_max.map_or(f64::INFINITY, |speed| speed * (time - last).max(0.0));
         let position = wanted.clamp(before - reach, before + reach);
-        self.told = [time, position];
+        self.given = [time, position];
         self.path.extend(extrapolation, position, None);
     }
 
@@ -42,10 +42,10 @@ impl WinchPath {
 }
 
 /// Length change [m] of a winch where the scene's own motion is followed from a time on [s], if it is.
-fn start(winch: &Winch, told: f64, follows: Option<f64>) -> f64 {
+fn start(winch: &Winch, given: f64, follows: Option<f64>) -> f64 {
     match (follows, &winch.path) {
         (Some(time), Some(path)) => path.at(time),
-        _ => told,
+        _ => given,
     }
 }
 
@@ -66,17 +66,17 @@ pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
 }
 
 /// Paths at rest from a time on [s], by line; none where there is no winch.
-pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool) -> Vec<WinchPath> {
+pub(super) fn paths(model: &Model, given: &[f64], time: f64, follows_scene: bool) -> Vec<WinchPath> {
     if model.lines.iter().all(|line| line.winch.is_none()) {
         return Vec::new();
     }
-    let lines = model.lines.iter().zip(told);
-    let path = |(line, told): (&Line, &f64)| {
+    let lines = model.lines.iter().zip(given);
+    let path = |(line, given): (&Line, &f64)| {
         let winch = line.winch.as_ref();
-        let change = winch.map_or(0.0, |winch| start(winch, *told, follows_scene.then_some(time)));
+        let change = winch.map_or(0.0, |winch| start(winch, *given, follows_scene.then_some(time)));
         WinchPath {
             path: AxisPath::at_rest(change),
-            told: [time, change],
+            given: [time, change],
         }
     };
     lines.map(path).collect()
@@ -86,12 +86,12 @@ pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool)
 ///
 /// # Errors
 /// Lengths that a winch cannot pay out.
-pub(super) fn lay_out(model: &mut Arc<Model>, told: &[f64], follows: Option<f64>) -> Result<(), SceneError> {
-    for (index, &told) in told.iter().enumerate() {
+pub(super) fn lay_out(model: &mut Arc<Model>, given: &[f64], follows: Option<f64>) -> Result<(), SceneError> {
+    for (index, &given) in given.iter().enumerate() {
         let Some(winch) = &model.lines[index].winch else {
             continue;
         };
-        let change = start(winch, told, follows);
+        let change = start(winch, given, follows);
         check(&model.lines[index], change)
             .map_err(|problem| SceneError::new(format!("lines[{index}].winch"), problem))?;
         let count = winch.segments_at(change);

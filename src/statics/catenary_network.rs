@@ -57,7 +57,7 @@ pub fn serves(model: &Model, network: &Network) -> bool {
         line.bending.is_none()
             && !line.drifts(model)
             && sections.all(|section| section.law == StretchLaw::Engineering)
-            && (model.bed_is_level() || line.nodes.contact.is_none())
+            && (model.seabed_is_level() || line.nodes.contact.is_none())
     })
 }
 
@@ -357,7 +357,7 @@ impl<'a> Problem<'a> {
         for &index in &self.network.free_points {
             let point = &mut state.points[index];
             *point = PointState::at_rest(point.position);
-            point.position.z = point.position.z.max(self.bed_under(index));
+            point.position.z = point.position.z.max(self.seabed_under(index));
         }
         if !self.evaluate(state, work) {
             return false;
@@ -417,23 +417,23 @@ impl<'a> Problem<'a> {
     }
 
     /// z below which a point that moves vertically does not sink [m].
-    fn bed_under(&self, point: usize) -> f64 {
+    fn seabed_under(&self, point: usize) -> f64 {
         let point = &self.model.points[point];
         let Some(free) = point.free().filter(|free| free.axes[2]) else {
             return f64::NEG_INFINITY;
         };
-        let own = free.contact.map(|contact| contact.bed);
+        let own = free.contact.map(|contact| contact.seabed_level);
         let lines = point.attached.iter().map(|(line, _)| &self.model.lines[*line]);
         lines
-            .filter_map(|line| Some(line.nodes.contact.as_ref()?.bed))
+            .filter_map(|line| Some(line.nodes.contact.as_ref()?.seabed_level))
             .chain(own)
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns true where a free point cannot move along an axis: not free there, or pressed on the seabed.
     fn is_held(&self, state: &State, work: &Workspace, point: usize, axes: [bool; 3], axis: usize) -> bool {
-        let pressed =
-            work.points[point].residual.z <= 0.0 && state.points[point].position.z <= self.bed_under(point);
+        let pressed = work.points[point].residual.z <= 0.0
+            && state.points[point].position.z <= self.seabed_under(point);
         !axes[axis] || (axis == 2 && pressed)
     }
 
@@ -488,7 +488,7 @@ impl<'a> Problem<'a> {
         let slopes = if solved.laid().next().is_none() {
             Slopes::in_flight(&stiffness::in_flight(&line.sections, solved))
         } else {
-            let (slopes, solves) = self.slopes_on_bed(state, line, solved);
+            let (slopes, solves) = self.slopes_on_seabed(state, line, solved);
             work.counters.solves += solves;
             slopes
         };
@@ -496,7 +496,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Slopes of a line that touches the seabed, by difference quotients, with the number of catenaries solved.
-    fn slopes_on_bed(&self, state: &State, line: &Line, solved: &Catenary) -> (Slopes, usize) {
+    fn slopes_on_seabed(&self, state: &State, line: &Line, solved: &Catenary) -> (Slopes, usize) {
         let forces = |c: &Catenary| [c.horizontal_a(), c.vertical_a(), c.horizontal(), c.vertical_b()];
         let [a, b] = line.ends.map(|point| state.points[point].position);
         let step = DIFFERENCE * line.unstretched_length().max(a.amax()).max(b.amax());
@@ -570,7 +570,7 @@ impl<'a> Problem<'a> {
     fn place(&self, state: &mut State, work: &Workspace, part: f64) {
         for &index in &self.network.free_points {
             let mut moved = work.trial.points[index].position + part * work.points[index].solution;
-            moved.z = moved.z.max(self.bed_under(index));
+            moved.z = moved.z.max(self.seabed_under(index));
             state.points[index].position = moved;
         }
     }

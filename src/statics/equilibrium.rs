@@ -489,13 +489,13 @@ impl<'a> Problem<'a> {
     /// Greatest stiffness of a segment of at most this EA [N], of the seabed under a node, or of a joint [N/m].
     fn stiffest_spring(&self, line: &Line, stiffness_max: f64) -> f64 {
         let segments = line.segments.axial_stiffness.iter().zip(&line.segments.length);
-        let bed = line
+        let seabed = line
             .nodes
             .contact
             .iter()
             .flat_map(|contact| &contact.stiffness)
             .copied();
-        let spring = bed
+        let spring = seabed
             .chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
             .fold(0.0, f64::max);
         if self.bends {
@@ -535,7 +535,7 @@ impl<'a> Problem<'a> {
             let load = self.model.points[index].load_at(self.time).norm();
             force = force.max(load).max(free.weight_max());
             if let Some(contact) = &free.contact {
-                rounding = rounding.max(contact.bed.abs() * contact.coefficients.stiffness);
+                rounding = rounding.max(contact.seabed_level.abs() * contact.coefficients.stiffness);
                 stuck = stuck.max(state.points[index].position.amax() * point_stick(free));
             }
         });

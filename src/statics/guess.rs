@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::catenary::{self, Bed, Catenary, Section};
+use super::catenary::{self, Catenary, FlatSeabed, Section};
 use crate::model::{Line, Model};
 use crate::scene::InitialShape;
 
@@ -28,7 +28,7 @@ pub(crate) fn hang(
         }
         None => hang_parabola(line, a, b, position, tension),
     }
-    if let Some(contact) = line.nodes.contact.as_ref().filter(|_| !model.bed_is_level()) {
+    if let Some(contact) = line.nodes.contact.as_ref().filter(|_| !model.seabed_is_level()) {
         for r in position.iter_mut() {
             r.z = r.z.max(contact.height_under(*r));
         }
@@ -85,9 +85,9 @@ pub(crate) fn closed_form(
     span: f64,
     rise: f64,
 ) -> Option<Catenary> {
-    let bed = line.nodes.contact.as_ref().map(|contact| Bed {
+    let seabed = line.nodes.contact.as_ref().map(|contact| FlatSeabed {
         height: contact.height_under(a) - a.z,
-        friction: model.bed_friction,
+        friction: model.seabed_friction,
     });
     let section = |section: &crate::model::Section| Section {
         length: section.length,
@@ -95,7 +95,7 @@ pub(crate) fn closed_form(
         axial_stiffness: section.axial_stiffness,
     };
     let sections: Vec<Section> = line.sections.iter().map(section).collect();
-    catenary::solve(&sections, span, rise, bed).ok()
+    catenary::solve(&sections, span, rise, seabed).ok()
 }
 
 fn hang_parabola(
@@ -109,7 +109,7 @@ fn hang_parabola(
     let weight: f64 = line.nodes.weight.iter().sum();
     let chord = (b - a).norm();
     let sag = (0.375 * chord.max(0.1 * length) * (length - chord).max(0.0)).sqrt() * weight.signum();
-    let bed = line
+    let seabed = line
         .nodes
         .contact
         .as_ref()
@@ -117,7 +117,7 @@ fn hang_parabola(
     for (r, arc) in position.iter_mut().zip(&line.nodes.arc) {
         let u = arc / length;
         *r = a + u * (b - a) - 4.0 * sag * u * (1.0 - u) * Vector3::z();
-        r.z = r.z.max(bed.min(a.z).min(b.z));
+        r.z = r.z.max(seabed.min(a.z).min(b.z));
     }
     tension.fill(if sag == 0.0 {
         0.0

@@ -30,7 +30,7 @@ const DEPTH: usize = 4;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Place {
     steps: Vec<Step>,
-    /// A second name of the key, which must not stand beside it.
+    /// A second name of the key, which must not be given with it.
     alias: Option<&'static str>,
     /// Unit of the number.
     pub unit: Option<&'static str>,

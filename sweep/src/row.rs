@@ -216,7 +216,7 @@ fn of_texts(texts: Vec<String>) -> (Form, Vec<f64>) {
 }
 
 impl Table {
-    /// Writes the table into a folder: `cases.csv` and `cases.parquet`, with `cases.units.csv` beside them.
+    /// Writes the table into a folder: `cases.csv` and `cases.parquet`, with `cases.units.csv` next to them.
     ///
     /// # Errors
     /// A file that the operating system refuses; the old one then stays.

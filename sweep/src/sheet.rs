@@ -1,7 +1,7 @@
 //! CASES, CSV or TOML -> a list of values for every case, each with its place in the text.
 //!
 //! In CSV a row is a case and its header names the keys, perhaps with units: `lines.line1.length [km]`. Empty cells leave the value of the
-//! base. In TOML every list is a list of values, and lists multiply, the last one fastest; `[[cases]]` are blocks of cases beside one another,
+//! base. In TOML every list is a list of values, and lists multiply, the last one fastest; `[[cases]]` are blocks of cases next to one another,
 //! each with the values above the blocks.
 
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Sweeps from file to table: refusals with their places, resumption to the same bytes, failures beside results.
+//! Sweeps from file to table: refusals with their places, resumption to the same bytes, failures among results.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -70,7 +70,7 @@ fn apart(a: &State, b: &State) -> f64 {
 
 // ------------------------------------------------------------------ order in time
 
-/// A 902 m chain in water, hanging free of any bed, from an anchor to a fairlead.
+/// A 902 m chain in water, hanging free of any seabed, from an anchor to a fairlead.
 fn chain() -> Model {
     draft(
         "water.density = 1025.0

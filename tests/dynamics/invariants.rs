@@ -87,7 +87,7 @@ fn the_energy_balance_closes_where_held_points_jump() {
     .scene();
     // a jump makes waves as short as elements are, which explicit steps resolve least
     for (name, scene, explicit, axial_step) in [
-        ("a chain on its bed", shipped("oc4_chain"), 5e-3, 0.01),
+        ("a chain on its seabed", shipped("oc4_chain"), 5e-3, 0.01),
         ("a rope", shipped("taut_polyester"), 1e-5, 0.01),
         // 4e-3 at 5 ms, where the two ropes are not resolved, 6e-4 at 2.5 ms
         ("lines at a free point", shipped("bridle"), 2e-3, 0.0025),
@@ -352,7 +352,7 @@ fn an_undamped_swing_keeps_its_energy_for_a_thousand_seconds() {
 }
 
 #[test]
-fn forces_on_all_points_balance_weight_and_bed() {
+fn forces_on_all_points_balance_weight_and_seabed() {
     for (name, _) in PUBLIC_SCENES {
         let simulation = start(&shipped(name));
         let line = &simulation.model().lines[0];
@@ -361,12 +361,12 @@ fn forces_on_all_points_balance_weight_and_bed() {
             .iter()
             .sum();
         let shape = &simulation.state().lines[0].position;
-        let bed: f64 = line.nodes.contact.as_ref().map_or(0.0, |contact| {
+        let seabed: f64 = line.nodes.contact.as_ref().map_or(0.0, |contact| {
             let push = |i: usize| contact.push(i, shape, |_| Vector3::zeros()).z;
             (0..shape.len()).map(push).sum()
         });
         let weight: f64 = line.nodes.weight.iter().sum();
-        assert_relative_eq!(total.z, bed - weight, max_relative = 1e-9);
+        assert_relative_eq!(total.z, seabed - weight, max_relative = 1e-9);
         assert_relative_eq!(total.xy().norm(), 0.0, epsilon = 1e-9 * weight.abs());
     }
 }

@@ -252,8 +252,8 @@ fn folder() -> tempfile::TempDir {
         ("tide.txt", "a\nb\nc\n0 1.0 0 0\n-20 0.5 0 0\n"),
         ("waves.txt", "1.0 1.0 0.0 0.0\n1.2 0.5 0.0 0.0\n"),
         ("swell.txt", "0.8 1.0 0.0 0.0\n"),
-        ("bed.csv", "y/x,0,50\n-9,20.5,20.6\n9,20.5,20.7\n"),
-        ("other_bed.csv", "y/x,0,50\n-9,20.1,20.2\n9,20.1,20.3\n"),
+        ("seabed.csv", "y/x,0,50\n-9,20.5,20.6\n9,20.5,20.7\n"),
+        ("other_seabed.csv", "y/x,0,50\n-9,20.1,20.2\n9,20.1,20.3\n"),
         ("motion.csv", "time,x,y,z\n0,0,0,0\n1,2,0,1\n"),
         ("other.csv", "time,x,y,z\n0,0,0,0\n1,1,0,1\n"),
     ] {
@@ -344,7 +344,7 @@ fn scene(list: &Table, row: &Value) -> (Value, Vec<String>) {
         list[key].get(name).unwrap_or_else(|| panic!("no {key} {name}"))
     };
     let mut text = chosen("layout", "moored").as_str().unwrap().to_string();
-    for (key, usual) in [("water", "still"), ("seabed", "bed"), ("line", "chain")] {
+    for (key, usual) in [("water", "still"), ("seabed", "seabed"), ("line", "chain")] {
         text = text.replace(&format!("${key}"), chosen(key, usual).as_str().unwrap());
     }
     let integrator = row.get("integrator").and_then(Value::as_str);

@@ -294,7 +294,7 @@ fn a_mooring_line_as_a_supple_beam_hangs_and_moves_as_the_line_does() {
 }
 
 #[test]
-fn bending_stiffness_from_a_hair_to_a_girder_finds_its_rest_on_the_bed() {
+fn bending_stiffness_from_a_hair_to_a_girder_finds_its_rest_on_the_seabed() {
     let mut last = f64::INFINITY;
     for bending in [1e-6, 1.0, 1e3, 1e5, 1e7, 1e9, 1e11] {
         let tension = start(&mooring_beam(bending)).tension_b(0);
@@ -364,7 +364,7 @@ fn a_moment_along_a_beam_that_no_end_holds_is_why_there_is_no_equilibrium() {
 }
 
 #[test]
-fn a_beam_in_water_over_a_bed_has_an_energy_balance_that_closes() {
+fn a_beam_in_water_over_a_seabed_has_an_energy_balance_that_closes() {
     let mut beam = following(&balanced(mooring_beam(1e5)));
     let start = beam.energy_balance().unwrap().start.abs();
     run(&mut beam, 0.05, 400);
@@ -416,7 +416,7 @@ fn a_buoy_on_a_beam_heaves_as_it_does_on_a_cable() {
 }
 
 #[test]
-fn a_clump_at_the_end_of_a_beam_rests_on_the_bed() {
+fn a_clump_at_the_end_of_a_beam_rests_on_the_seabed() {
     let clump = "mass = 500.0, volume = 0.1, force = { x = 300.0 }";
     let mut simulation = tethered("beam", -20.0, [15.0, 0.0, -29.5], clump);
     let rest = place(&simulation, "free");

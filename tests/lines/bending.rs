@@ -525,7 +525,7 @@ fn a_slack_cable_on_the_seabed_buckles_and_goes_on() {
 }
 
 #[test]
-fn a_line_that_hardly_bends_rests_on_the_bed_like_one_that_does_not_bend() {
+fn a_line_that_hardly_bends_rests_on_the_seabed_like_one_that_does_not_bend() {
     let rest = |bending_stiffness: Option<f64>| {
         let mut cable = slack(1.0, 10);
         (cable.lines[0].clamped_a, cable.points[1].position) = (None, [70.0, 0.0, -20.0]);

@@ -44,7 +44,7 @@ fn a_table_of_a_straight_line_is_a_stiffness() {
             History::record(&mut following(&scene), 0.1, 100).tension
         });
         let tolerance = match integrator {
-            Integrator::QuasiStatic => 5e-3, // a closed form beside 20 elements
+            Integrator::QuasiStatic => 5e-3, // a closed form against 20 elements
             _ => 1e-7,
         };
         for (a, b) in of_table.into_iter().zip(of_stiffness) {

@@ -260,7 +260,7 @@ fn a_length_that_the_winch_does_not_have_is_refused_and_leaves_the_state() {
 }
 
 #[test]
-fn a_line_on_a_rough_bed_stays_at_rest_and_pays_out_as_on_a_smooth_one() {
+fn a_line_on_a_rough_seabed_stays_at_rest_and_pays_out_as_on_a_smooth_one() {
     let text = chain(100.0, 25).with(WINCH).scene().to_toml();
     let text = text.replace("\nfriction = 0.0", "");
     let rough = Scene::from_toml(&text.replace("[seabed]", "[seabed]\nfriction = 0.5")).unwrap();

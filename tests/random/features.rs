@@ -64,7 +64,7 @@ fn surroundings(scene: &Scene) -> Vec<&'static str> {
         .and_then(|water| water.waves.as_ref())
         .map(|waves| &waves.seas[..]);
     let sea = |what: fn(&Sea) -> bool| seas.is_some_and(|seas| seas.iter().any(what));
-    let bed = |what: fn(&Seabed) -> bool| scene.seabed.as_ref().is_some_and(what);
+    let seabed = |what: fn(&Seabed) -> bool| scene.seabed.as_ref().is_some_and(what);
     let meets = scene.lines.iter().any(|line| scene.meets_surface(line));
     held([
         ("dry", water.is_none()),
@@ -80,11 +80,14 @@ fn surroundings(scene: &Scene) -> Vec<&'static str> {
             sea(|sea| sea.regular.is_none() && sea.spectrum.is_none()),
         ),
         ("lines at the surface", meets),
-        ("seabed: level", bed(Seabed::is_level)),
-        ("seabed: slope", bed(|bed| bed.slope.is_some())),
-        ("seabed: grid", bed(|bed| bed.grid.is_some())),
-        ("seabed: friction", bed(|bed| bed.friction.acts())),
-        ("seabed: as given", bed(|bed| bed.contact == ContactLaw::AsGiven)),
+        ("seabed: level", seabed(Seabed::is_level)),
+        ("seabed: slope", seabed(|seabed| seabed.slope.is_some())),
+        ("seabed: grid", seabed(|seabed| seabed.grid.is_some())),
+        ("seabed: friction", seabed(|seabed| seabed.friction.acts())),
+        (
+            "seabed: as given",
+            seabed(|seabed| seabed.contact == ContactLaw::AsGiven),
+        ),
     ])
     .collect()
 }

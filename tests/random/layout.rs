@@ -36,9 +36,9 @@ pub fn scene(tape: &Tape, plan: &Plan) -> Scene {
         }
         scene.water = Some(water);
     }
-    let mut dice = plan.dice(tape, part::BED);
+    let mut dice = plan.dice(tape, part::SEABED);
     let depth = plan.size * dice.between(0.2, 1.0);
-    if plan.bed {
+    if plan.seabed {
         scene.seabed = Some(surroundings::seabed(&mut dice, depth, plan.size, !cable));
     }
     let types = dice.whole(1, 3);
@@ -130,14 +130,14 @@ impl Layout<'_> {
         }
     }
 
-    /// A fixed point on the bed, or on a wall.
+    /// A fixed point on the seabed, or on a wall.
     fn anchor(&mut self, dice: &mut Dice, number: usize) -> usize {
         let size = self.plan.size;
         let radius = size * dice.pick(&[1.0, 1.0, 0.1]) * dice.between(0.3, 1.0);
         let bearing = dice.between(0.0, TAU);
         let (x, y) = (radius * bearing.cos(), radius * bearing.sin());
-        let bed = self.scene.seabed.as_ref();
-        let floor = bed.map_or(-self.depth, |bed| surroundings::bed_height(bed, [x, y]));
+        let seabed = self.scene.seabed.as_ref();
+        let floor = seabed.map_or(-self.depth, |seabed| surroundings::seabed_height(seabed, [x, y]));
         let lift = if dice.chance(0.25) {
             dice.between(0.0, self.depth)
         } else {
@@ -233,11 +233,11 @@ impl Layout<'_> {
         self.scene.line_types.values().any(stiff)
     }
 
-    /// A place [m] that is not below the bed.
+    /// A place [m] that is not below the seabed.
     fn lifted(&self, place: Vector3<f64>) -> Vector3<f64> {
-        let bed = self.scene.seabed.as_ref();
-        let floor = bed.map_or(f64::NEG_INFINITY, |bed| {
-            surroundings::bed_height(bed, [place.x, place.y])
+        let seabed = self.scene.seabed.as_ref();
+        let floor = seabed.map_or(f64::NEG_INFINITY, |seabed| {
+            surroundings::seabed_height(seabed, [place.x, place.y])
         });
         Vector3::new(place.x, place.y, place.z.max(floor))
     }

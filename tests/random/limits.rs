@@ -252,7 +252,7 @@ const NUDGED_MAX: f64 = 5e-9;
 /// Least tension of a line at rest that is determined by forces, over its greatest [-].
 const TAUT: f64 = 1e-9;
 /// Greatest share of the scenes of a relation that may fail because they are not smooth [-]: over some seconds parts of elements land and leave
-/// the bed.
+/// the seabed.
 const ROUGH_MAX: f64 = 0.25;
 
 /// Returns true where a scene is smooth: small displacements of its points change its run in proportion. A line that
@@ -436,7 +436,7 @@ fn without_wave_height(base: &Base) -> Option<(Scene, Gap)> {
     )
 }
 
-/// A flow from a host that gives none, beside the current.
+/// A flow from a host that gives none, in addition to the current.
 fn without_flow(base: &Base) -> Option<(Scene, Gap)> {
     limit_of_water(
         base,
@@ -460,8 +460,8 @@ fn without_bending_stiffness(base: &Base) -> Option<(Scene, Gap)> {
 
 fn with_seabed(base: &Base, change: impl Fn(&mut Seabed)) -> Option<(Scene, Gap)> {
     base.scene.seabed.as_ref()?;
-    let level = |bed: &mut Seabed| {
-        (bed.slope, bed.grid, bed.friction) = (None, None, Friction::default());
+    let level = |seabed: &mut Seabed| {
+        (seabed.slope, seabed.grid, seabed.friction) = (None, None, Friction::default());
     };
     limit(
         base,
@@ -471,11 +471,11 @@ fn with_seabed(base: &Base, change: impl Fn(&mut Seabed)) -> Option<(Scene, Gap)
 }
 
 fn without_friction(base: &Base) -> Option<(Scene, Gap)> {
-    with_seabed(base, |bed| bed.friction = Friction::isotropic(1e-13))
+    with_seabed(base, |seabed| seabed.friction = Friction::isotropic(1e-13))
 }
 
 fn without_slope(base: &Base) -> Option<(Scene, Gap)> {
-    with_seabed(base, |bed| bed.slope = Some([1e-15, -1e-15]))
+    with_seabed(base, |seabed| seabed.slope = Some([1e-15, -1e-15]))
 }
 
 /// Drag, or added mass.
@@ -575,8 +575,8 @@ fn isotropic(base: &Base) -> Scene {
         scene
             .motion
             .retain(|_, path| matches!(path, MotionPath::Harmonic(_)));
-        if let Some(bed) = &mut scene.seabed {
-            bed.grid = None;
+        if let Some(seabed) = &mut scene.seabed {
+            seabed.grid = None;
         }
     })
 }
@@ -612,8 +612,8 @@ fn turned(base: &Base) -> Option<(Scene, Gap)> {
         vessel.attitude[2] += angle;
     }
     other.motion.values_mut().for_each(|path| turned_path(path, trig));
-    if let Some(bed) = &mut other.seabed {
-        bed.slope = bed.slope.map(rotate);
+    if let Some(seabed) = &mut other.seabed {
+        seabed.slope = seabed.slope.map(rotate);
     }
     if let Some(water) = &mut other.water {
         if let Some(current) = &mut water.current {
@@ -646,14 +646,14 @@ fn moved(base: &Base) -> Option<(Scene, Gap)> {
     for vessel in &mut other.vessels {
         vessel.position = (Vector3::from(vessel.position) + by).into();
     }
-    if let Some(bed) = &mut other.seabed {
-        let [along_x, along_y] = bed.slope.unwrap_or_default();
-        bed.depth += along_x * by.x + along_y * by.y;
-        if let Some(grid) = &mut bed.grid {
+    if let Some(seabed) = &mut other.seabed {
+        let [along_x, along_y] = seabed.slope.unwrap_or_default();
+        seabed.depth += along_x * by.x + along_y * by.y;
+        if let Some(grid) = &mut seabed.grid {
             grid.x.iter_mut().for_each(|x| *x += by.x);
             grid.y.iter_mut().for_each(|y| *y += by.y);
         }
-        if bed.depth < 0.0 {
+        if seabed.depth < 0.0 {
             return None;
         }
     }
@@ -662,7 +662,7 @@ fn moved(base: &Base) -> Option<(Scene, Gap)> {
 
 /// Returns true where friction holds every line as one that was laid from its end on the seabed, A or B.
 fn is_laid_from_one_end(scene: &Scene) -> bool {
-    let Some(bed) = &scene.seabed else { return true };
+    let Some(seabed) = &scene.seabed else { return true };
     let position = |name: &String| {
         let mut points = scene.points.iter();
         let point = points.find(|point| point.name == *name).expect("a point");
@@ -672,7 +672,7 @@ fn is_laid_from_one_end(scene: &Scene) -> bool {
         let length: f64 = line.sections.iter().map(|section| section.length).sum();
         let [a, b] = [&line.from, &line.to].map(|name| {
             let [x, y, z] = position(name);
-            z - surroundings::bed_height(bed, [x, y])
+            z - surroundings::seabed_height(seabed, [x, y])
         });
         is_laid_from_b([a, b], length) || is_laid_from_b([b, a], length)
     })
@@ -681,8 +681,8 @@ fn is_laid_from_one_end(scene: &Scene) -> bool {
 fn reversed(base: &Base) -> Option<(Scene, Gap)> {
     let one = base.changed(|scene| {
         if !is_laid_from_one_end(scene) {
-            let bed = scene.seabed.iter_mut();
-            bed.for_each(|bed| bed.friction = Friction::default());
+            let seabed = scene.seabed.iter_mut();
+            seabed.for_each(|seabed| seabed.friction = Friction::default());
         }
     });
     let mut other = one.clone();
@@ -758,10 +758,14 @@ fn beside_a_far_line_in_still_water(base: &Base) -> Option<(Scene, Gap)> {
 
 fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
     let other = base.changed(|scene| {
-        let bed = scene.seabed.as_ref();
-        let along = bed.and_then(|bed| bed.slope).map_or(1.0, |[x, _]| -x.signum()); // down the slope
+        let seabed = scene.seabed.as_ref();
+        let along = seabed
+            .and_then(|seabed| seabed.slope)
+            .map_or(1.0, |[x, _]| -x.signum()); // down the slope
         let [a, b] = [5000.0, 5100.0].map(|x| {
-            let floor = bed.map_or(-100.0, |bed| surroundings::bed_height(bed, [along * x, 0.0]));
+            let floor = seabed.map_or(-100.0, |seabed| {
+                surroundings::seabed_height(seabed, [along * x, 0.0])
+            });
             [along * x, 0.0, floor.max(-1e-3 * x)]
         });
         for (name, place) in [("far_a", a), ("far_b", b)] {

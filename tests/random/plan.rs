@@ -10,7 +10,7 @@ pub mod part {
     pub const PLAN: usize = 0;
     pub const SOLVER: usize = 1;
     pub const WATER: usize = 2;
-    pub const BED: usize = 3;
+    pub const SEABED: usize = 3;
     pub const TOPS: usize = 4;
     pub const DRIVE: usize = 5;
     pub const TYPES: usize = 8;
@@ -39,7 +39,7 @@ pub struct Plan {
     pub integrator: Integrator,
     pub resists: Resists,
     pub wet: bool,
-    pub bed: bool,
+    pub seabed: bool,
     /// The axial law that all line types share, by number; each its own where absent. Ropes with memory and lines integrated
     /// explicitly share one.
     pub law: Option<usize>,
@@ -92,7 +92,7 @@ impl Plan {
             integrator,
             resists,
             wet: dice.chance(0.75),
-            bed: dice.chance(0.7),
+            seabed: dice.chance(0.7),
             winch,
             junctions: dice.chance(0.4),
             parts: plain && integrator != Integrator::QuasiStatic && dice.chance(0.2),

@@ -119,22 +119,22 @@ fn sea(dice: &mut Dice, size: f64, ramp: Option<f64>) -> Sea {
     sea
 }
 
-/// A bed about `depth` [m] deep, with the height [m] that fixed points may have anywhere within `size` [m]; level where it must be.
+/// A seabed about `depth` [m] deep, with the height [m] that fixed points may have anywhere within `size` [m]; level where it must be.
 pub fn seabed(dice: &mut Dice, depth: f64, size: f64, level: bool) -> Seabed {
-    let mut bed = Seabed::level(depth);
+    let mut seabed = Seabed::level(depth);
     if dice.chance(0.6) {
-        bed.stiffness = dice.size([1e3, 1e8], [1e-15, 1e12]);
-        bed.damping = match dice.whole(0, 2) {
+        seabed.stiffness = dice.size([1e3, 1e8], [1e-15, 1e12]);
+        seabed.damping = match dice.whole(0, 2) {
             0 => 0.0,
-            _ => bed.stiffness * dice.log(1e-3, 10.0),
+            _ => seabed.stiffness * dice.log(1e-3, 10.0),
         }
         .min(1e12);
     }
     if dice.chance(0.3) {
-        bed.contact = ContactLaw::AsGiven;
+        seabed.contact = ContactLaw::AsGiven;
     }
     if !level {
-        bed.friction = match dice.whole(0, 3) {
+        seabed.friction = match dice.whole(0, 3) {
             0 | 1 => Friction::default(),
             2 => Friction::isotropic(dice.size([0.05, 1.0], [1e-6, 10.0])),
             _ => Friction {
@@ -144,11 +144,11 @@ pub fn seabed(dice: &mut Dice, depth: f64, size: f64, level: bool) -> Seabed {
         };
         match dice.whole(0, 4) {
             0..=2 => {}
-            3 => bed.slope = Some([dice.within(0.2), dice.within(0.2)]),
-            _ => bed.grid = Some(grid(dice, depth, size)),
+            3 => seabed.slope = Some([dice.within(0.2), dice.within(0.2)]),
+            _ => seabed.grid = Some(grid(dice, depth, size)),
         }
     }
-    bed
+    seabed
 }
 
 fn grid(dice: &mut Dice, depth: f64, size: f64) -> DepthGrid {
@@ -166,12 +166,12 @@ fn grid(dice: &mut Dice, depth: f64, size: f64) -> DepthGrid {
     }
 }
 
-/// A height [m] at or above the bed at a place [m].
-pub fn bed_height(bed: &Seabed, [x, y]: [f64; 2]) -> f64 {
-    if let Some(grid) = &bed.grid {
+/// A height [m] at or above the seabed at a place [m].
+pub fn seabed_height(seabed: &Seabed, [x, y]: [f64; 2]) -> f64 {
+    if let Some(grid) = &seabed.grid {
         let depths = grid.depth.iter().flatten();
         return -depths.fold(f64::INFINITY, |least: f64, depth| least.min(*depth));
     }
-    let [along_x, along_y] = bed.slope.unwrap_or_default();
-    along_x * x + along_y * y - bed.depth
+    let [along_x, along_y] = seabed.slope.unwrap_or_default();
+    along_x * x + along_y * y - seabed.depth
 }

@@ -178,15 +178,15 @@ fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
 #[test]
 fn soundings_above_the_water_are_refused_by_file_and_place() {
     let folder = tempdir().unwrap();
-    let text = SCENE.replace("depth = 50.0", "depth = 50.0\nfile = \"bed.csv\"");
+    let text = SCENE.replace("depth = 50.0", "depth = 50.0\nfile = \"seabed.csv\"");
     fs::write(folder.path().join("scene.toml"), text).unwrap();
     let load = |soundings: &str| {
-        fs::write(folder.path().join("bed.csv"), soundings).unwrap();
+        fs::write(folder.path().join("seabed.csv"), soundings).unwrap();
         load(&folder.path().join("scene.toml"))
     };
     let error = load("y/x, 0, 200\n0, -50, -60\n").unwrap_err().list();
     let said = "scene.toml:9:8: seabed.file: ";
-    let place = "bed.csv: the depth at x = 0 m, y = 0 m is -50 m, above the water: depths count downwards";
+    let place = "seabed.csv: the depth at x = 0 m, y = 0 m is -50 m, above the water: depths count downwards";
     assert_says(&error, &[said, place]);
     assert!(load("y/x, 0, 200\n0, 50, 60\n").is_ok());
 }

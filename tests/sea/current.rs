@@ -318,8 +318,8 @@ fn a_quasi_static_line_in_a_current_is_in_the_equilibrium_of_its_elements() {
 }
 
 /// A line between two points, slack to taut, on a seabed where there is one.
-fn span(ratio: f64, weight: f64, bed: bool, velocity: [f64; 3]) -> Draft {
-    let seabed = if bed { "seabed = { depth = 80.0 }" } else { "" };
+fn span(ratio: f64, weight: f64, seabed: bool, velocity: [f64; 3]) -> Draft {
+    let seabed = if seabed { "seabed = { depth = 80.0 }" } else { "" };
     draft(format!(
         "water = {{ density = 1025.0, current = {{ velocity = {velocity:?} }} }}
         {seabed}
@@ -347,10 +347,10 @@ fn lines_of_every_kind_find_rest_in_every_current() {
     let velocities: Vec<[f64; 3]> = velocities.collect();
     for ratio in [0.6, 0.85, 0.97, 0.999, 1.01] {
         for weight in [800.0, 60.0, 2.0, 0.0, -50.0] {
-            for (velocity, bed) in velocities.iter().flat_map(|v| [(*v, true), (*v, false)]) {
-                let scene = span(ratio, weight, bed, velocity).scene();
+            for (velocity, seabed) in velocities.iter().flat_map(|v| [(*v, true), (*v, false)]) {
+                let scene = span(ratio, weight, seabed, velocity).scene();
                 if let Err(error) = moorline::simulation::Simulation::new(&scene) {
-                    failures.push(format!("{:?}: {error}", (ratio, weight, bed, velocity)));
+                    failures.push(format!("{:?}: {error}", (ratio, weight, seabed, velocity)));
                 }
             }
         }

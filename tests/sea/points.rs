@@ -12,10 +12,10 @@ use moorline::simulation::Simulation;
 ///      ● top              thread: 200 m in 4 elements, no diameter
 ///     / \
 ///     \  ● body at `z`    mass, volume, CdA, Ca
-fn on_a_thread(z: f64, body: &str, bed: &str) -> Scene {
+fn on_a_thread(z: f64, body: &str, seabed: &str) -> Scene {
     draft(format!(
         "water.density = {RHO}
-        {bed}
+        {seabed}
         line_types.thread = {{ mass = 1e-3, weight = 0.0, diameter = 1e-6, axial_stiffness = 100.0 }}"
     ))
     .fixed("top", [0.0, 0.0, z + 40.0])
@@ -115,11 +115,11 @@ fn a_buoy_dropped_on_the_water_settles_at_its_draught() {
 }
 
 #[test]
-fn a_clump_that_lands_rests_on_the_bed() {
-    let bed = "seabed = { depth = 60.0, stiffness = 1e6, damping = 1e5 }";
+fn a_clump_that_lands_rests_on_the_seabed() {
+    let seabed = "seabed = { depth = 60.0, stiffness = 1e6, damping = 1e5 }";
     let body = "mass = 500.0, volume = 0.1, drag_area = 0.3, added_mass = 0.5";
     for integrator in JOINED {
-        let scene = with_integrator(on_a_thread(-58.0, body, bed), integrator, 0.01);
+        let scene = with_integrator(on_a_thread(-58.0, body, seabed), integrator, 0.01);
         let (z, _) = heights(&scene, 0.1, 200);
         assert!((z[200] + 60.0).abs() < 1e-4, "{}", z[200]);
     }

@@ -16,9 +16,9 @@ const ALL: [Integrator; 4] = [
 ];
 
 /// A block of 1 t on a seabed, tied to a slack thread of 1 g/m that weighs nothing.
-fn block(bed: &str, force: &str) -> Scene {
+fn block(seabed: &str, force: &str) -> Scene {
     draft(format!(
-        "seabed = {{ depth = 50.0, {bed} }}
+        "seabed = {{ depth = 50.0, {seabed} }}
         line_types.thread = {{ mass = 1e-3, weight = 0.0, diameter = 1e-6, axial_stiffness = 100.0 }}"
     ))
     .fixed("top", [0.0, 0.0, -10.0])
@@ -34,9 +34,9 @@ fn block(bed: &str, force: &str) -> Scene {
 fn a_block_on_a_slope_slides_as_the_closed_form_says_above_the_friction_angle() {
     let (slope, mu) = (0.5_f64, 0.2);
     let (sin, cos) = (slope / slope.hypot(1.0), 1.0 / slope.hypot(1.0));
-    let bed = format!("slope = [0.0, {slope}], friction = {mu}");
+    let seabed = format!("slope = [0.0, {slope}], friction = {mu}");
     for integrator in JOINED {
-        let mut simulation = start(&with_integrator(block(&bed, ""), integrator, 0.002));
+        let mut simulation = start(&with_integrator(block(&seabed, ""), integrator, 0.002));
         let [start, middle, end] = [(); 3].map(|()| {
             run(&mut simulation, 0.1, 10);
             place(&simulation, "block")
@@ -83,10 +83,10 @@ fn a_block_that_is_pushed_below_the_limit_stays_and_above_it_goes() {
 }
 
 /// A chain of 1065 N/m from an anchor on the seabed, in water of 100 m.
-fn chain(bed: &str, span: f64, elements: usize) -> Scene {
+fn chain(seabed: &str, span: f64, elements: usize) -> Scene {
     draft(format!(
         "water.density = 1025.0
-        seabed = {{ depth = 100.0, {bed} }}
+        seabed = {{ depth = 100.0, {seabed} }}
         line_types.chain = {{ mass = 113.35, diameter = 0.0766, axial_stiffness = 753.6e6, axial_damping = 2.0e6, drag_normal = 2.0,
           drag_tangential = 0.4, added_mass_normal = 0.8, added_mass_tangential = 0.25 }}"
     ))
@@ -97,8 +97,8 @@ fn chain(bed: &str, span: f64, elements: usize) -> Scene {
 }
 
 #[test]
-fn tension_falls_by_mu_w_along_the_bed_and_there_is_none_beyond() {
-    // on a seabed that gives way by millimetres the nodes lie at one height, but for those beside the touchdown, which are pressed in turns
+fn tension_falls_by_mu_w_along_the_seabed_and_there_is_none_beyond() {
+    // on a seabed that gives way by millimetres the nodes lie at one height, except next to the touchdown, which are pressed in turns
     let simulation = start(&chain("friction = 0.5, contact = \"as_given\"", 560.0, 60));
     let (w, l) = (simulation.model().lines[0].sections[0].weight, 10.0);
     let nodes = nodes(&simulation);
@@ -125,9 +125,9 @@ fn segment(simulation: &Simulation, i: usize) -> f64 {
 fn statics_with_friction_tends_to_the_closed_form_with_order_2() {
     // a seabed that does not yield, as in the closed form; the nodes that land one by one make the errors scatter
     for (mu, span) in [(0.5, 560.0), (1.0, 575.0), (0.05, 580.0)] {
-        let bed = format!("friction = {mu}, contact = \"as_given\", stiffness = 3.0e8");
+        let seabed = format!("friction = {mu}, contact = \"as_given\", stiffness = 3.0e8");
         let [coarse, fine] = [40, 640].map(|count| {
-            let simulation = start(&chain(&bed, span, count));
+            let simulation = start(&chain(&seabed, span, count));
             (simulation.tension_b(0) / simulation.catenary(0).unwrap().tension_b() - 1.0).abs()
         });
         println!("mu {mu}, span {span}: {coarse:e} with 40 elements, {fine:e} with 640");
@@ -137,19 +137,19 @@ fn statics_with_friction_tends_to_the_closed_form_with_order_2() {
 
 #[test]
 fn a_line_with_friction_starts_at_rest_and_stays_there_for_600_s() {
-    let beds = [
+    let seabeds = [
         "friction = 0.5",
         "friction = { transverse = 0.7, axial = 0.3 }, slope = [0.02, 0.03]",
     ];
-    for (integrator, bed) in ALL
+    for (integrator, seabed) in ALL
         .into_iter()
-        .flat_map(|integrator| beds.map(|bed| (integrator, bed)))
+        .flat_map(|integrator| seabeds.map(|seabed| (integrator, seabed)))
     {
-        let mut scene = with_integrator(chain(bed, 560.0, 30), integrator, 0.05);
+        let mut scene = with_integrator(chain(seabed, 560.0, 30), integrator, 0.05);
         scene.points[1].position[1] = 30.0;
         let drift = drift(&mut start(&scene), 0.5, 1200);
-        println!("{integrator:?}, {bed}: drift {drift:e} m");
-        assert!(drift < 1e-9 * 600.0, "{integrator:?}, {bed}: {drift:e} m");
+        println!("{integrator:?}, {seabed}: drift {drift:e} m");
+        assert!(drift < 1e-9 * 600.0, "{integrator:?}, {seabed}: {drift:e} m");
     }
 }
 
@@ -204,17 +204,17 @@ fn a_line_dragged_across_itself_resists_with_the_transverse_coefficient() {
         let forces = [End::A, End::B].map(|end| simulation.line_end_force(0, end));
         let pulled = -(forces[0].y + forces[1].y);
         println!("{integrator:?}: {pulled} N of {} N", 0.8 * 100.0 * G * 95.0);
-        // the ends, held on the bed by a tension of 200 kN, carry part of the weight: half as much where a line rests half as deep
+        // the ends, held on the seabed by a tension of 200 kN, carry part of the weight: half as much where a line rests half as deep
         assert_relative_eq!(pulled, 0.8 * 100.0 * G * 95.0, max_relative = 0.025);
     }
 }
 
 #[test]
-fn the_energy_balance_closes_over_a_bed_with_slope_and_friction() {
+fn the_energy_balance_closes_over_a_seabed_with_slope_and_friction() {
     for integrator in ALL {
-        let bed = "friction = { transverse = 0.8, axial = 0.3 }, slope = [0.05, -0.1]";
+        let seabed = "friction = { transverse = 0.8, axial = 0.3 }, slope = [0.05, -0.1]";
         let mut simulation = start(&balanced(with_integrator(
-            chain(bed, 560.0, 30),
+            chain(seabed, 560.0, 30),
             integrator,
             0.005,
         )));
@@ -258,10 +258,10 @@ fn turning_slope_line_and_motion_about_the_vertical_changes_no_tension() {
     let (sin, cos) = 0.7_f64.sin_cos();
     let turned = |[x, y]: [f64; 2]| [x * cos - y * sin, x * sin + y * cos];
     for integrator in INTEGRATORS {
-        let bed =
+        let seabed =
             |slope: [f64; 2]| format!("friction = {{ transverse = 0.7, axial = 0.4 }}, slope = {slope:?}");
-        let here = chain(&bed([0.04, 0.05]), 560.0, 20);
-        let mut there = chain(&bed(turned([0.04, 0.05])), 560.0, 20);
+        let here = chain(&seabed([0.04, 0.05]), 560.0, 20);
+        let mut there = chain(&seabed(turned([0.04, 0.05])), 560.0, 20);
         (there.points[1].position[0], there.points[1].position[1]) = (560.0 * cos, 560.0 * sin);
         let (expected, _) = swung(here, integrator, 0.02, [0.6, 0.8], 200);
         let (image, _) = swung(there, integrator, 0.02, turned([0.6, 0.8]), 200);
@@ -283,18 +283,18 @@ fn soundings_of_a_plane_are_that_plane() {
     for integrator in JOINED {
         let plane = "slope = [0.03, -0.02], friction = 0.4";
         let grid = soundings(|x, y| 100.0 - 0.03 * x + 0.02 * y) + ", friction = 0.4";
-        let [(on_plane, _), (on_grid, _)] =
-            [plane, grid.as_str()].map(|bed| swung(chain(bed, 560.0, 20), integrator, 0.02, [0.6, 0.8], 100));
+        let [(on_plane, _), (on_grid, _)] = [plane, grid.as_str()]
+            .map(|seabed| swung(chain(seabed, 560.0, 20), integrator, 0.02, [0.6, 0.8], 100));
         assert_alike(&on_plane, &on_grid, 1e-8);
     }
 }
 
-/// The depth that stands beside soundings is that for waves.
+/// The depth that is given with soundings is that for waves.
 #[test]
 fn the_mesh_of_a_cable_over_soundings_follows_them_and_not_the_depth() {
-    let lengths = |bed: &str| {
+    let lengths = |seabed: &str| {
         let scene = draft(format!(
-            "seabed = {{ {bed} }}
+            "seabed = {{ {seabed} }}
             line_types.cable = {{ mass = 100.0, weight = 800.0, diameter = 0.1, axial_stiffness = 5e8, bending_stiffness = 1e6 }}"
         ))
         .fixed("anchor", [600.0, 0.0, -100.0])
@@ -316,10 +316,10 @@ fn the_mesh_of_a_cable_over_soundings_follows_them_and_not_the_depth() {
 }
 
 #[test]
-fn a_slope_of_zero_is_the_level_bed() {
+fn a_slope_of_zero_is_the_level_seabed() {
     for integrator in INTEGRATORS {
         let [(level, _), (slope, _)] = ["friction = 0.0", "friction = 0.0, slope = [1e-300, 0.0]"]
-            .map(|bed| swung(chain(bed, 560.0, 20), integrator, 0.02, [1.0, 0.0], 300));
+            .map(|seabed| swung(chain(seabed, 560.0, 20), integrator, 0.02, [1.0, 0.0], 300));
         assert_alike(&level, &slope, 1e-6);
     }
 }
@@ -349,8 +349,8 @@ fn friction_of_next_to_nothing_leaves_a_line_where_it_rests_without() {
 fn a_line_over_a_ridge_rests_on_it_and_stays() {
     let ridge = soundings(|x, _| 100.0 - 25.0 * (-((x - 240.0) / 60.0).powi(2)).exp());
     for integrator in ALL {
-        let bed = format!("{ridge}, friction = 0.6, contact = \"as_given\"");
-        let mut simulation = start(&with_integrator(chain(&bed, 580.0, 60), integrator, 0.05));
+        let seabed = format!("{ridge}, friction = 0.6, contact = \"as_given\"");
+        let mut simulation = start(&with_integrator(chain(&seabed, 580.0, 60), integrator, 0.05));
         let over = nodes(&simulation).iter().find(|r| r.x > 238.0).unwrap();
         assert!((over.z + 75.5).abs() < 0.2, "{over:?}");
         let moved = drift(&mut simulation, 0.5, 120);
@@ -359,12 +359,12 @@ fn a_line_over_a_ridge_rests_on_it_and_stays() {
 }
 
 #[test]
-fn a_hundred_times_stiffer_bed_takes_the_same_steps() {
-    for bed in ["friction = 0.5", "slope = [0.02, 0.0]"] {
+fn a_hundred_times_stiffer_seabed_takes_the_same_steps() {
+    for seabed in ["friction = 0.5", "slope = [0.02, 0.0]"] {
         for integrator in [Integrator::Leapfrog, Integrator::AxialImplicit] {
             let [(soft, few), (stiff, many)] = [1.0, 100.0].map(|factor| {
                 let law = format!("stiffness = {:e}, damping = {:e}", 3.0e6 * factor, 3.0e5 * factor);
-                let scene = chain(&format!("{bed}, {law}, contact = \"as_given\""), 560.0, 20);
+                let scene = chain(&format!("{seabed}, {law}, contact = \"as_given\""), 560.0, 20);
                 swung(scene, integrator, 0.05, [1.0, 0.0], 120)
             });
             assert_eq!(few, many);
@@ -375,10 +375,10 @@ fn a_hundred_times_stiffer_bed_takes_the_same_steps() {
 
 #[test]
 fn friction_asks_for_hardly_more_than_one_pass_of_the_axial_implicit_leapfrog() {
-    for bed in [Some([0.0; 2]), Some([0.01; 2])] {
+    for slope in [Some([0.0; 2]), Some([0.01; 2])] {
         let mut scene = with_integrator(shipped("oc3_catenary"), Integrator::AxialImplicit, 0.0125);
         let seabed = scene.seabed.as_mut().unwrap();
-        (seabed.slope, seabed.friction) = (bed, Friction::isotropic(0.5));
+        (seabed.slope, seabed.friction) = (slope, Friction::isotropic(0.5));
         let mut simulation = following(&scene);
         let (mut steps, mut passes) = (0, 0);
         for _ in 0..400 {
@@ -388,16 +388,16 @@ fn friction_asks_for_hardly_more_than_one_pass_of_the_axial_implicit_leapfrog() 
         }
         assert!(
             steps <= 1600 && passes * 10 <= 12 * steps,
-            "{bed:?}: {passes} passes in {steps} steps"
+            "{slope:?}: {passes} passes in {steps} steps"
         );
     }
 }
 
 #[test]
 fn all_integrators_agree_on_a_line_that_is_swung_over_a_rough_slope() {
-    let bed = "friction = { transverse = 0.7, axial = 0.4 }, slope = [0.03, 0.05]";
+    let seabed = "friction = { transverse = 0.7, axial = 0.4 }, slope = [0.03, 0.05]";
     let peaks = ALL.map(|integrator| {
-        let (tension, _) = swung(chain(bed, 565.0, 40), integrator, 0.01, [0.8, 0.6], 240);
+        let (tension, _) = swung(chain(seabed, 565.0, 40), integrator, 0.01, [0.8, 0.6], 240);
         let tail = &tension[120..];
         let (peak, mean) = (
             greatest(tail.iter().copied()),
@@ -448,10 +448,10 @@ fn a_vessel_is_held_by_nodes_that_stick_and_released_by_nodes_that_slide() {
 }
 
 #[test]
-fn a_point_under_a_bed_that_is_not_level_is_noted() {
+fn a_point_under_a_seabed_that_is_not_level_is_noted() {
     let grid = "grid = { x = [-100.0, 900.0], y = [0.0], depth = [[95.0, 90.0]] }";
-    for bed in [grid, "slope = [0.01, 0.0]"] {
-        let mut scene = chain(bed, 560.0, 20);
+    for seabed in [grid, "slope = [0.01, 0.0]"] {
+        let mut scene = chain(seabed, 560.0, 20);
         scene.points[0].position = [10.0, 0.0, -100.0];
         let notes: Vec<String> = scene.notes().iter().map(ToString::to_string).collect();
         assert!(
@@ -462,7 +462,7 @@ fn a_point_under_a_bed_that_is_not_level_is_noted() {
 }
 
 #[test]
-fn a_line_that_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
+fn a_line_that_hangs_from_a_softened_seabed_pulls_as_over_a_rigid_one() {
     // at 20 elements the length of an element itself decides, where the line leaves the seabed
     for (elements, bar) in [(20, 2.5e-3), (40, 2.5e-4), (80, 5e-5)] {
         for (name, shift) in ["oc3_catenary", "oc4_chain"]
@@ -486,7 +486,7 @@ fn a_line_that_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
 }
 
 #[test]
-fn an_end_that_is_released_comes_to_rest_on_a_bed_with_friction() {
+fn an_end_that_is_released_comes_to_rest_on_a_seabed_with_friction() {
     for integrator in ALL {
         let chain = draft(
             "water.density = 1025.0

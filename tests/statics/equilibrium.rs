@@ -223,18 +223,18 @@ fn the_collar_tends_to_the_inextensible_catenary_at_second_order_and_extrapolate
 /// A line of 12 elements with a seabed below, in one piece or in two that meet in a free point.
 fn piece_or_pieces(split: bool, reversed: bool) -> Model {
     let ends = |a: &'static str, b: &'static str| if reversed { [b, a] } else { [a, b] };
-    let bed = draft(
+    let seabed = draft(
         "seabed = { depth = 3.0, stiffness = 2.0e5, contact = 'as_given' }
         line_types.cable = { mass = 30.0, diameter = 0.05, axial_stiffness = 1.0e6 }",
     )
     .fixed("a", [0.0, 0.0, -3.0])
     .fixed("b", [10.0, 0.0, 0.0]);
     let lines = match split {
-        true => bed
+        true => seabed
             .free("joint", [5.0, 0.0, -2.0])
             .line("upper", ends("joint", "b"), "cable", 4.0, 4)
             .line("lower", ends("a", "joint"), "cable", 8.0, 8),
-        false => bed.line("whole", ends("a", "b"), "cable", 12.0, 12),
+        false => seabed.line("whole", ends("a", "b"), "cable", 12.0, 12),
     };
     lines.model()
 }
@@ -338,10 +338,10 @@ fn random_line(seed: &mut u64, class: usize) -> Model {
     let (weight, ea) = (sign * 10f64.powf(5.0 * u() - 1.0), 10f64.powf(4.0 + 9.0 * u()));
     let contact = if u() < 0.5 { "regularised" } else { "as_given" };
     let depth = -z.min(0.0) + if u() < 0.5 { 0.0 } else { 0.2 * length * u() };
-    let bed = class
+    let seabed = class
         .is_multiple_of(2)
         .then(|| format!("depth = {depth:e}, contact = '{contact}'"));
-    cable(weight, ea, bed)
+    cable(weight, ea, seabed)
         .fixed("a", [0.0; 3])
         .fixed("b", [x, 0.0, z])
         .line("cable", ["a", "b"], "cable", length, (2.0 + 60.0 * u()) as usize)

@@ -20,7 +20,7 @@ use moorline::elements::{Workspace, end_force};
 use moorline::math::random::Random;
 use moorline::model::{End, Model};
 use moorline::scene::Scene;
-use moorline::statics::catenary::{self, Bed, Section};
+use moorline::statics::catenary::{self, FlatSeabed, Section};
 use moorline::statics::equilibrium::solve;
 
 /// Density of water [kg/m³].
@@ -142,12 +142,12 @@ impl Line {
             weight: self.weight(),
             axial_stiffness,
         };
-        let bed = Bed {
+        let seabed = FlatSeabed {
             height: 0.0,
             friction: self.friction,
         };
         let rise = 0.95 * self.depth + higher;
-        let solved = catenary::solve(&[section], self.span, rise, Some(bed)).unwrap();
+        let solved = catenary::solve(&[section], self.span, rise, Some(seabed)).unwrap();
         [solved.tension_b(), solved.horizontal()]
     }
 
@@ -187,7 +187,7 @@ impl Line {
         let solves = work.take_counters().solves;
         let force = end_force(&model, &state, 0, End::B, &mut work).norm();
         let line = &model.lines[0];
-        let stiffness = line.nodes.contact.iter().flat_map(|bed| &bed.stiffness);
+        let stiffness = line.nodes.contact.iter().flat_map(|seabed| &seabed.stiffness);
         let depths = line.nodes.weight.iter().zip(stiffness);
         let mesh = [
             greatest(line.segments.length.iter().copied()),

@@ -6,7 +6,7 @@ use moorline::elements::Workspace;
 use moorline::model::{Body, End, Model, Section as ModelSection, State};
 use moorline::scene::{Reconstruction, Scene, Strain};
 use moorline::simulation::Simulation;
-use moorline::statics::catenary::{self, Bed, Catenary, Section};
+use moorline::statics::catenary::{self, Catenary, FlatSeabed, Section};
 use moorline::statics::{catenary_network, equilibrium};
 use nalgebra::Vector3;
 
@@ -112,7 +112,7 @@ fn a_saved_quasi_static_simulation_replays_bit_for_bit() {
 // ------------------------------------------------------------------ lines on the seabed
 
 /// Quasi-static lines of chain and rope over a seabed with a friction [-].
-fn over_bed(friction: f64) -> Draft {
+fn over_seabed(friction: f64) -> Draft {
     draft(format!(
         "seabed = {{ depth = 50.0, stiffness = 3.0e6, friction = {friction} }}
         line_types.chain = {{ mass = 80.0, diameter = 0.08, axial_stiffness = 4.0e8 }}
@@ -125,7 +125,7 @@ fn over_bed(friction: f64) -> Draft {
 /// A chain with a rope above it, from an anchor on the seabed to a coupled point.
 fn moored() -> Scene {
     let sections = [("chain", 150.0, Some(30)), ("rope", 60.0, Some(12))];
-    let fairlead = over_bed(0.6).coupled("fairlead", [190.0, 30.0, -5.0]);
+    let fairlead = over_seabed(0.6).coupled("fairlead", [190.0, 30.0, -5.0]);
     fairlead
         .sections("mooring", ["anchor", "fairlead"], &sections)
         .scene()
@@ -145,15 +145,15 @@ fn closed_form(model: &Model, state: &State) -> Catenary {
         axial_stiffness,
     };
     let sections: Vec<Section> = line.sections.iter().map(section).collect();
-    let bed = Bed {
+    let seabed = FlatSeabed {
         height: -50.0 - a.z,
-        friction: model.bed_friction,
+        friction: model.seabed_friction,
     };
-    catenary::solve(&sections, (b - a).xy().norm(), b.z - a.z, Some(bed)).unwrap()
+    catenary::solve(&sections, (b - a).xy().norm(), b.z - a.z, Some(seabed)).unwrap()
 }
 
 #[test]
-fn a_line_on_a_bed_with_friction_is_its_catenary_at_every_step_and_costs_one_solve() {
+fn a_line_on_a_seabed_with_friction_is_its_catenary_at_every_step_and_costs_one_solve() {
     let mut simulation = start(&moored());
     for step in 0..=40 {
         if step > 0 {
@@ -193,7 +193,7 @@ fn a_line_on_a_bed_with_friction_is_its_catenary_at_every_step_and_costs_one_sol
 }
 
 #[test]
-fn a_line_with_an_end_under_the_bed_rests_on_its_elements() {
+fn a_line_with_an_end_under_the_seabed_rests_on_its_elements() {
     let mut simulation = start(&moored());
     assert!(simulation.state().lines[0].closed_form.is_some());
     simulation.set_displacement(1, [-2.0, 0.0, -45.1]);
@@ -282,7 +282,7 @@ fn the_assembled_equilibrium_of_a_bridle_tends_to_the_catenaries_at_second_order
 #[test]
 fn a_line_split_at_a_free_point_hangs_as_the_whole_one() {
     // weak enough that tension is left at the joint: where there is none, friction holds it anywhere in a range
-    let ends = over_bed(0.05).coupled("fairlead", [190.0, 30.0, -5.0]);
+    let ends = over_seabed(0.05).coupled("fairlead", [190.0, 30.0, -5.0]);
     // joined in the air, where it touches down, and on the seabed
     for first in [180.0, 120.0, 60.0, 20.0] {
         let parts = [("chain", first, Some(10)), ("chain", 210.0 - first, Some(20))];
@@ -310,8 +310,8 @@ fn a_line_split_at_a_free_point_hangs_as_the_whole_one() {
 }
 
 #[test]
-fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
-    let mut simulation = over_bed(0.6)
+fn a_heavy_free_point_rests_on_the_seabed_and_is_lifted_by_a_load() {
+    let mut simulation = over_seabed(0.6)
         .free("clump", [120.0, 0.0, -48.0])
         .with("mass = 5000.0, force = { z = { step = [0.0, 0.0, 10.0, 2.0e5] } }")
         .fixed("fairlead", [190.0, 0.0, -5.0])
@@ -336,7 +336,7 @@ fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
     assert!(count > 5 && lifted > -45.0, "{count} {lifted}");
 }
 
-/// Two knots, sinking or floating, over a bed: each tied to an anchor, to a point above and to the other, slack to taut, in water.
+/// Two knots, sinking or floating, over a seabed: each tied to an anchor, to a point above and to the other, slack to taut, in water.
 fn tangle(seed: &mut u64) -> Simulation {
     let mut tangle = draft(
         "seabed = { depth = 30.0, stiffness = 1.0e6 }\nwater.density = 1025.0\nsolver.integrator = 'quasi_static'",

@@ -175,7 +175,7 @@ fn the_stiffness_of_elements_is_the_slope_of_their_force() {
     let smooth = Deck { friction: 0.0, ..OC3 };
     assert_is_slope(&smooth.scene(20, ""), 1e-4, 1e-5);
     assert_is_slope(&bridle(""), 1e-4, 1e-5);
-    // Every equilibrium lays the lines again on a bed with friction, whose nodes the stiffness holds in place:
+    // Every equilibrium lays the lines again on a seabed with friction, whose nodes the stiffness holds in place:
     // 1.9e-4.
     assert_is_slope(&OC3.scene(20, ""), 1e-4, 1e-3);
 }
@@ -335,7 +335,7 @@ fn elements_converge_to_the_stiffness_of_the_closed_form() {
         let [closed, solved] = [closed, simulation.vessel_stiffness(0)].map(|k| matrix(k.unwrap()));
         difference(&solved, &closed)
     });
-    // not evenly: the node at the touchdown is on the bed or off it
+    // not evenly: the node at the touchdown is on the seabed or off it
     assert!(
         errors[0] < 0.08 && errors[1] < 0.015 && errors[2] < 0.001,
         "{errors:?}"

@@ -65,8 +65,8 @@ fn drag(scene: &Scene, kind: &LineType, length: f64, t: Vector3<f64>, z: f64) ->
         + PI * kind.drag_tangential.unwrap_or(0.0) * along.norm() * along)
 }
 
-/// Weight, buoyancy, drag of the current and push of the bed on every node of a line [N], end nodes with their half of a segment, and
-/// the tensions of its segments [N]. The springs of the bed are those of the model.
+/// Weight, buoyancy, drag of the current and push of the seabed on every node of a line [N], end nodes with their half of a segment, and
+/// the tensions of its segments [N]. The springs of the seabed are those of the model.
 fn loads(
     scene: &Scene,
     number: usize,

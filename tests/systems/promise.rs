@@ -28,7 +28,7 @@ const AXIAL_IMPLICIT_COST: f64 = 3.0;
 /// A scene, by name.
 type Case = (&'static str, Scene);
 
-/// Limits of the promise: on a chain that slackens in every period and lies on the bed for half of its length the RMS
+/// Limits of the promise: on a chain that slackens in every period and lies on the seabed for half of its length the RMS
 /// error of the raw tension falls as slowly as 1/n, and 400 elements, the most that are chosen, leave more than 0.5
 /// %. Listed are scene, tolerance, and the bound that is kept instead; the low-passed tension keeps the tolerance.
 const ROUGH: [(&str, f64, f64); 1] = [("shallow", 0.005, 0.009)];

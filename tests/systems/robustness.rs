@@ -7,9 +7,9 @@ use moorline::scene::{Integrator, MotionPath, Scene};
 type Change = fn(&mut Scene);
 
 fn scale_seabed(scene: &mut Scene) {
-    if let Some(bed) = &mut scene.seabed {
-        bed.stiffness *= 100.0;
-        bed.damping *= 100.0;
+    if let Some(seabed) = &mut scene.seabed {
+        seabed.stiffness *= 100.0;
+        seabed.damping *= 100.0;
     }
 }
 

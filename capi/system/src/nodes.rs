@@ -68,7 +68,7 @@ impl<'a> View<'a> {
         size * chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
 
-    /// Tension of a node [N]: of the segment at an end, else the mean of the two beside it.
+    /// Tension of a node [N]: of the segment at an end, else the mean of the two next to it.
     fn tension(&self, node: usize) -> Vector3<f64> {
         match node {
             0 => self.pull(0),

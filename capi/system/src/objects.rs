@@ -285,7 +285,7 @@ pub(crate) fn node_mass(
     Slender::new(masses).matrix(tangent(data, &shape.position, node))
 }
 
-/// Unit tangent of a line at a node [-]: the mean of the directions of the segments beside it.
+/// Unit tangent of a line at a node [-]: the mean of the directions of the segments next to it.
 pub(crate) fn tangent(line: &Line, position: &[Vector3<f64>], node: usize) -> Vector3<f64> {
     let direction = |segment: usize| {
         let chord = position[segment + 1] - position[segment];

@@ -22,7 +22,7 @@ const CLOCK_TOLERANCE: f64 = 1e-6;
 /// Words of remarks of the reader that do not hold behind this interface, which has MoorDyn's laws and files of single lines.
 const OVERRULED: [&str; 2] = ["negative_tension", "no files of single lines"];
 
-/// All that determines the simulation before its first step, beside the scene of the deck.
+/// All that determines the simulation before its first step, in addition to the scene of the deck.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Coupled positions [m] and angles [rad].
@@ -292,7 +292,7 @@ impl System {
         Ok(())
     }
 
-    /// Hands the motion over a step [s] to the simulation, as its paths want it.
+    /// Passes the motion over a step [s] to the simulation, in the form that its paths need.
     fn set_motion(&mut self, x: &[f64], xd: &[f64], dt: f64) {
         let Some(simulation) = &mut self.simulation else {
             return;

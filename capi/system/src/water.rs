@@ -61,9 +61,9 @@ impl System {
         if !x.is_finite() || !y.is_finite() {
             return Err(Failure::value("a place is not finite"));
         }
-        match (&model.bottom, model.bed) {
-            (Some(bottom), _) if !bottom.level => Ok(-bottom.ground.height(x, y)),
-            (_, Some(bed)) => Ok(-bed),
+        match (&model.seabed, model.seabed_level) {
+            (Some(seabed), _) if !seabed.level => Ok(-seabed.ground.height(x, y)),
+            (_, Some(seabed)) => Ok(-seabed),
             (_, None) => Err(Failure::value("the deck has no seabed")),
         }
     }

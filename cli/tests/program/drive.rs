@@ -9,7 +9,7 @@ fn driven(deck: &str, motion: &str) -> Folder {
     folder_with(&[("deck.txt", deck), ("motion.csv", motion)])
 }
 
-/// Columns of the results of a run of `deck`, with a motion file beside it and further arguments.
+/// Columns of the results of a run of `deck`, with a motion file next to it and further arguments.
 fn run(deck: &str, motion: &str, arguments: &str) -> BTreeMap<String, Vec<f64>> {
     driven(deck, motion).columns(&format!("run deck.txt -o out {arguments}"))
 }

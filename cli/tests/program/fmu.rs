@@ -16,7 +16,7 @@ fn an_fmu_that_cannot_be_placed_is_refused() {
     assert_eq!(folder.names(), ["scene.toml"]);
 }
 
-/// Puts the FMU library that Cargo built for this test program beside the program under test, once.
+/// Puts the FMU library that Cargo built for this test program next to the program under test, once.
 fn place_library() {
     static PLACED: std::sync::Once = std::sync::Once::new();
     PLACED.call_once(|| {

@@ -40,10 +40,10 @@ fn a_study_is_written_to_its_end_whatever_becomes_of_standard_output() {
 }
 
 #[test]
-fn a_study_of_a_scene_without_title_or_bed_speaks_of_neither() {
+fn a_study_of_a_scene_without_title_or_seabed_speaks_of_neither() {
     let text = short_study().done("accuracy short.toml -o out");
     assert_says(&text, &["\nshort\nconverged solution"]);
-    assert!(!text.contains("bed"), "{text}");
+    assert!(!text.contains("seabed"), "{text}");
 }
 
 #[test]

@@ -145,7 +145,7 @@ fn seabed(deck: &Deck, draft: &mut Draft<'_>) {
         Some(flag) if omitting.len() < deck.lines.len() => draft.findings.wrong(
             "LINE PROPERTIES, flags",
             flag,
-            "some lines that meet the bed and some that do not are not modelled: flag all of them, or none",
+            "some lines that meet the seabed and some that do not are not modelled: flag all of them, or none",
         ),
         Some(_) => {}
         None => {
@@ -168,7 +168,7 @@ fn friction(deck: &Deck, draft: &mut Draft<'_>) -> f64 {
     };
     if let Some(other) = types.find(|kind| kind.friction.value != first.friction.value) {
         let problem = format!(
-            "friction {} here and {} on {}: the bed has one coefficient, write the same CB for all",
+            "friction {} here and {} on {}: the seabed has one coefficient, write the same CB for all",
             other.friction.value, first.friction.value, first.name.value
         );
         draft

@@ -31,7 +31,7 @@ pub(super) struct LineType {
     pub mass: Placed<f64>,
     /// EA [N].
     pub stiffness: Placed<f64>,
-    /// CB, friction on the bed [-].
+    /// CB, friction on the seabed [-].
     pub friction: Placed<f64>,
 }
 

@@ -4,7 +4,7 @@
 //! host: nothing in a file speaks of damping, drag or added mass that MAP++ would use.
 //!
 //! Rules: a header is a line that holds `---`; two lines below it are never read; a number may be preceded by `#` (found by
-//! iteration); `depth` stands for the bed's z; options are `key value …`, and a line of options that begins with a blank is
+//! iteration); `depth` stands for the seabed's z; options are `key value …`, and a line of options that begins with a blank is
 //! a comment. Source: the MAP++ documentation, "Input File".
 
 mod build;

@@ -221,8 +221,8 @@ fn surroundings(deck: &Deck, draft: &mut Draft<'_>) {
     };
     let gravity = option("gravity", Meaning::Gravity, "g");
     let density = option("water.density", Meaning::Density, "rho");
-    let stiffness = option("seabed.stiffness", Meaning::BedStiffness, "kBot");
-    let damping = option("seabed.damping", Meaning::BedDamping, "cBot");
+    let stiffness = option("seabed.stiffness", Meaning::SeabedStiffness, "kBot");
+    let damping = option("seabed.damping", Meaning::SeabedDamping, "cBot");
     draft.scene.gravity = gravity.unwrap_or(draft.scene.gravity);
     let mut water = Water::still(density.unwrap_or(SEA_WATER));
     moving_water(deck, &mut water, draft);

@@ -203,9 +203,9 @@ pub(super) struct Options {
     pub numbers: BTreeMap<Meaning, Placed<f64>>,
     /// WtrDpth [m].
     pub depth: Option<Placed<Property>>,
-    /// Friction coefficients of the bed [-], with their keys.
+    /// Friction coefficients of the seabed [-], with their keys.
     pub friction: Vec<(String, Placed<f64>)>,
-    /// File of the bed's depths.
+    /// File of the seabed's depths.
     pub soundings: Option<Placed<String>>,
     /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
     pub starts_at_once: Option<Placed<String>>,

@@ -17,8 +17,8 @@ const NEEDED: [(Meaning, &str); 12] = [
     (Meaning::Gravity, "G GRAVITY"),
     (Meaning::Density, "RHO RHOW WTRDNSTY"),
     (Meaning::Depth, "WTRDPTH WATERDEPTH DEPTH"),
-    (Meaning::BedStiffness, "KBOT KB"),
-    (Meaning::BedDamping, "CBOT CB"),
+    (Meaning::SeabedStiffness, "KBOT KB"),
+    (Meaning::SeabedDamping, "CBOT CB"),
     (Meaning::Friction, "FRICTIONCOEFFICIENT MU_KT MU_KA"),
     (Meaning::FrictionDamping, "FRICDAMP CV"),
     (Meaning::StaticFriction, "STATDYNFRICSCALE MC"),
@@ -38,10 +38,10 @@ pub(super) enum Meaning {
     /// WtrDpth [m], or a file of soundings.
     Depth,
     /// kBot [Pa/m].
-    BedStiffness,
+    SeabedStiffness,
     /// cBot [Pa s/m].
-    BedDamping,
-    /// Friction coefficients of the bed [-].
+    SeabedDamping,
+    /// Friction coefficients of the seabed [-].
     Friction,
     /// Slope of friction with velocity, where MoorDyn's fades in [N s/m or -].
     FrictionDamping,
@@ -51,7 +51,7 @@ pub(super) enum Meaning {
     OutputInterval,
     /// TmaxIC [s].
     Relaxation,
-    /// File of the bed's depths.
+    /// File of the seabed's depths.
     Soundings,
     /// Waves and currents.
     Surroundings,

@@ -1,4 +1,4 @@
-//! Decks and scenes that name files beside them: waves, currents, soundings of the seabed, tables of tension.
+//! Decks and scenes that name files next to them: waves, currents, soundings of the seabed, tables of tension.
 //!
 //! claim: what a file says is in the scene, the converted scene is the same, and what is wrong is refused with file and line.
 
@@ -11,7 +11,7 @@ use tempfile::tempdir;
 
 use crate::*;
 
-/// Writes a file and others beside it to a folder and loads it.
+/// Writes a file and others next to it to a folder and loads it.
 fn with_files(folder: &Path, text: &str, files: &[(&str, &str)]) -> Result<LoadedScene, LoadError> {
     for (name, text) in files.iter().chain(&[("mooring.dat", text)]) {
         fs::write(folder.join(name), text).unwrap();
@@ -77,12 +77,15 @@ fn a_deck_whose_files_are_wrong_is_refused_with_file_and_line() {
 fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
     let folder = tempdir().unwrap();
     let soundings = "--- MoorPy Bathymetry Input File v1.0 ---\nnGridX 2\nnGridY 2\n-900 900\n-900 100 110\n900 100 110\n";
-    let options = "bed.txt WtrDpth\n0.7 mu_kT\n0.3 mu_kA\n200 FricDamp\n1.5 StatDynFricScale";
+    let options = "seabed.txt WtrDpth\n0.7 mu_kT\n0.3 mu_kA\n200 FricDamp\n1.5 StatDynFricScale";
     let deck = OPENFAST.replace("2.0e6    kbot", options);
-    let loaded = with_files(folder.path(), &deck, &[("bed.txt", soundings)]).unwrap();
-    let bed = loaded.scene.seabed.as_ref().unwrap();
-    assert_eq!((bed.friction.transverse, bed.friction.axial), (0.7, 0.3));
-    assert_eq!(bed.grid.as_ref().unwrap().depth, [[100.0, 110.0], [100.0, 110.0]]);
+    let loaded = with_files(folder.path(), &deck, &[("seabed.txt", soundings)]).unwrap();
+    let seabed = loaded.scene.seabed.as_ref().unwrap();
+    assert_eq!((seabed.friction.transverse, seabed.friction.axial), (0.7, 0.3));
+    assert_eq!(
+        seabed.grid.as_ref().unwrap().depth,
+        [[100.0, 110.0], [100.0, 110.0]]
+    );
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
     let notes = notes.join("\n");
     let scale = "static friction of 1.5 times the kinetic is not modelled";
@@ -91,12 +94,12 @@ fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
 }
 
 #[test]
-fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
+fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_seabed() {
     let folder = tempdir().unwrap();
     let deck = OPENFAST.replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
     let axes = "2 2\n-900 900\n-900 900\n-900 -900 -100\n";
     let heights = format!("{axes}-900 900 -100\n900 -900 -110\n900 900 -110\n");
-    let found = with_files(folder.path(), &deck, &[("bed.txt", &heights)]);
+    let found = with_files(folder.path(), &deck, &[("seabed.txt", &heights)]);
     let grid = found
         .unwrap_or_else(|error| panic!("{}", error.list()))
         .scene
@@ -108,7 +111,7 @@ fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
     assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
     for (anchors, depth) in [("-100.0 ", 100.0), ("0.0 ", 110.0)] {
         let deck = deck.replace("110 WtrDpth\n", "").replace("-100.0 ", anchors);
-        let found = with_files(folder.path(), &deck, &[("bed.txt", &heights)]).unwrap();
+        let found = with_files(folder.path(), &deck, &[("seabed.txt", &heights)]).unwrap();
         assert_eq!(found.scene.seabed.unwrap().depth, depth);
         assert!(
             found
@@ -119,8 +122,8 @@ fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
             found.notes
         );
     }
-    let error = with_files(folder.path(), &deck, &[("bed.txt", axes)]).unwrap_err();
-    let lack = "bed.txt: no height at x = 900 m, y = -900 m";
+    let error = with_files(folder.path(), &deck, &[("seabed.txt", axes)]).unwrap_err();
+    let lack = "seabed.txt: no height at x = 900 m, y = -900 m";
     assert_says(&error.list(), &["mooring.dat:27:1: OPTIONS, bathymetry: ", lack]);
 }
 

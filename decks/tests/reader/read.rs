@@ -31,7 +31,7 @@ fn a_deck_is_converted_to_the_scene_that_is_kept_with_units_and_lines_and_rests_
         let back = Scene::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(back, loaded.scene, "{name}");
         if name != "moordyn_c.txt" {
-            // whose cable bends, which has tests of its own
+            // whose cable bends, which has its own tests
             let [first, second] = [&loaded.scene, &back].map(|scene| Simulation::new(scene).unwrap());
             assert_eq!(first.snapshot(), second.snapshot(), "{name}");
         }

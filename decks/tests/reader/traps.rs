@@ -38,8 +38,8 @@ fn depth(scene: &Scene) -> f64 {
 
 const TRAPS: &[Trap] = &[
     ("repeated_option.txt", nothing, 1, |scene| {
-        let bed = scene.seabed.as_ref().unwrap();
-        scene.water.as_ref().unwrap().density == 1025.0 && bed.stiffness == 3e6
+        let seabed = scene.seabed.as_ref().unwrap();
+        scene.water.as_ref().unwrap().density == 1025.0 && seabed.stiffness == 3e6
     }),
     ("unknown_option.txt", nothing, 1, |scene| {
         scene.seabed.as_ref().unwrap().stiffness == 3e6

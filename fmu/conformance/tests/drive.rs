@@ -1,4 +1,4 @@
-//! The `fmi` crate, a host of other hands, opens and drives the FMU in both versions.
+//! The `fmi` crate, a host by other authors, opens and drives the FMU in both versions.
 //!
 //! The FMU is packaged by the command line in the environment variable MOORLINE, which `run.sh` sets.
 

@@ -103,7 +103,7 @@ pub struct fmi2EventInfo {
     pub nextEventTime: fmi2Real,
 }
 
-/// Hands every function of FMI 2.0, with its type's name and signature, to the macro of the given name.
+/// Passes every function of FMI 2.0, with its type's name and signature, to the macro of the given name.
 #[macro_export]
 macro_rules! fmi2_functions {
     ($callback:ident) => {

@@ -86,7 +86,7 @@ pub type fmi3LockPreemptionCallback = Option<unsafe extern "C" fn()>;
 /// Ends a critical section (scheduled execution).
 pub type fmi3UnlockPreemptionCallback = Option<unsafe extern "C" fn()>;
 
-/// Hands every function of FMI 3.0, with its type's name and signature, to the macro of the given name.
+/// Passes every function of FMI 3.0, with its type's name and signature, to the macro of the given name.
 #[macro_export]
 macro_rules! fmi3_functions {
     ($callback:ident) => {

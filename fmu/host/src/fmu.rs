@@ -101,7 +101,7 @@ impl Fmu {
             problem: e.to_string(),
         })?;
         // SAFETY: a library in an FMU of this version has the standard's functions with the standard's signatures; the
-        // table is kept beside the library and never used after it.
+        // table is kept with the library and never used after it.
         let api = unsafe {
             match description.version {
                 FmiVersion::Two => Api::Two(Box::new(fmi2::Functions::resolve(&library)?)),

@@ -208,16 +208,16 @@ def _column(picture: Picture, across: str | None) -> int:
     return 0 if x >= y else 1
 
 
-def _bed(scene: dict[str, Any], x: Array, y: Array) -> Array | None:
+def _seabed(scene: dict[str, Any], x: Array, y: Array) -> Array | None:
     """Height of the seabed [m]; for the picture linear between soundings."""
-    bed = scene.get("seabed")
-    if bed is None:
+    seabed = scene.get("seabed")
+    if seabed is None:
         return None
-    if "grid" not in bed:
-        along_x, along_y = bed.get("slope", [0.0, 0.0])
-        return np.asarray(-bed["depth"] + along_x * x + along_y * y)
-    depth = np.array(bed["grid"]["depth"])
-    (i, next_i, u), (j, next_j, v) = _between(bed["grid"]["x"], x), _between(bed["grid"]["y"], y)
+    if "grid" not in seabed:
+        along_x, along_y = seabed.get("slope", [0.0, 0.0])
+        return np.asarray(-seabed["depth"] + along_x * x + along_y * y)
+    depth = np.array(seabed["grid"]["depth"])
+    (i, next_i, u), (j, next_j, v) = _between(seabed["grid"]["x"], x), _between(seabed["grid"]["y"], y)
     near = (1.0 - u) * depth[j, i] + u * depth[j, next_i]
     far = (1.0 - u) * depth[next_j, i] + u * depth[next_j, next_i]
     return np.asarray(-((1.0 - v) * near + v * far))
@@ -239,7 +239,7 @@ def _side(ax: Any, picture: Picture, column: int, norm: Any, limits: Array | Non
     middle = limits[:, 1 - column].mean()
     along = np.linspace(left, right, 200)
     places = (along, np.full(200, middle)) if column == 0 else (np.full(200, middle), along)
-    height = _bed(picture.scene, *places)
+    height = _seabed(picture.scene, *places)
     if height is not None:
         low = min(low, height.min() - 0.04 * (right - left))
         ax.fill_between(along, height, low, color=SEABED, alpha=0.35, linewidth=0.0)
@@ -277,7 +277,7 @@ def _space(ax: Any, picture: Picture, norm: Any, limits: Array | None = None, ba
         widened = max(spans[axis], 0.4 * spans[:2].max())
         limits[:, axis] += np.array([-0.5, 0.5]) * (widened - spans[axis])
     x, y = np.meshgrid(*(np.linspace(limits[0, axis], limits[1, axis], 30) for axis in (0, 1)))
-    height = _bed(picture.scene, x, y)
+    height = _seabed(picture.scene, x, y)
     if height is not None:
         limits[0, 2] = min(limits[0, 2], height.min())
         ax.plot_surface(x, y, height, color=SEABED, alpha=0.25, linewidth=0.0, shade=False)

@@ -1,9 +1,9 @@
-//! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and the bed under it.
+//! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and the seabed under it.
 //!
 //!   −w − B (1 − s̄)     weight w under water, buoyancy B of the whole, s̄ the mean of its wetted part over its way: the discrete
 //!                      gradient of the potential, so that the water's surface conserves energy
 //!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its way
-//!   F                  of the bed, as in `physics::contact_step`
+//!   F                  of the seabed, as in `physics::contact_step`
 //!
 //! The mass over the step follows from the submergence at the extrapolated middle of the step.
 //!
@@ -32,7 +32,7 @@ pub(super) struct BodyStep {
     lift: f64,
     /// Force of the water [N].
     drag: Vector3<f64>,
-    /// Force of the bed, upwards [N].
+    /// Force of the seabed, upwards [N].
     push: f64,
     /// −∂f/∂φ₁ of all [N/m].
     pub(super) slope: Matrix3<f64>,
@@ -61,9 +61,9 @@ impl Body<'_> {
         if let Some(contact) = &self.point.contact {
             let reach = damper_reach(contact.coefficients.stiffness, self.point.weight);
             let penetration = [from, to].map(|place| contact.level - place.z);
-            let bed = contact_step(contact.coefficients, penetration, reach, length);
-            step.push = bed.force;
-            step.slope[(2, 2)] += bed.slope;
+            let seabed = contact_step(contact.coefficients, penetration, reach, length);
+            step.push = seabed.force;
+            step.slope[(2, 2)] += seabed.slope;
         }
         step
     }

@@ -169,7 +169,7 @@ fn newton_converges_quadratically() {
     assert!(flight.solves <= 50 * 6, "{} solves", flight.solves);
 }
 
-/// A beam in water over a bed that is dragged along and turned at A.
+/// A beam in water over a seabed that is dragged along and turned at A.
 fn dragged(n: usize) -> (Flight, impl Fn(f64) -> Section) {
     let mut flight = Flight::new(n, 100.0, Vector3::zeros());
     let nodes = &mut flight.nodes;
@@ -183,13 +183,13 @@ fn dragged(n: usize) -> (Flight, impl Fn(f64) -> Section) {
         tangent: nodes.length.iter().map(|l| 0.3 * l).collect(),
     });
     nodes.contact = Some(crate::model::Contact {
-        bed: -0.2,
+        seabed_level: -0.2,
         level: vec![-0.2; count],
         stiffness: vec![200.0; count - 1],
         damping: vec![5.0; count - 1],
         weight: vec![0.0; count - 1],
         mass: vec![1.0; count - 1],
-        bottom: None,
+        seabed: None,
         stick: Vec::new(),
     });
     for element in &mut flight.beam.elements {
@@ -237,8 +237,8 @@ fn the_energy_balance_of_a_damped_beam_in_water_over_a_seabed_closes_to_rounding
     assert!(lost > 1.0 && flight.shape.position[20].z < -0.1);
 }
 
-/// A point that moves along all axes, of a mass [kg], with a volume [m³] and a bed at a height [m].
-fn body(mass: f64, volume: f64, bed: f64) -> FreePoint {
+/// A point that moves along all axes, of a mass [kg], with a volume [m³] and a seabed at a height [m].
+fn body(mass: f64, volume: f64, seabed: f64) -> FreePoint {
     let (density, gravity) = (1000.0, 10.0);
     FreePoint {
         axes: [true; 3],
@@ -246,8 +246,8 @@ fn body(mass: f64, volume: f64, bed: f64) -> FreePoint {
         weight: gravity * (mass - density * volume),
         sphere: Sphere::new([volume, 0.3, 0.5], density, gravity),
         contact: Some(PointContact {
-            bed,
-            level: bed,
+            seabed_level: seabed,
+            level: seabed,
             coefficients: ContactCoefficients {
                 stiffness: 2e4,
                 damping: 50.0,

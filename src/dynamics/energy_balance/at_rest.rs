@@ -19,7 +19,7 @@ pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times
     for &index in &network.lines {
         flow.external_work +=
             end_work(model, index, states, times) + current_work(model, index, states, times);
-        flow.dissipation -= bed_work(&model.lines[index], states.map(|state| &state.lines[index]));
+        flow.dissipation -= seabed_work(&model.lines[index], states.map(|state| &state.lines[index]));
     }
     for &index in &network.free_points {
         let (point, at) = (&model.points[index], states.map(|state| &state.points[index]));
@@ -32,7 +32,7 @@ pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times
         flow.external_work += work([0, 1].map(force), at.map(|at| at.position));
         let (line, _) = point.attached[0];
         if states[1].lines[line].closed_form.is_none() {
-            flow.dissipation -= point_bed_work(model, free, at);
+            flow.dissipation -= point_seabed_work(model, free, at);
         }
     }
     flow
@@ -91,14 +91,14 @@ fn current_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2
     nodes.map(on_node).sum()
 }
 
-/// Work [J] of the bed on a line: on the inner nodes, or along the part of a closed-form catenary that lies on it.
-fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
+/// Work [J] of the seabed on a line: on the inner nodes, or along the part of a closed-form catenary that lies on it.
+fn seabed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
     let Some(contact) = &line.nodes.contact else {
         return 0.0;
     };
     if let [Some(before), Some(after)] = shapes.map(|shape| shape.closed_form.as_ref()) {
         let positions = shapes.map(|shape| &shape.position[..]);
-        return friction_work(contact.bed, positions, [before, after]);
+        return friction_work(contact.seabed_level, positions, [before, after]);
     }
     let push = |shape: &LineState, i: usize| {
         let node = resting_node(line, shape, i, None);
@@ -113,9 +113,9 @@ fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
     (1..line.segment_count()).map(on_node).sum()
 }
 
-/// Work [J] along a bed at a height [m] of the friction by which the horizontal tension of closed-form catenaries
-/// grows: that of a segment acts on the one of its nodes on the bed, or on both.
-fn friction_work(bed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm; 2]) -> f64 {
+/// Work [J] along a seabed at a height [m] of the friction by which the horizontal tension of closed-form catenaries
+/// grows: that of a segment acts on the one of its nodes on the seabed, or on both.
+fn friction_work(seabed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm; 2]) -> f64 {
     let on_segment = |i: usize| {
         let force = |k: usize| {
             let [low, high] = [shapes[k].horizontal[i], shapes[k].horizontal[i + 1]];
@@ -123,7 +123,7 @@ fn friction_work(bed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm
             (low - high) * along.unwrap_or_else(Vector3::zeros)
         };
         let forces = [0, 1].map(force);
-        let lies = |&node: &usize| positions.iter().all(|at| at[node].z <= bed);
+        let lies = |&node: &usize| positions.iter().all(|at| at[node].z <= seabed);
         let laid = [i, i + 1].into_iter().filter(lies);
         let works = laid.map(|node| work(forces, [0, 1].map(|k| positions[k][node])));
         let (count, sum) = works.fold((0.0, 0.0), |(count, sum), work| (count + 1.0, sum + work));
@@ -132,15 +132,15 @@ fn friction_work(bed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm
     (0..positions[0].len() - 1).map(on_segment).sum()
 }
 
-/// Work [J] of the bed on a free point.
-fn point_bed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) -> f64 {
-    let push = |at: &PointState| match model.bottom.as_deref() {
+/// Work [J] of the seabed on a free point.
+fn point_seabed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) -> f64 {
+    let push = |at: &PointState| match model.seabed.as_deref() {
         None => {
-            let spring = free.bed_at_rest(at.position.z);
+            let spring = free.seabed_at_rest(at.position.z);
             spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
         }
-        Some(bottom) => {
-            let point = resting_point(free, bottom, at, None);
+        Some(seabed) => {
+            let point = resting_point(free, seabed, at, None);
             point.map_or(Vector3::zeros(), |point| point.push().force)
         }
     };

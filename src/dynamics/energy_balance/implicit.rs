@@ -39,7 +39,7 @@ pub struct Passed<'a> {
     pub times: [f64; 2],
     /// Scheme of the step.
     pub scheme: &'a Scheme,
-    /// Workspace of the step, which holds the ranges of penetration over which the bed's dampers fade in.
+    /// Workspace of the step, which holds the ranges of penetration over which the seabed's dampers fade in.
     pub work: &'a Workspace,
 }
 
@@ -421,15 +421,15 @@ impl Side<'_> {
         flow.external_work += drag.dot(&water);
         flow.dissipation -= drag.dot(&(mean - water));
         let reach = self.passed.work.point_reach(point);
-        if let Some(bottom) = model.bottom.as_deref() {
-            let push = resting_point(free, bottom, state, Some(reach));
+        if let Some(seabed) = model.seabed.as_deref() {
+            let push = resting_point(free, seabed, state, Some(reach));
             let push = push.map(|point| point.push());
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
             flow.dissipation -= force.map_or(0.0, |force| force.dot(&mean));
         } else if let Some(contact) = &free.contact {
             let (k, penetration) = (contact.coefficients, contact.level - z);
-            let bed = FadingContact::new(k, penetration, velocity.z, reach);
-            flow.dissipation -= bed.map_or(0.0, |bed| bed.force) * mean.z;
+            let seabed = FadingContact::new(k, penetration, velocity.z, reach);
+            flow.dissipation -= seabed.map_or(0.0, |seabed| seabed.force) * mean.z;
         }
         flow
     }

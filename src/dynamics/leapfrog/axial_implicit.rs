@@ -38,7 +38,7 @@
 //! where values depend on the row before.
 //!
 //! The scheme is of second order in the step. The remaining error of the tension is that of axial waves which a line emits when it snaps taut: in
-//! steps much longer than their periods they run late by (ωΔt)²/12, as with every scheme of second order that is stable whatever ωΔt, and reach up to where
+//! steps much longer than their periods they run late by (ωΔt)²/12, as with every scheme of second order that is stable for any ωΔt, and reach up to where
 //! that is a turn, so that the RMS error falls with Δt^1.2 to Δt^1.6.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
@@ -185,7 +185,7 @@ impl Kernel for AxialImplicit {
                 nodes: layout.rows().map(node).collect(),
                 current: layout.flows().then(|| vec![CurrentRow::new(); count]),
             },
-            seabed: vec![SeabedRow::new(); if layout.bottom().is_some() { count } else { 0 }],
+            seabed: vec![SeabedRow::new(); if layout.seabed().is_some() { count } else { 0 }],
             tension_peak: Lanes::splat(0.0),
             tensions: [0.0; 2],
             settled: true,
@@ -349,7 +349,7 @@ impl AxialLine {
 
     /// Kind of seabed under the nodes.
     #[inline(always)]
-    fn bed_under(&self) -> u8 {
+    fn seabed_under(&self) -> u8 {
         match (&self.layout.contact, self.kernel.seabed.is_empty()) {
             (None, _) => under::NOTHING,
             (Some(_), true) => under::LEVEL,
@@ -359,7 +359,11 @@ impl AxialLine {
 
     /// Everything that a step finds before its tensions.
     #[inline(always)]
-    fn prepare<const CURRENT: bool, const BED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2]) -> Sizes {
+    fn prepare<const CURRENT: bool, const SEABED: u8>(
+        &mut self,
+        step: Step,
+        ends: &[Vector3<f64>; 2],
+    ) -> Sizes {
         self.choose_weights(step);
         let sizes = self.sizes(step);
         self.choose_springs(step, &sizes);
@@ -367,34 +371,34 @@ impl AxialLine {
         self.prepare_nodes::<CURRENT>(&sizes);
         self.prepare_ends(step, ends);
         self.layout.press_seabed(step);
-        match BED {
+        match SEABED {
             under::NOTHING => {}
             under::LEVEL => self.prepare_contact(&sizes),
             _ => self.meet_seabed(&sizes),
         }
-        self.weigh_nodes::<BED>();
+        self.weigh_nodes::<SEABED>();
         sizes
     }
 
     /// Velocities from T̄, that of the segments before those of the first row being `before` [N]. Returns whether they agree with the assumptions, which
     /// are corrected if not.
     #[inline(always)]
-    fn pass<const BED: u8>(&mut self, before: Lanes, sizes: &Sizes) -> bool {
-        self.find_velocities::<BED>(before, sizes);
-        let found = self.look_over::<BED>(sizes);
+    fn pass<const SEABED: u8>(&mut self, before: Lanes, sizes: &Sizes) -> bool {
+        self.find_velocities::<SEABED>(before, sizes);
+        let found = self.look_over::<SEABED>(sizes);
         self.kernel.tension_peak = self.kernel.tension_peak.max(found.greatest);
-        let bed_holds = self.bed_holds::<BED>(&found, sizes);
-        let holds = self.segments_hold(&found, sizes) && bed_holds;
-        if !bed_holds {
-            self.weigh_nodes::<BED>();
+        let contact_holds = self.contact_holds::<SEABED>(&found, sizes);
+        let holds = self.segments_hold(&found, sizes) && contact_holds;
+        if !contact_holds {
+            self.weigh_nodes::<SEABED>();
         }
         holds
     }
 
     /// Energy and memory of the step, and the motion of the nodes to t_{n+1}.
     #[inline(always)]
-    fn finish<const BED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2], sizes: &Sizes) {
-        if BED == under::ROUGH {
+    fn finish<const SEABED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2], sizes: &Sizes) {
+        if SEABED == under::ROUGH {
             self.keep_friction(step);
         }
         if self.balance.is_some() {
@@ -468,7 +472,7 @@ trait Stage {
     type Found;
 
     /// Runs in water that moves or not, over a kind of seabed.
-    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) -> Self::Found;
+    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) -> Self::Found;
 }
 
 /// A stage for the vector unit of the machine.
@@ -481,7 +485,7 @@ impl<S: Stage> NullaryFnOnce for Run<'_, S> {
     fn call(self) -> S::Found {
         use under::{LEVEL, NOTHING, ROUGH};
         let Run(line, stage) = self;
-        match (line.kernel.rows.current.is_some(), line.bed_under()) {
+        match (line.kernel.rows.current.is_some(), line.seabed_under()) {
             (false, NOTHING) => stage.run::<false, NOTHING>(line),
             (false, LEVEL) => stage.run::<false, LEVEL>(line),
             (false, _) => stage.run::<false, ROUGH>(line),
@@ -502,21 +506,21 @@ impl Stage for Whole<'_> {
     type Found = usize;
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) -> usize {
+    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) -> usize {
         let Whole { step, ends } = self;
-        let sizes = line.prepare::<CURRENT, BED>(step, ends);
+        let sizes = line.prepare::<CURRENT, SEABED>(step, ends);
         let mut passes = 0;
         loop {
             passes += 1;
             line.assemble(&sizes);
             let before = line.solve_tensions();
-            let holds = line.pass::<BED>(before, &sizes);
+            let holds = line.pass::<SEABED>(before, &sizes);
             if holds || passes == PASSES_MAX {
                 line.kernel.settled &= holds;
                 break;
             }
         }
-        line.finish::<BED>(step, ends, &sizes);
+        line.finish::<SEABED>(step, ends, &sizes);
         passes
     }
 }

@@ -24,11 +24,11 @@ pub(super) struct LineBalance {
     pub algorithmic: Lanes,
     /// Work of prescribed ends, of releases and of the winch [J].
     pub external_work: f64,
-    /// Work on dampers beside the ends, and of viscoelastic dampers; kinetic energy that external work has brought [J].
+    /// Work on dampers next to the ends, and of viscoelastic dampers; kinetic energy that external work has brought [J].
     pub dissipation: f64,
     /// Position of the ends at t_n − Δt/2 [m].
     pub half_places: [Vector3<f64>; 2],
-    /// Force of the springs beside the ends on these at t_n [N], where the tension is explicit.
+    /// Force of the springs next to the ends on these at t_n [N], where the tension is explicit.
     pub springs: [Vector3<f64>; 2],
 }
 

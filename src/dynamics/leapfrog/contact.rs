@@ -1,26 +1,26 @@
 //! Spring and damper of the seabed over a step of the leapfrogs.
 //!
 //! A step changes the velocity v⁻ of t_{n−½} to the v of t_{n+½}. A part of a segment ([`crate::physics::seabed`]) with the penetration p at t_n, which
-//! leaves the bed at v_n, goes from p_a = p + (1−θ) Δt v⁻_n to p_b = p − θ Δt v_n. The impulse of spring and damper over the step is
+//! leaves the seabed at v_n, goes from p_a = p + (1−θ) Δt v⁻_n to p_b = p − θ Δt v_n. The impulse of spring and damper over the step is
 //!
 //! λ = Δt k (θ p_b⁺ + (1−θ) p_a⁺) + c (p_b⁺ − p_a⁺) ≥ 0,    only if p_b > 0,    p⁺ = max(p, 0).
 //!
 //! θ = ½ is the trapezoidal rule between t_{n−½} and t_{n+½}, of second order also for parts that land within the step: the damper acts on
-//! the way below the bed only. It lets a bed ring that is hard over the step, so that
+//! the way below the seabed only. It lets a seabed ring that is hard over the step, so that
 //!
 //! θ = max(½, 1 − 1/r),    r = Δt (k Δt + c)/m,
 //!
-//! goes to backward Euler, which takes such a part to rest. On a bed softened to the mesh r is below 2 at all steps that the line allows.
+//! goes to backward Euler, which takes such a part to rest. On a seabed softened to the mesh r is below 2 at all steps that the line allows.
 //!
-//! The velocity of a part depends on those of both nodes of its segment, which would couple all nodes on the bed. Two approximations avoid that: p_b > 0 is
+//! The velocity of a part depends on those of both nodes of its segment, which would couple all nodes on the seabed. Two approximations avoid that: p_b > 0 is
 //! decided with v⁻, and in the share of λ on a node every part changes its velocity by as much as that node. Each node then gets a force P − R v_n of its
-//! own, with R the sum of the shares of −∂λ/∂v_n over the parts beside it: the consistent matrix, lumped by rows. The step stays stable for any k and c: on
-//! a hard bed the shortest wave of nodes decays by a factor of 0.8 a step, and longer ones decay faster.
+//! own, with R the sum of the shares of −∂λ/∂v_n over the parts next to it: the consistent matrix, lumped by rows. The step stays stable for any k and c: on
+//! a hard seabed the shortest wave of nodes decays by a factor of 0.8 a step, and longer ones decay faster.
 //!
 //! Source: the θ-method, e.g. Hairer & Wanner (1996), Solving Ordinary Differential Equations II, section IV.3; row sums as a bound of a consistent matrix,
 //! Hughes (2000), The Finite Element Method, section 7.3.2. Stable for any k and c.
 
-use super::layout::{BottomArrays, ContactArrays, Layout};
+use super::layout::{ContactArrays, Layout, SeabedArrays};
 use super::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::physics::seabed::PARTS;
@@ -30,7 +30,7 @@ use crate::physics::seabed::PARTS;
 pub(super) struct NodeContact {
     /// Impulse on nodes at rest [N s].
     pub spring: Lanes,
-    /// Decrease of the impulse with the velocity at which the nodes leave the bed [kg].
+    /// Decrease of the impulse with the velocity at which the nodes leave the seabed [kg].
     pub resistance: Lanes,
 }
 
@@ -44,14 +44,14 @@ impl NodeContact {
         }
     }
 
-    /// Impulse [N s] on nodes that leave the bed at `rise` [m/s], were it to pull as well: positive where it pushes.
+    /// Impulse [N s] on nodes that leave the seabed at `rise` [m/s], were it to pull as well: positive where it pushes.
     #[inline(always)]
     pub(super) fn push(&self, rise: Lanes) -> Lanes {
         self.spring - self.resistance * rise
     }
 }
 
-/// Penetration of nodes [m], and velocity at which they leave the bed [m/s].
+/// Penetration of nodes [m], and velocity at which they leave the seabed [m/s].
 #[derive(Debug, Clone, Copy)]
 struct Depth {
     penetration: Lanes,
@@ -71,7 +71,7 @@ struct ContactRule {
 }
 
 /// Forces of the seabed on the two nodes of the segments of a row at unchanged velocities [N], and their decrease with the velocity at which a node
-/// leaves the bed [N s/m].
+/// leaves the seabed [N s/m].
 #[derive(Debug, Clone, Copy)]
 struct Pressed {
     force: [Lanes; 2],
@@ -154,14 +154,14 @@ impl Layout {
             step,
         };
         let found = [contact.spring.rows_mut(last), contact.resistance.rows_mut(last)];
-        match &mut contact.bottom {
+        match &mut contact.seabed {
             None => segments.press(found, |at| Depth {
                 penetration: level[at] - position[at].z,
                 rise: velocity[at].z,
             }),
-            Some(bottom) => {
-                bottom.find_depths(level, [position, velocity], step);
-                let (penetration, rise) = (bottom.penetration.rows(last), bottom.rise.rows(last));
+            Some(seabed) => {
+                seabed.find_depths(level, [position, velocity], step);
+                let (penetration, rise) = (seabed.penetration.rows(last), seabed.rise.rows(last));
                 segments.press(found, |at| Depth {
                     penetration: penetration[at],
                     rise: rise[at],
@@ -226,12 +226,12 @@ impl ContactArrays {
     }
 }
 
-impl BottomArrays {
-    /// Finds the depths of all rows of nodes whose contact begins at `lift` [m] above the bed, and the normals there. A row above the highest place of
+impl SeabedArrays {
+    /// Finds the depths of all rows of nodes whose contact begins at `lift` [m] above the seabed, and the normals there. A row above the highest place of
     /// the seabed, whose neighbours are so too, gets a bound of its penetration and no normal.
     #[inline(always)]
     fn find_depths(&mut self, lift: &[Lanes], [position, velocity]: [&[Vectors]; 2], step: Step) {
-        let highest = Lanes::splat(self.bottom.ground.highest());
+        let highest = Lanes::splat(self.seabed.ground.highest());
         let drift = Lanes::splat(step.drift);
         let bound = |at: usize| highest + lift[at] - position[at].z;
         let reaches = |at: usize| (bound(at) + drift * velocity[at].dot(velocity[at]).sqrt()).any_positive();
@@ -239,7 +239,7 @@ impl BottomArrays {
         let mut near = [false, reaches(0), reaches(1)];
         for at in 0..=last {
             if near.contains(&true) {
-                let (below, normal) = self.bottom.ground.stand_of_four(position[at]);
+                let (below, normal) = self.seabed.ground.stand_of_four(position[at]);
                 self.normal.store(normal, at);
                 self.penetration.store(below + lift[at], at);
                 self.rise.store(normal.dot(velocity[at]), at);
@@ -273,7 +273,7 @@ mod tests {
         [depth; 2]
     }
 
-    /// Impulse [N s] on a level segment of 1 kg that left a bed at `before` and leaves it at `after` [m/s].
+    /// Impulse [N s] on a level segment of 1 kg that left a seabed at `before` and leaves it at `after` [m/s].
     fn impulse(k: f64, c: f64, penetration: f64, [before, after]: [f64; 2]) -> f64 {
         let law = [k, c].map(Lanes::splat);
         let pressed = ContactRule::new(law, Lanes::splat(1.0), STEP).press(depths(penetration, before));
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_soft_bed_pushes_by_the_trapezoidal_rule() {
+    fn a_soft_seabed_pushes_by_the_trapezoidal_rule() {
         let [before, after] = [-0.3, -0.1];
         let mean = 0.05 - 0.25 * STEP.drift * (after - before);
         let damper = -0.5 * (before + after);
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hard_bed_takes_a_segment_to_rest() {
+    fn a_hard_seabed_takes_a_segment_to_rest() {
         let (k, c, penetration, before) = (1e9, 1e4, 1e-3, -2.0);
         // v = v⁻ + λ(v), λ linear
         let at = |v: f64| impulse(k, c, penetration, [before, v]);
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damper_acts_on_the_way_below_the_bed_only() {
+    fn a_damper_acts_on_the_way_below_the_seabed_only() {
         let expected = 3.0 * (-0.01 + 0.5 * STEP.drift * 0.4); // c p_b
         assert_relative_eq!(
             impulse(0.0, 3.0, -0.01, [-0.4, -0.4]),
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bed_pushes_no_segment_above_it_and_pulls_none() {
+    fn the_seabed_pushes_no_segment_above_it_and_pulls_none() {
         assert_eq!(impulse(10.0, 1.0, -0.1, [-0.4, -0.4]), 0.0);
         assert_eq!(impulse(10.0, 9.0, 0.1, [0.4, 0.9]), 0.0);
     }

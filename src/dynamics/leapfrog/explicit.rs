@@ -10,7 +10,7 @@
 //!
 //! Stage 4 is part of the loop of stage 3 unless the energy balance is evaluated between them.
 //!
-//! One force evaluation a step, second order, stable below [`crate::dynamics::limit::explicit_limit`] whatever the seabed.
+//! One force evaluation a step, second order, stable below [`crate::dynamics::limit::explicit_limit`] for any seabed.
 //!
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
@@ -51,7 +51,7 @@ pub struct Explicit {
     resistance: Field,
     /// Force of water that waves accelerate at t_n [N], where there are waves.
     froude_krylov: Option<Field>,
-    /// Inverse square of the chord between the nodes beside a node at t_n [1/m²].
+    /// Inverse square of the chord between the neighbours of a node at t_n [1/m²].
     inverse_square: Column,
     inverse_mass: Column,
     water: Option<WaterWork>,

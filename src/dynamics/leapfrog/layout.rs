@@ -20,12 +20,12 @@ use crate::math::unit;
 use crate::model::{End, Line, Model};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
-pub(super) use ground::{BottomArrays, ContactArrays};
+pub(super) use ground::{ContactArrays, SeabedArrays};
 use handover::padded_positions;
 pub(super) use water::Water;
 pub(super) use water::{CurrentNow, WaveArrays, water_flow};
 
-/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the bed would else go on to squares that are
+/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the seabed would else go on to squares that are
 /// too small to be normal numbers, with which a machine is many times slower.
 const STILLNESS: f64 = 1e-30;
 /// Keeps coincident nodes from dividing by zero [m²].
@@ -218,7 +218,7 @@ impl Layout {
         self.striping.slots().take(self.segment_count + 1)
     }
 
-    /// Unit vector along the chord of the nodes beside node `i`, at an end along the segment.
+    /// Unit vector along the chord of the neighbours of node `i`, at an end along the segment.
     pub fn tangent_of(&self, i: usize) -> Vector3<f64> {
         let before = self.slot(i.saturating_sub(1));
         let after = self.slot((i + 1).min(self.segment_count));
@@ -425,9 +425,9 @@ impl Layout {
 /// Returns whether the node at end B of a line needs no row where its point is prescribed: it is never released, and no winch, water's surface,
 /// uneven seabed or viscoelastic memory acts on it.
 fn is_plain_at_b(line: &Line) -> bool {
-    let parts = line.release.is_some_and(|[_, b]| b.may_release());
-    let knows = line.surface.is_some() || line.bottom().is_some() || line.winch.is_some();
-    !parts && !knows && line.segments.viscoelastic.is_none()
+    let may_release = line.release.is_some_and(|[_, b]| b.may_release());
+    let has_surroundings = line.surface.is_some() || line.seabed().is_some() || line.winch.is_some();
+    !may_release && !has_surroundings && line.segments.viscoelastic.is_none()
 }
 
 /// 1 for nodes between the ends, 0 elsewhere.

@@ -8,12 +8,12 @@ use super::network::LeapfrogNetwork;
 use super::step::Step;
 use crate::dynamics::limit::least_mass;
 use crate::elements::friction::point_stick;
-use crate::model::{Bottom, End, FreePoint, Model, Network};
+use crate::model::{End, FreePoint, Model, Network, Seabed};
 use crate::physics::airy::Orbit;
 use crate::physics::friction::Axes;
 use crate::physics::slender::Slender;
 
-/// Loads and mass of a free point, of its own or of the half node of a line that is tied to it.
+/// Loads and mass of a free point: its own, or those of the half node of a line that is tied to it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointLoad {
     /// Force without contact [N].
@@ -107,11 +107,11 @@ impl LeapfrogNetwork<Explicit> {
                 continue;
             };
             let height = self.points[free].position.z;
-            let bed = SeabedBelow::under(model, self.points[free].position);
+            let seabed = SeabedBelow::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
             let mut load = load_in_water((model, index, law), [height, t], now, waves, None);
             springs.clear();
-            springs.extend(ContactSpring::under_point(law, &bed, step));
+            springs.extend(ContactSpring::under_point(law, &seabed, step));
             for &(at, end) in &self.attached[free] {
                 if self.lines[at].is_released(end) {
                     continue;
@@ -120,7 +120,7 @@ impl LeapfrogNetwork<Explicit> {
                 load.add(&share);
                 springs.extend(share.contact);
             }
-            let kicked = load.kicked(last, law.axes, &springs, &bed, step);
+            let kicked = load.kicked(last, law.axes, &springs, &seabed, step);
             self.move_point(free, model, &load, kicked, (t, step));
         }
         self.scratch = springs;
@@ -178,17 +178,17 @@ pub(super) fn load_in_water(
 
 impl ContactSpring {
     /// The spring and damper under a free point itself; `None` where there are none.
-    pub(super) fn under_point(law: &FreePoint, bed: &SeabedBelow, step: Step) -> Option<ContactSpring> {
+    pub(super) fn under_point(law: &FreePoint, seabed: &SeabedBelow, step: Step) -> Option<ContactSpring> {
         let contact = law
             .contact
             .filter(|contact| contact.coefficients.stiffness > 0.0)?;
-        let (k, level) = match bed.bottom {
+        let (k, level) = match seabed.seabed {
             Some(_) => (contact.coefficients, contact.lift()),
             None => (contact.coefficients, contact.level),
         };
         let drift = k.stiffness * step.drift;
         Some(ContactSpring {
-            push: k.stiffness * (level - bed.height),
+            push: k.stiffness * (level - seabed.height),
             resistance: drift + k.damping,
             drift,
         })
@@ -244,14 +244,14 @@ impl PointLoad {
         self.mass += other.mass;
     }
 
-    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed, which is implicit: friction is sought that agrees with
+    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the seabed, which is implicit: friction is sought that agrees with
     /// the push of the springs, and a push that agrees with the friction.
     fn kicked(
         &self,
         last: Vector3<f64>,
         axes: [bool; 3],
         springs: &[ContactSpring],
-        bed: &SeabedBelow,
+        seabed: &SeabedBelow,
         step: Step,
     ) -> Kicked {
         let zero = Vector3::zeros();
@@ -267,11 +267,14 @@ impl PointLoad {
             };
         };
         let velocity = last + step.kick * inverse * self.force.component_mul(&free);
-        let response = inverse * bed.normal.component_mul(&free);
-        let mut push = pushed(velocity, response, springs, bed, step);
+        let response = inverse * seabed.normal.component_mul(&free);
+        let mut push = pushed(velocity, response, springs, seabed, step);
         let mut friction = zero;
-        if let (Some(law), true) = (bed.bottom.and_then(|bottom| bottom.friction.as_ref()), push > 0.0) {
-            let sliding = Sliding::new(bed.normal, &inverse, &free);
+        if let (Some(law), true) = (
+            seabed.seabed.and_then(|seabed| seabed.friction.as_ref()),
+            push > 0.0,
+        ) {
+            let sliding = Sliding::new(seabed.normal, &inverse, &free);
             let scale = push;
             for _ in 0..ROUNDS_MAX {
                 let before = push;
@@ -280,7 +283,7 @@ impl PointLoad {
                     velocity + inverse * friction.component_mul(&free),
                     response,
                     springs,
-                    bed,
+                    seabed,
                     step,
                 );
                 if (push - before).abs() <= 4.0 * f64::EPSILON * scale {
@@ -313,20 +316,20 @@ pub(super) struct SeabedBelow<'a> {
     /// Unit normal of the seabed, upwards.
     pub normal: Vector3<f64>,
     /// The seabed, where it has a slope, soundings or friction.
-    pub bottom: Option<&'a Bottom>,
+    pub seabed: Option<&'a Seabed>,
 }
 
 impl SeabedBelow<'_> {
     pub(super) fn under(model: &Model, place: Vector3<f64>) -> SeabedBelow<'_> {
-        let bottom = model.bottom.as_deref();
-        let (height, normal) = bottom.map_or((place.z, Vector3::z()), |bottom| {
-            let (below, normal) = bottom.ground.stand(place);
+        let seabed = model.seabed.as_deref();
+        let (height, normal) = seabed.map_or((place.z, Vector3::z()), |seabed| {
+            let (below, normal) = seabed.ground.stand(place);
             (-below, normal)
         });
         SeabedBelow {
             height,
             normal,
-            bottom,
+            seabed,
         }
     }
 }
@@ -337,10 +340,10 @@ fn pushed(
     velocity: Vector3<f64>,
     response: Vector3<f64>,
     springs: &[ContactSpring],
-    bed: &SeabedBelow,
+    seabed: &SeabedBelow,
     step: Step,
 ) -> f64 {
-    let (rise, yielding) = (bed.normal.dot(&velocity), bed.normal.dot(&response));
+    let (rise, yielding) = (seabed.normal.dot(&velocity), seabed.normal.dot(&response));
     let mut impulse = 0.0;
     for _ in 0..springs.len() {
         let rising = rise + yielding * impulse;
@@ -360,7 +363,7 @@ fn pushed(
 
 /// Response of a point along the plane of the seabed.
 pub(super) struct Sliding {
-    /// Axes of the plane of the bed, along those of the point that are free.
+    /// Axes of the plane of the seabed, along those of the point that are free.
     axes: [Vector3<f64>; 2],
     /// Inverse of what the point yields by in the plane [kg].
     mass: Matrix2<f64>,

@@ -86,7 +86,7 @@ impl Clock {
 
     /// Adds the sample of a step from a time [s] of a length [s], taken at its end with [`Reconstruction::Interpolate`], else at its start:
     /// `extrapolation` receives all that the paths need to continue by it; its old contents are not read.
-    pub fn tell(
+    pub fn add_sample(
         &mut self,
         time: f64,
         step: f64,
@@ -254,7 +254,7 @@ impl Extrapolation {
             self.unit = [step, rate];
             if !was_even {
                 (self.count, self.all) = (SAMPLES_MAX, true);
-                self.foresee(&from_fn(|i| -(i as f64)), 1.0);
+                self.evaluate(&from_fn(|i| -(i as f64)), 1.0);
             }
             return;
         }
@@ -268,11 +268,11 @@ impl Extrapolation {
             true => times[i],
             false => times[known - 1] - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE),
         });
-        self.foresee(&t, start + step);
+        self.evaluate(&t, start + step);
     }
 
     /// Extrapolation from samples at the times `t` to an end.
-    fn foresee(&mut self, t: &[f64; SAMPLES_MAX], end: f64) {
+    fn evaluate(&mut self, t: &[f64; SAMPLES_MAX], end: f64) {
         self.inverse = Reciprocals::new(t);
         let [h, e1, e2, e3] = [end - t[0], end - t[1], end - t[2], end - t[3]];
         let [a, b] = [t[0] - t[1], t[0] - t[2]];

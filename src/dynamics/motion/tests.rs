@@ -24,7 +24,8 @@ impl Guided {
 
     fn extend(&mut self, sample: Sample, step: f64, reconstruction: Reconstruction) {
         let extrapolation = &mut self.2;
-        self.0.tell(sample.time, step, reconstruction, extrapolation);
+        self.0
+            .add_sample(sample.time, step, reconstruction, extrapolation);
         self.1.extend(extrapolation, sample.position, sample.velocity);
     }
 
@@ -56,8 +57,10 @@ fn an_extrapolation_does_not_depend_on_those_before() {
         // equal steps, short ones between them, the same instant again and leaps back
         let step = if k % 31 == 30 { 0.007 } else { 0.05 };
         let mut fresh = Extrapolation::none();
-        clock.clone().tell(time, step, Reconstruction::Smooth, &mut fresh);
-        clock.tell(time, step, Reconstruction::Smooth, &mut kept);
+        clock
+            .clone()
+            .add_sample(time, step, Reconstruction::Smooth, &mut fresh);
+        clock.add_sample(time, step, Reconstruction::Smooth, &mut kept);
         assert_eq!(format!("{kept:?}"), format!("{fresh:?}"), "at {time} s");
         time += match k {
             70 => 0.0,
@@ -100,7 +103,7 @@ fn axes_are_extrapolated_as_each_would_be_alone() {
         let time = 0.1 * f64::from(k) + if k % 50 > 25 { 0.03 } else { 0.0 };
         let places = [position(time), position(0.4 * time), position(2.0 * time)];
         let rates = [Some(velocity(time)), None, Some(2.0 * velocity(2.0 * time))];
-        clock.tell(time, 0.1, Reconstruction::Smooth, &mut extrapolation);
+        clock.add_sample(time, 0.1, Reconstruction::Smooth, &mut extrapolation);
         let before = together;
         together.extend(&before, &extrapolation, &InputSample::new(places, rates));
         for axis in 0..3 {
@@ -401,7 +404,7 @@ fn samples_that_are_kept_are_not_crowded_by_short_steps() {
     let mut time = 0.0;
     for k in 0..60 {
         let step = [0.2, 1e-3, 1e-5, 1e-5, 0.13][k % 5];
-        clock.tell(time, step, Reconstruction::Smooth, &mut extrapolation);
+        clock.add_sample(time, step, Reconstruction::Smooth, &mut extrapolation);
         time += step;
         assert!(k < 15 || extrapolation.count == SAMPLES_MAX, "{clock:?}");
     }

@@ -10,9 +10,9 @@ use crate::scene::{Line, Names, Point, PointKind, Scene};
 /// Stretched over unstretched length assumed for the reach of a line [-].
 const STRETCH_MAX: f64 = 1.5;
 
-/// Returns whether a line could ever touch the bed.
-pub(super) fn may_touch_bed(scene: &Scene, names: &Names, line: &Line) -> bool {
-    let Some(bed) = &scene.seabed else {
+/// Returns whether a line could ever touch the seabed.
+pub(super) fn may_touch_seabed(scene: &Scene, names: &Names, line: &Line) -> bool {
+    let Some(seabed) = &scene.seabed else {
         return false;
     };
     let tied = tied(scene, names, line);
@@ -27,8 +27,8 @@ pub(super) fn may_touch_bed(scene: &Scene, names: &Names, line: &Line) -> bool {
     let lowest = held.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     let moves = held_heights(names, &tied).contains(&None);
     let parts = |line: &&Line| line.release.is_some() || line.failure.is_some();
-    let reaches = held.is_empty() || lowest - STRETCH_MAX * length <= -bed.depth;
-    !bed.is_level() || moves || reaches || tied.iter().any(parts)
+    let reaches = held.is_empty() || lowest - STRETCH_MAX * length <= -seabed.depth;
+    !seabed.is_level() || moves || reaches || tied.iter().any(parts)
 }
 
 /// Least heights of the points at the ends of lines that are not free [m]; none for one that may reach any place.
@@ -103,13 +103,13 @@ mod tests {
     }
 
     fn touches(scene: &Scene) -> bool {
-        may_touch_bed(scene, &Names::of(scene), &scene.lines[0])
+        may_touch_seabed(scene, &Names::of(scene), &scene.lines[0])
     }
 
     const FIXED: [&str; 2] = ["fixed", ""];
 
     #[test]
-    fn a_line_far_above_the_bed_is_made_without_it() {
+    fn a_line_far_above_the_seabed_is_made_without_it() {
         assert!(!touches(&hung(FIXED, "", "").scene()));
         assert!(!touches(&hung(["free", ""], "", "").scene()));
         let vessel = "vessels = [{ name = 'barge', position = [0.0, 0.0, -5.0] }]";
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_move_or_come_loose_may_touch_the_bed() {
+    fn what_can_move_or_come_loose_may_touch_the_seabed() {
         assert!(touches(&hung(["coupled", ""], "", "").scene()));
         assert!(touches(&hung(FIXED, "release = 'b'", "").scene()));
         assert!(touches(
@@ -129,7 +129,7 @@ mod tests {
     fn a_line_reaches_as_far_as_those_it_hangs_together_with_and_what_a_winch_pays_out() {
         let joined = hung(["free", ""], "", "").free("low", [5.0, 0.0, -20.0]);
         let scene = joined.line("other", ["end", "low"], "rope", 50.0, None).scene();
-        assert!(!touches(&scene) && may_touch_bed(&scene, &Names::of(&scene), &scene.lines[1]));
+        assert!(!touches(&scene) && may_touch_seabed(&scene, &Names::of(&scene), &scene.lines[1]));
         let winch = "winch = { end = 'b', length_max = 60.0 }";
         assert!(touches(&hung(FIXED, winch, "").scene()));
     }

@@ -1,17 +1,17 @@
-//! Depth at which a line rests in a bed whose contact is softened to the mesh.
+//! Depth at which a line rests in a seabed whose contact is softened to the mesh.
 //!
-//! A line of weight w under the horizontal tension H on springs with the deflection δ under its weight leaves the bed
+//! A line of weight w under the horizontal tension H on springs with the deflection δ under its weight leaves the seabed
 //! smoothly, over the length λ = √(Hδ/w). With u counted from the point where the springs lose contact, their level
 //! at z = δ above the line at rest, the free part is
 //!
 //!   z = δ + (δ/λ)u + (w/2H)u² = (w/2H)(u + λ)² + δ/2:
 //!
-//! the catenary over a rigid bed that lies δ/2 above the line at rest. A line therefore rests δ/2 deep, and its
-//! suspended part is right to the next order in the mesh; a line that rests on the bed surface hangs δ/2 too high,
+//! the catenary over a rigid seabed that lies δ/2 above the line at rest. A line therefore rests δ/2 deep, and its
+//! suspended part is right to the next order in the mesh; a line that rests on the seabed surface hangs δ/2 too high,
 //! which costs 0.2 % of tension with 40 elements.
-//! Towards an end that is fixed on the bed the line rises to it, over a length R of a few elements, so that the end
+//! Towards an end that is fixed on the seabed the line rises to it, over a length R of a few elements, so that the end
 //! is not pulled down: the line follows a smooth step as long as R > √3 λ, and λ is an element or less of the meshes
-//! in use. R is three elements: with five the step reaches the touchdown of a line with a short part on the bed, and
+//! in use. R is three elements: with five the step reaches the touchdown of a line with a short part on the seabed, and
 //! the error of tension is 1.4 times as great on oc3_catenary moved slowly (n = 14 to 40); with two it is hardly
 //! smaller. A line that bends follows the step only where that is longer than the length ℓ = (4EI/k)^¼ over which a
 //! beam on springs of k per length settles, and its curvature is that of the step. R then grows up to five elements,
@@ -30,7 +30,7 @@ const RISE: f64 = 3.0;
 /// The same over ℓ where the line bends, and at most over an element.
 const RISE_BENT: f64 = 5.0;
 
-/// Lowers the level from which softened contact pushes, from the one at which a line would rest on the bed to the one
+/// Lowers the level from which softened contact pushes, from the one at which a line would rest on the seabed to the one
 /// that makes its suspended part right.
 pub(super) fn sink(line: &mut Line, points: &[Point]) {
     if let Some(winch) = &mut line.winch {
@@ -49,7 +49,7 @@ pub(super) fn sink(line: &mut Line, points: &[Point]) {
     let springs: Vec<f64> = (0..arc.len()).map(|i| contact.stiffness_under(i)).collect();
     let lies = line.ends.map(|end| lies_on(contact, &points[end], spacing[0]));
     for (i, level) in contact.level.iter_mut().enumerate() {
-        let compression = *level - contact.bed; // δ
+        let compression = *level - contact.seabed_level; // δ
         let element = compression / REGULARISED_PENETRATION;
         let settles = (4.0 * stiffness * spacing[i] / springs[i]).powf(0.25); // ℓ
         let bent = RISE_BENT * settles.min(element);
@@ -77,7 +77,7 @@ fn greatest_stiffness(line: &Line) -> f64 {
     cable.copied().chain(beam).fold(0.0, f64::max)
 }
 
-/// Returns whether a held point lies on the bed, to the resolution of an element of `length` [m].
+/// Returns whether a held point lies on the seabed, to the resolution of an element of `length` [m].
 fn lies_on(contact: &Contact, point: &Point, length: f64) -> bool {
     let held = !matches!(point.role, Role::Free(_));
     let height = point.reference.z - contact.height_under(point.reference);

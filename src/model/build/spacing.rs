@@ -3,10 +3,10 @@
 
 use nalgebra::Vector3;
 
-use super::{Bottom, LineLaw, line_law};
+use super::{LineLaw, Seabed, line_law};
 use crate::model::mesh::{Place, Refinement, line_elements};
 use crate::model::{Line, Model, Point, Role, Vessel};
-use crate::physics::catenary::{self, Bed, Catenary};
+use crate::physics::catenary::{self, Catenary, FlatSeabed};
 use crate::scene::{self, PointKind, Scene, percent};
 
 /// Error of the curvature at a clamp times the square of the number n of elements over λ = √(EI/T) there [-].
@@ -114,8 +114,8 @@ pub(super) fn refinements(
     if laws.iter().all(|law| law.bending_stiffness == 0.0) {
         return Vec::new();
     }
-    let bed = bed_below(scene);
-    let (shapes, known) = shapes(scene, ends, vessels, |a, b| hang(line, laws, bed(a), b - a));
+    let seabed = seabed_below(scene);
+    let (shapes, known) = shapes(scene, ends, vessels, |a, b| hang(line, laws, seabed(a), b - a));
     let total: f64 = line.sections.iter().map(|section| section.length).sum();
     let mut wanted = Vec::new();
     let greatest = |of: fn(&Catenary) -> f64| shapes.iter().map(of).fold(0.0, f64::max);
@@ -175,19 +175,19 @@ pub(super) fn refinements(
 }
 
 /// Seabed below a place [m], by the soundings where there are some; none without a seabed.
-fn bed_below(scene: &Scene) -> impl Fn(Vector3<f64>) -> Option<Bed> {
+fn seabed_below(scene: &Scene) -> impl Fn(Vector3<f64>) -> Option<FlatSeabed> {
     let seabed = scene.seabed.as_ref();
-    let bottom = seabed.and_then(super::bottom);
+    let shape = seabed.and_then(super::seabed);
     move |place| {
-        let height = match &bottom {
-            Some(Bottom {
+        let height = match &shape {
+            Some(Seabed {
                 ground, level: false, ..
             }) => ground.height(place.x, place.y),
             _ => -seabed?.depth,
         };
         let friction = seabed?.friction.axial;
         let height = height - place.z;
-        Some(Bed { height, friction })
+        Some(FlatSeabed { height, friction })
     }
 }
 
@@ -229,7 +229,12 @@ fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
 }
 
 /// The closed-form catenary of a line over a chord from end A [m], where it has one.
-fn hang(line: &scene::Line, laws: &[LineLaw], bed: Option<Bed>, chord: Vector3<f64>) -> Option<Catenary> {
+fn hang(
+    line: &scene::Line,
+    laws: &[LineLaw],
+    seabed: Option<FlatSeabed>,
+    chord: Vector3<f64>,
+) -> Option<Catenary> {
     let sections: Vec<catenary::Section> = line
         .sections
         .iter()
@@ -240,10 +245,10 @@ fn hang(line: &scene::Line, laws: &[LineLaw], bed: Option<Bed>, chord: Vector3<f
             axial_stiffness: law.axial_stiffness,
         })
         .collect();
-    catenary::solve(&sections, chord.xy().norm(), chord.z, bed).ok()
+    catenary::solve(&sections, chord.xy().norm(), chord.z, seabed).ok()
 }
 
-/// Ranges of arc length [m] over which the ends of the part on the bed move, excluding the ends of the line.
+/// Ranges of arc length [m] over which the ends of the part on the seabed move, excluding the ends of the line.
 fn touchdowns(shapes: &[Catenary], total: f64) -> Vec<[f64; 2]> {
     let mut ranges: Vec<[f64; 2]> = Vec::new();
     for shape in shapes {

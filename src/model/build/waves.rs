@@ -10,7 +10,7 @@ use crate::scene::{Scene, Sea, WaveComponents};
 pub(super) fn waves(scene: &Scene) -> Option<Waves> {
     let waves = scene.water.as_ref()?.waves.as_ref()?;
     let components: Vec<Component> = waves.seas.iter().flat_map(components).collect();
-    let depth = scene.seabed.as_ref().map(|bed| bed.depth);
+    let depth = scene.seabed.as_ref().map(|seabed| seabed.depth);
     let depth = depth.filter(|depth| *depth > 0.0);
     Some(Waves::new(&components, depth, waves.ramp(), scene.gravity))
 }

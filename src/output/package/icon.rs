@@ -2,5 +2,5 @@
 
 /// The icon as a drawing.
 pub(super) const SVG: &str = include_str!("assets/icon.svg");
-/// The icon in pixels, which the standard requires beside a drawing.
+/// The icon in pixels, which the standard requires in addition to a drawing.
 pub(super) const PNG: &[u8] = include_bytes!("assets/icon.png");

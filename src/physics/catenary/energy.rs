@@ -5,7 +5,7 @@
 //!   ∫ T²/2EA ds = h (H² + (V₀² + V₀V₁ + V₁²)/3) / 2EA,
 //!   w ∫ z ds    = w z₀ h + (∫ T ds − T₀ h) + w h² (2V₀ + V₁)/6EA,
 //!
-//! as w dz = dT + V dV/EA along it: nothing is divided by the weight, which may be zero. On the bed T = T₀ + g s at
+//! as w dz = dT + V dV/EA along it: nothing is divided by the weight, which may be zero. On the seabed T = T₀ + g s at
 //! one height.
 //!
 //! Source: integrals of the elastic catenary, derived here, checked by sums and by the work of the ends. Valid as the catenary is.
@@ -80,7 +80,7 @@ fn mean_square(from: f64, to: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Bed, Section, solve};
+    use super::super::{FlatSeabed, Section, solve};
     use super::*;
     use approx::assert_relative_eq;
 
@@ -129,23 +129,23 @@ mod tests {
 
     #[test]
     fn the_work_of_an_end_is_what_the_line_gains() {
-        let bed = Bed {
+        let seabed = FlatSeabed {
             height: -10.0,
             friction: 0.0,
         };
-        let lines: [(&[Section], Option<Bed>); 4] = [
+        let lines: [(&[Section], Option<FlatSeabed>); 4] = [
             (&[CHAIN], None),
-            (&[CHAIN], Some(bed)),
-            (&[CHAIN, BUOYANT, WEIGHTLESS, CHAIN], Some(bed)),
+            (&[CHAIN], Some(seabed)),
+            (&[CHAIN, BUOYANT, WEIGHTLESS, CHAIN], Some(seabed)),
             (&[WEIGHTLESS, BUOYANT], None),
         ];
-        for (sections, bed) in lines {
+        for (sections, seabed) in lines {
             let length: f64 = sections.iter().map(|section| section.length).sum();
             for (span, rise) in [(0.8, 0.1), (0.6, 0.5), (0.95, 0.4), (0.4, -0.1)] {
                 let (span, rise, step) = (span * length, rise * length, 1e-4);
                 let at = |part: f64| {
                     let place = (span + part * step, rise - 0.7 * part * step);
-                    solve(sections, place.0, place.1, bed).unwrap()
+                    solve(sections, place.0, place.1, seabed).unwrap()
                 };
                 let [low, high] = [at(-1.0), at(1.0)].map(|line| {
                     let energy = line.energy();

@@ -1,24 +1,24 @@
-//! A line of several sections, with or without a bed under it: a march from A to B, nested in one scalar search.
+//! A line of several sections, with or without a seabed under it: a march from A to B, nested in one scalar search.
 //!
 //! Given the horizontal tension at A the line is laid out piece by piece, starting with a flight from A (or from the
-//! bed). The one free number of a flight, its vertical tension at A or the weight left on the bed before it lifts
-//! off, is the greatest for which it runs nowhere below the bed and ends nowhere below B: a monotone function, one
+//! seabed). The one free number of a flight, its vertical tension at A or the weight left on the seabed before it lifts
+//! off, is the greatest for which it runs nowhere below the seabed and ends nowhere below B: a monotone function, one
 //! root. The first constraint that holds with equality determines the end of the flight: at B, or touching down (V =
 //! 0) in the section concerned, from which it lies until it lifts off again. This is gift wrapping, so any number of
-//! sections may float or sink and any number of stretches may lie on the bed.
+//! sections may float or sink and any number of stretches may lie on the seabed.
 //!
 //! The span that results grows with the tension at A, which is found on a logarithmic scale. With friction and no
-//! tension left at A, the number searched is instead the material point s₀ up to which the bed holds all tension.
+//! tension left at A, the number searched is instead the material point s₀ up to which the seabed holds all tension.
 //! If the line is longer than its span even without any tension, it is slack: H = 0.
 //!
-//! Derived here. Without friction the result is the unique minimum of a convex energy; with friction the bed pulls towards A, as
+//! Derived here. Without friction the result is the unique minimum of a convex energy; with friction the seabed pulls towards A, as
 //! on a line that was laid from A and hauled at B.
 
 use super::flight::Flight;
 use super::root;
 use super::shape::Shape;
 use super::uniform::EndForces;
-use super::{Bed, Section};
+use super::{FlatSeabed, Section};
 
 /// Horizontal tension that stands for the limit of none, over the weights of the sections [-].
 const LIMP_SHARE: f64 = 1e-40;
@@ -54,7 +54,7 @@ pub(super) struct Sections {
     starts: Vec<f64>,
     span: f64,
     rise: f64,
-    bed: Option<Bed>,
+    seabed: Option<FlatSeabed>,
     length: f64,
     /// Σ |w| L [N].
     weights: f64,
@@ -73,8 +73,8 @@ struct Departure {
     vertical: f64,
     /// Section at which the vertical tension is small, so that it is resolved there to all its digits.
     reference: usize,
-    /// True if the flight leaves the bed: there V = 0.
-    from_bed: bool,
+    /// True if the flight leaves the seabed: there V = 0.
+    from_seabed: bool,
 }
 
 /// End of a flight: None at B, else touching down in a section, at a distance from its start [m].
@@ -112,7 +112,7 @@ struct Run {
 struct Hold {
     /// Horizontal tension at A [N].
     horizontal_a: f64,
-    /// Arc length before which nothing on the bed carries tension, where none is left at A [m].
+    /// Arc length before which nothing on the seabed carries tension, where none is left at A [m].
     tight_from: f64,
 }
 
@@ -120,7 +120,7 @@ struct Hold {
 type Memory = Vec<Option<(f64, usize)>>;
 
 impl Sections {
-    pub(super) fn new(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Self {
+    pub(super) fn new(sections: &[Section], span: f64, rise: f64, seabed: Option<FlatSeabed>) -> Self {
         let weights: f64 = sections.iter().map(|s| s.weight.abs() * s.length).sum();
         let felt = |s: &Section| s.weight.abs() * s.length > UNFELT_SHARE * weights;
         let unweighted = |s: &Section| Section { weight: 0.0, ..*s };
@@ -140,7 +140,7 @@ impl Sections {
             starts,
             span,
             rise,
-            bed,
+            seabed,
             length,
             weights,
         }
@@ -157,9 +157,9 @@ impl Sections {
             if (shape.end.1 - self.span).abs() <= JUMP * self.length || self.friction() == 0.0 {
                 break;
             }
-            self.bed = self.bed.map(|bed| Bed {
-                friction: 0.5 * bed.friction,
-                ..bed
+            self.seabed = self.seabed.map(|seabed| FlatSeabed {
+                friction: 0.5 * seabed.friction,
+                ..seabed
             });
         }
         let (a, b) = (shape.at(0.0), shape.at(self.length));
@@ -225,15 +225,16 @@ impl Sections {
             horizontal: hold.horizontal_a,
             vertical: 0.0,
             reference: 0,
-            from_bed: self.bed.is_some_and(|bed| bed.height >= 0.0) && self.sections[0].weight >= 0.0,
+            from_seabed: self.seabed.is_some_and(|seabed| seabed.height >= 0.0)
+                && self.sections[0].weight >= 0.0,
         };
-        departure.from_bed = departure.from_bed && self.fly(&departure).gap >= 0.0;
+        departure.from_seabed = departure.from_seabed && self.fly(&departure).gap >= 0.0;
         // every touchdown lies beyond the lift-off before it, in a separate section
         for flight in 0..=self.sections.len() {
             if memory.len() <= flight {
                 memory.push(None);
             }
-            let (flying, touch) = if departure.from_bed {
+            let (flying, touch) = if departure.from_seabed {
                 let (lifted, touch) = self.lift_off(&departure, hold.tight_from, &mut memory[flight]);
                 self.lay(&departure, &lifted, hold.tight_from, shape);
                 (lifted, touch)
@@ -244,12 +245,12 @@ impl Sections {
             let Some((section, offset)) = touch else {
                 break;
             };
-            let z = self.bed.map_or(shape.end.2, |bed| bed.height);
+            let z = self.seabed.map_or(shape.end.2, |seabed| seabed.height);
             departure = Departure {
                 section,
                 offset,
                 z,
-                from_bed: true,
+                from_seabed: true,
                 ..flying
             };
         }
@@ -293,7 +294,7 @@ impl Sections {
         }
     }
 
-    /// The flight that leaves the bed after the touchdown `from`, lifting off where it just clears every constraint.
+    /// The flight that leaves the seabed after the touchdown `from`, lifting off where it just clears every constraint.
     fn lift_off(
         &self,
         from: &Departure,
@@ -302,8 +303,8 @@ impl Sections {
     ) -> (Departure, Touch) {
         let run = self.run(from, tight_from);
         // the rise to B is quadratic in V there, so a search would leave V the root of its tolerance
-        let ends_on_bed =
-            run.end == self.sections.len() && self.bed.is_some_and(|bed| self.rise <= bed.height);
+        let ends_on_seabed =
+            run.end == self.sections.len() && self.seabed.is_some_and(|seabed| self.rise <= seabed.height);
         let (mut start, mut reference) = memory.unwrap_or((0.5 * (run.last - run.first), run.end));
         let mut passes = 0;
         loop {
@@ -315,7 +316,7 @@ impl Sections {
             if flown.gap <= 0.0 || upper <= lower {
                 return (all_lifted, flown.touch);
             }
-            if ends_on_bed {
+            if ends_on_seabed {
                 return (self.leave(from, &run, lower, reference), None);
             }
             let root = root::increasing(
@@ -342,7 +343,7 @@ impl Sections {
         }
     }
 
-    /// Stretch that may lie on the bed from the touchdown `from` on.
+    /// Stretch that may lie on the seabed from the touchdown `from` on.
     fn run(&self, from: &Departure, tight_from: f64) -> Run {
         let sections = self.sections[from.section..].iter();
         let heavy = sections.take_while(|section| section.weight >= 0.0);
@@ -359,7 +360,7 @@ impl Sections {
         }
     }
 
-    /// The flight that leaves the bed where the vertical tension at `reference` is then `vertical`.
+    /// The flight that leaves the seabed where the vertical tension at `reference` is then `vertical`.
     fn leave(&self, from: &Departure, run: &Run, vertical: f64, reference: usize) -> Departure {
         let (section, offset) = self.locate(from, run.end, vertical, reference);
         let to_reference = self.before[reference] - self.before[run.tight + 1];
@@ -376,7 +377,7 @@ impl Sections {
     }
 
     fn friction(&self) -> f64 {
-        self.bed.map_or(0.0, |bed| bed.friction)
+        self.seabed.map_or(0.0, |seabed| seabed.friction)
     }
 
     /// Vertical tension at the start of section `index` of a flight [N].
@@ -390,13 +391,13 @@ impl Sections {
         // where the gap jumps over zero the flight does not end at the touchdown it seems to have
         let ends = flown.touch.filter(|_| flown.gap.abs() < JUMP * self.length);
         let last = ends.map_or(self.sections.len(), |(index, _)| index + 1);
-        let first = from.section + usize::from(from.from_bed);
+        let first = from.section + usize::from(from.from_seabed);
         let candidates = (first..=last).map(|index| (self.vertical_at(flight, index), index));
         let best = candidates.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
         (best.1 != flight.reference && best.0.abs() < REFERENCE_SHARE * flight.vertical.abs()).then_some(best)
     }
 
-    /// Start of tension on the bed after the touchdown `from`: a section and the length between there and its end
+    /// Start of tension on the seabed after the touchdown `from`: a section and the length between there and its end
     /// [m].
     fn tight_place(&self, tight_from: f64, from: &Departure, run_end: usize) -> (usize, f64) {
         let whole = (from.section, self.sections[from.section].length - from.offset);
@@ -458,7 +459,7 @@ impl Sections {
 
     /// Height to spare over the tightest constraint of the flight that starts at `from`.
     fn fly(&self, from: &Departure) -> Flown {
-        let height = self.bed.map_or(f64::NEG_INFINITY, |bed| bed.height);
+        let height = self.seabed.map_or(f64::NEG_INFINITY, |seabed| seabed.height);
         let mut tightest = Flown {
             gap: f64::INFINITY,
             by_vertical: 0.0,
@@ -504,7 +505,7 @@ impl Sections {
 
     /// Vertical tension at the very start of a flight [N].
     fn vertical_start(&self, from: &Departure) -> f64 {
-        if from.from_bed {
+        if from.from_seabed {
             0.0
         } else {
             self.vertical_at(from, from.section)
@@ -528,7 +529,7 @@ impl Sections {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Bed, Section, solve};
+    use super::super::{FlatSeabed, Section, solve};
     use super::{Sections, Shape};
 
     fn section(length: f64, weight: f64, axial_stiffness: f64) -> Section {
@@ -541,21 +542,21 @@ mod tests {
 
     #[test]
     fn the_march_agrees_with_the_uniform_line_on_every_kind_of_it() {
-        let bed = |height, friction| Some(Bed { height, friction });
-        for (weight, ea, span, rise, bed) in [
+        let seabed = |height, friction| Some(FlatSeabed { height, friction });
+        for (weight, ea, span, rise, seabed) in [
             (50.0, 1e7, 80.0, 30.0, None),
             (50.0, 1e3, 130.0, -20.0, None),
-            (-50.0, 1e7, 60.0, 30.0, bed(0.0, 0.4)),
-            (50.0, 1e9, 88.0, 30.0, bed(0.0, 0.0)),
-            (50.0, 1e9, 88.0, 30.0, bed(0.0, 0.8)),
-            (50.0, 1e6, 75.0, 10.0, bed(-12.0, 0.0)),
-            (50.0, 1e6, 20.0, 10.0, bed(-12.0, 0.0)),
+            (-50.0, 1e7, 60.0, 30.0, seabed(0.0, 0.4)),
+            (50.0, 1e9, 88.0, 30.0, seabed(0.0, 0.0)),
+            (50.0, 1e9, 88.0, 30.0, seabed(0.0, 0.8)),
+            (50.0, 1e6, 75.0, 10.0, seabed(-12.0, 0.0)),
+            (50.0, 1e6, 20.0, 10.0, seabed(-12.0, 0.0)),
             (50.0, 1e6, 0.0, -60.0, None),
         ] {
             let parts = [0.3, 0.2, 0.5].map(|share| section(100.0 * share, weight, ea));
-            let uniform = solve(&[section(100.0, weight, ea)], span, rise, bed).expect("a line");
+            let uniform = solve(&[section(100.0, weight, ea)], span, rise, seabed).expect("a line");
             let mut shape = Shape::default();
-            let held = Sections::new(&parts, span, rise, bed).solve((0.0, 0.0), &mut shape);
+            let held = Sections::new(&parts, span, rise, seabed).solve((0.0, 0.0), &mut shape);
             let tolerance = 1e-12 * (uniform.tension_b() + uniform.tension_a());
             for (found, wanted) in [
                 (held.horizontal_b, uniform.horizontal()),
@@ -569,11 +570,11 @@ mod tests {
     }
 
     #[test]
-    fn a_lazy_wave_may_lie_on_the_bed_twice() {
+    fn a_lazy_wave_may_lie_on_the_seabed_twice() {
         let heavy = |length| section(length, 30.0, 1e8);
         let sections = [heavy(150.0), section(40.0, -40.0, 1e8), heavy(200.0)];
         let (height, friction) = (0.0, 0.0);
-        let line = solve(&sections, 300.0, 60.0, Some(Bed { height, friction })).expect("a line");
+        let line = solve(&sections, 300.0, 60.0, Some(FlatSeabed { height, friction })).expect("a line");
         let lifted = |s: f64| line.at(s).z > 1.0;
         assert!(!lifted(50.0) && lifted(170.0) && !lifted(280.0) && lifted(380.0));
         assert!(line.laid().count() >= 2);

@@ -8,7 +8,7 @@ use super::{Point, Section};
 pub(super) enum Kind {
     /// Support at both ends only.
     Flight(Flight),
-    /// The bed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
+    /// The seabed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
     Laid {
         tension: f64,
         growth: f64,
@@ -20,7 +20,7 @@ pub(super) enum Kind {
         x: f64,
         z: f64,
         weight: f64,
-        on_bed: bool,
+        on_seabed: bool,
     },
 }
 
@@ -55,8 +55,8 @@ impl Piece {
         }
     }
 
-    pub(super) fn on_bed(&self) -> bool {
-        matches!(self.kind, Kind::Laid { .. } | Kind::Slack { on_bed: true, .. })
+    pub(super) fn on_seabed(&self) -> bool {
+        matches!(self.kind, Kind::Laid { .. } | Kind::Slack { on_seabed: true, .. })
     }
 
     /// Stretched less unstretched length [m].
@@ -86,11 +86,16 @@ impl Piece {
                 weight,
                 axial_stiffness,
             },
-            Kind::Slack { x, z, weight, on_bed } => Kind::Slack {
+            Kind::Slack {
+                x,
+                z,
+                weight,
+                on_seabed,
+            } => Kind::Slack {
                 x,
                 z: -z,
                 weight,
-                on_bed,
+                on_seabed,
             },
         }
     }
@@ -153,7 +158,7 @@ impl Shape {
         );
     }
 
-    /// Appends `length` metres of `section` on the bed.
+    /// Appends `length` metres of `section` on the seabed.
     pub(super) fn lay(&mut self, section: &Section, length: f64, tension: f64, growth: f64) {
         if tension == 0.0 && growth == 0.0 {
             self.push(
@@ -162,7 +167,7 @@ impl Shape {
                     x: 1.0,
                     z: 0.0,
                     weight: section.weight,
-                    on_bed: true,
+                    on_seabed: true,
                 },
             );
         } else {
@@ -200,7 +205,7 @@ impl Shape {
                             x,
                             z,
                             weight: flight.weight,
-                            on_bed: false,
+                            on_seabed: false,
                         };
                     }
                 }
@@ -216,7 +221,7 @@ impl Shape {
                             x,
                             z,
                             weight: *weight,
-                            on_bed: true,
+                            on_seabed: true,
                         };
                     }
                 }
@@ -240,11 +245,16 @@ impl Shape {
         self.end = (0.0, 0.0, 0.0);
         for piece in pieces {
             let kind = match piece.kind {
-                Kind::Slack { x, z, weight, on_bed } => Kind::Slack {
+                Kind::Slack {
+                    x,
+                    z,
+                    weight,
+                    on_seabed,
+                } => Kind::Slack {
                     x: x * factor,
                     z,
                     weight,
-                    on_bed,
+                    on_seabed,
                 },
                 kind => kind,
             };

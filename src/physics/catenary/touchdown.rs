@@ -1,6 +1,6 @@
-//! The uniform heavy line of which a part lies on a flat bed: one scalar equation in the horizontal tension.
+//! The uniform heavy line of which a part lies on a flat seabed: one scalar equation in the horizontal tension.
 //!
-//! A flight that leaves the bed (V = 0) under H and rises by D has the vertical tension V at its upper end:
+//! A flight that leaves the seabed (V = 0) under H and rises by D has the vertical tension V at its upper end:
 //!
 //! T − H + V²/2EA = wD   ⇒   V² = 2wD(wD + 2H) / (1 + c/EA + √(1 + 2c/EA + H²/EA²)),   c = wD + H
 //!
@@ -9,12 +9,12 @@
 //!
 //! Σ E(H) + (X − L) = ∫ H ds / EA
 //!
-//! the sum over the one flight (A on the bed) or the two (A above it). The left falls with H, the right rises: one root.
-//! Friction lowers the tension on the bed by μw per metre towards A, not below 0, which enters the integral on the right.
+//! the sum over the one flight (A on the seabed) or the two (A above it). The left falls with H, the right rises: one root.
+//! Friction lowers the tension on the seabed by μw per metre towards A, not below 0, which enters the integral on the right.
 //! At H = 0 the flights hang vertically; if there is line left over even then, it is slack.
 //! Every term is positive and computed without cancellation, and the logarithm of the ratio of the two sides is nearly linear in
-//! ln H, so Newton's method needs four or five steps. Derived here (module above, "The bed"). Valid for w > 0 and, with
-//! friction, for A on the bed.
+//! ln H, so Newton's method needs four or five steps. Derived here (module above, "The seabed"). Valid for w > 0 and, with
+//! friction, for A on the seabed.
 
 use super::root;
 use super::uniform::{EndForces, Uniform, sinh_less};
@@ -27,15 +27,15 @@ const HORIZONTAL_SHARE_MIN: f64 = 1e-40;
 pub(super) struct Touchdown {
     /// Horizontal distance of the ends [m].
     pub span: f64,
-    /// Height of A above the bed [m].
+    /// Height of A above the seabed [m].
     pub height_a: f64,
-    /// Height of B above the bed [m].
+    /// Height of B above the seabed [m].
     pub height_b: f64,
     /// Coulomb friction μ [-].
     pub friction: f64,
 }
 
-/// A flight from the bed, under one H.
+/// A flight from the seabed, under one H.
 struct Lift {
     /// Vertical tension at its upper end [N].
     vertical: f64,
@@ -88,7 +88,7 @@ impl Uniform {
         }
     }
 
-    /// End forces of the line, which must touch the bed.
+    /// End forces of the line, which must touch the seabed.
     pub(super) fn touch_down(&self, at: &Touchdown) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let hanging = (
@@ -149,7 +149,7 @@ impl Uniform {
         } else {
             (0.5 * h * h / fall, h / fall)
         };
-        debug_assert!(a.vertical == 0.0, "with friction A lies on the bed");
+        debug_assert!(a.vertical == 0.0, "with friction A lies on the seabed");
         (
             (h * flown + area) / ea,
             (flown + h * flown_slope + area_slope) / ea,
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_pulled_straight_along_the_bed_stretches_as_a_bar() {
+    fn a_line_pulled_straight_along_the_seabed_stretches_as_a_bar() {
         let at = Touchdown {
             span: 101.0,
             height_a: 0.0,

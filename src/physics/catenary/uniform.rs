@@ -41,7 +41,7 @@ pub(super) struct EndForces {
     pub vertical_a: f64,
     /// Vertical tension at B [N], up going from A to B.
     pub vertical_b: f64,
-    /// Coulomb friction in use on the bed [-].
+    /// Coulomb friction in use on the seabed [-].
     pub friction: f64,
     /// Evaluations of the equation that was solved [-].
     pub steps: usize,

@@ -116,7 +116,7 @@ fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
     }
 }
 
-/// A beam resists everything, by a number of its own or by its solid section; a cable has neither shear nor torsion.
+/// A beam resists everything, by its own number or by its solid section; a cable has neither shear nor torsion.
 fn check_model(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
     let own = line_type.model == LineModel::Beam;
     let beam = own || scene.solver.integrator == Integrator::Beam;

@@ -33,7 +33,7 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
         return; // in the vessel's frame
     }
     let z = point.position[2];
-    // Positions typed with few digits may miss the bed by a rounding.
+    // Positions typed with few digits may miss the seabed by a rounding.
     let rounding = 1e-9 * seabed.depth.abs().max(1.0);
     rules! { findings, at;
         "position[2]" if seabed.is_level() && seabed.depth >= 0.0 && z < -seabed.depth - rounding =>

@@ -6,20 +6,20 @@ use crate::scene::{DepthGrid, LineModel, LineType, Scene, Seabed};
 /// Most soundings.
 const SOUNDINGS_MAX: usize = 4_000_000;
 
-pub(super) fn check_bed(scene: &Scene, bed: &Seabed, findings: &mut Findings) {
+pub(super) fn check_seabed(scene: &Scene, seabed: &Seabed, findings: &mut Findings) {
     let beam = |(_, kind): &(&String, &LineType)| kind.model == LineModel::Beam;
     rules! { findings, "seabed";
-        "file" if bed.file.is_some() && bed.slope.is_none() && bed.grid.is_none() =>
+        "file" if seabed.file.is_some() && seabed.slope.is_none() && seabed.grid.is_none() =>
             "the soundings of a file must be written out here: give them as `grid`";
     }
-    if let Some(grid) = &bed.grid {
+    if let Some(grid) = &seabed.grid {
         check_grid(grid, findings);
     }
     if let Some((name, _)) = scene.line_types.iter().find(beam) {
         rules! { findings, "seabed";
-            "" if !bed.is_level() =>
-                "line type {name:?} is a beam, and beams are modelled over a level bed only: use the cable model, whose lines may bend \
-                 too, or a level bed";
+            "" if !seabed.is_level() =>
+                "line type {name:?} is a beam, and beams are modelled over a level seabed only: use the cable model, whose lines may bend \
+                 too, or a level seabed";
         }
     }
 }

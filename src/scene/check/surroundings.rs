@@ -1,6 +1,6 @@
 //! Title, gravity, water, seabed.
 
-use super::seabed::check_bed;
+use super::seabed::check_seabed;
 use super::{Bounds, Findings, quantity, rules};
 use crate::scene::water::SPEED;
 use crate::scene::{Current, Integrator, LineModel, LineType, Scene};
@@ -20,7 +20,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         super::waves::check_flow(scene, findings);
     }
     if let Some(seabed) = &scene.seabed {
-        check_bed(scene, seabed, findings);
+        check_seabed(scene, seabed, findings);
     }
 }
 

@@ -71,7 +71,7 @@ impl Scene {
     fn sea_in_words(&self, point: &Point) -> Option<String> {
         let water = self.water_at_point(point);
         let other = if point.kind == PointKind::Free {
-            self.bed_at_point(point)
+            self.seabed_at_point(point)
         } else {
             let own = point.mass.is_some() || point.volume.is_some() || point.drag_area.is_some();
             own.then(|| "these forces add to the force of its lines on what moves it".to_string())
@@ -148,7 +148,7 @@ impl Scene {
         ))
     }
 
-    fn bed_at_point(&self, point: &Point) -> Option<String> {
+    fn seabed_at_point(&self, point: &Point) -> Option<String> {
         let seabed = self.seabed.as_ref()?;
         let weight = point.mass.unwrap_or(0.0) * self.gravity;
         let sinks = point.free.as_ref().is_none_or(|axes| axes.contains(&Axis::Z));

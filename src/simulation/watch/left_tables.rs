@@ -40,7 +40,7 @@ impl LeftTables {
         let lines = scene.lines.iter().enumerate();
         let stretched = lines.map(|(index, line)| (index, stretched(scene, line)));
         let finite = |section: &Stretched| section.strain_max.is_finite();
-        let grid = scene.seabed.as_ref().and_then(|bed| bed.grid.as_ref());
+        let grid = scene.seabed.as_ref().and_then(|seabed| seabed.grid.as_ref());
         LeftTables {
             stretched: stretched
                 .filter(|(_, sections)| sections.iter().any(finite))

@@ -1,7 +1,7 @@
 //! Equilibrium with the friction of the seabed.
 //!
 //! The friction of a line at rest depends on the way it was laid. As in the closed-form catenary, every line is taken
-//! as laid from end A without tension and hauled at end B, or from B where only that lies on the bed. The network
+//! as laid from end A without tension and hauled at end B, or from B where only that lies on the seabed. The network
 //! first finds its equilibrium without friction; there every node gets an anchor, its place on the same path if the
 //! line lay there without stretch,
 //!
@@ -98,12 +98,12 @@ impl Problem<'_> {
     fn lay(&self, state: &mut State) {
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
-            let Some((_, bottom)) = line.friction().and(line.bottom()) else {
+            let Some((_, seabed)) = line.friction().and(line.seabed()) else {
                 continue;
             };
             let LineState { position, anchor, .. } = &mut state.lines[index];
             let last = position.len() - 1;
-            let heights = [0, last].map(|end| -bottom.touch(position[end], 0.0).penetration);
+            let heights = [0, last].map(|end| -seabed.touch(position[end], 0.0).penetration);
             let from_b = is_laid_from_b(heights, line.unstretched_length());
             anchor.clone_from(position);
             for k in 0..last {

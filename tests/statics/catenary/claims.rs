@@ -1,9 +1,9 @@
 //! Closed forms, published figures and invariants.
 
 use super::random::{CLASSES, Dice};
-use super::{Line, bed};
+use super::{Line, seabed};
 use crate::common::bisect;
-use moorline::statics::catenary::{Bed, Section, is_laid_from_b, solve};
+use moorline::statics::catenary::{FlatSeabed, Section, is_laid_from_b, solve};
 
 fn assert_near(value: f64, wanted: f64, tolerance: f64) {
     assert!(
@@ -24,7 +24,7 @@ fn seafem_case_11_has_the_exact_sag_and_reactions() {
 fn oc3(friction: f64) -> Line {
     // MAP++ prints 698.094 N/m and computes with all digits: 77.7066 kg/m, 0.09 m, in 1025 kg/m³
     let weight = 9.80665 * (77.7066 - 1025.0 * std::f64::consts::PI * 0.09 * 0.09 / 4.0);
-    Line::uniform([902.2, weight, 384.243e6], [848.67, 250.0], bed(0.0, friction))
+    Line::uniform([902.2, weight, 384.243e6], [848.67, 250.0], seabed(0.0, friction))
 }
 
 #[test]
@@ -33,7 +33,7 @@ fn the_oc3_line_has_the_tension_map_prints_with_its_friction_and_less_without() 
     assert_near(line.tension_b(), 911_089.46, 5e-3);
     assert_near(line.horizontal(), 736_939.29, 5e-3);
     assert_near(line.vertical_b(), 535_727.99, 5e-3);
-    let frictionless = Line::uniform([902.2, 698.094, 384.243e6], [848.67, 250.0], oc3(0.0).bed).solve();
+    let frictionless = Line::uniform([902.2, 698.094, 384.243e6], [848.67, 250.0], oc3(0.0).seabed).solve();
     assert_near(frictionless.tension_b(), 911_088.356_868_612_6, 1e-6);
     assert_eq!(frictionless.horizontal_a(), frictionless.horizontal());
 }
@@ -60,16 +60,18 @@ fn swapping_the_ends_mirrors_the_line() {
         let mut line = make(&mut dice);
         // a line that lies with both ends, or with none, has the friction of one that was laid from end A
         let (rise, length) = (line.rise, line.length());
-        let slides = |bed: Bed| {
-            let [a, b] = [-bed.height, rise - bed.height];
+        let slides = |seabed: FlatSeabed| {
+            let [a, b] = [-seabed.height, rise - seabed.height];
             is_laid_from_b([a, b], length) || is_laid_from_b([b, a], length)
         };
-        line.bed = line
-            .bed
-            .and_then(|old| bed(old.height, if slides(old) { old.friction } else { 0.0 }));
-        let swapped_bed = line.bed.and_then(|old| bed(old.height - rise, old.friction));
+        line.seabed = line
+            .seabed
+            .and_then(|old| seabed(old.height, if slides(old) { old.friction } else { 0.0 }));
+        let swapped_seabed = line
+            .seabed
+            .and_then(|old| seabed(old.height - rise, old.friction));
         let sections = line.sections.iter().rev().copied().collect();
-        let swapped = Line::of(sections, line.span, -rise, swapped_bed);
+        let swapped = Line::of(sections, line.span, -rise, swapped_seabed);
         let (there, back) = (line.solve(), swapped.solve());
         let tolerance = line.rounding(&there);
         assert!(
@@ -124,7 +126,7 @@ fn a_taut_line_tends_to_its_stiffness_times_its_strain() {
 
 #[test]
 fn a_slack_line_hangs_vertically_and_pulls_with_the_weight_of_its_hanging_part() {
-    let line = Line::uniform([100.0, 20.0, 1e9], [30.0, 40.0], bed(0.0, 0.3)).solve();
+    let line = Line::uniform([100.0, 20.0, 1e9], [30.0, 40.0], seabed(0.0, 0.3)).solve();
     assert_eq!((line.horizontal(), line.tension_a()), (0.0, 0.0));
     // T + T²/2EAw·w = w·40, the stretch of the hanging part
     assert_near(line.vertical_b() + line.vertical_b().powi(2) / 2e9, 800.0, 1e-9);
@@ -143,21 +145,21 @@ fn a_weightless_line_longer_than_its_chord_pulls_nothing() {
 }
 
 #[test]
-fn a_buoyant_line_is_a_heavy_one_upside_down_and_leaves_the_bed_alone() {
+fn a_buoyant_line_is_a_heavy_one_upside_down_and_leaves_the_seabed_alone() {
     let heavy = Line::uniform([120.0, 7.0, 1e6], [90.0, 20.0], None).solve();
-    let buoyant = Line::uniform([120.0, -7.0, 1e6], [90.0, -20.0], bed(-20.0, 0.7)).solve();
+    let buoyant = Line::uniform([120.0, -7.0, 1e6], [90.0, -20.0], seabed(-20.0, 0.7)).solve();
     assert_eq!(buoyant.horizontal(), heavy.horizontal());
     assert_eq!(buoyant.vertical_b(), -heavy.vertical_b());
     assert_eq!((buoyant.laid_length(), buoyant.sag()), (0.0, 0.0));
 }
 
 #[test]
-fn a_line_just_off_the_bed_and_one_just_on_it_pull_alike() {
+fn a_line_just_off_the_seabed_and_one_just_on_it_pull_alike() {
     // the span at which V at A passes zero
     let lift_off = bisect([850.0, 868.0], |span| {
         Line {
             span,
-            bed: None,
+            seabed: None,
             ..oc3(0.0)
         }
         .solve()
@@ -193,7 +195,7 @@ fn sections_and_ends_that_make_no_line_are_refused_with_the_place_and_the_reason
         weight: f64::NAN,
         ..good
     };
-    for (sections, [span, rise], bed, message) in [
+    for (sections, [span, rise], seabed, message) in [
         (
             &[][..],
             [1.0, 0.0],
@@ -228,18 +230,18 @@ fn sections_and_ends_that_make_no_line_are_refused_with_the_place_and_the_reason
         (
             &[good],
             [1.0, 0.0],
-            bed(0.0, -0.1),
-            "bed.friction: -0.1 [-] is not at least 0 and finite",
+            seabed(0.0, -0.1),
+            "seabed.friction: -0.1 [-] is not at least 0 and finite",
         ),
         (
             &[good],
             [1.0, -3.0],
-            bed(-2.0, 0.0),
-            "bed.height: the bed at z = -2 m is above end B at z = -3 m; it must be at or below both ends",
+            seabed(-2.0, 0.0),
+            "seabed.height: the seabed at z = -2 m is above end B at z = -3 m; it must be at or below both ends",
         ),
     ] {
         assert_eq!(
-            solve(sections, span, rise, bed)
+            solve(sections, span, rise, seabed)
                 .expect_err("it is no line")
                 .to_string(),
             message

@@ -107,29 +107,29 @@ impl Walk<'_> {
             self.z += z;
             self.elongation += elongation;
             start = if passes { 0.0 } else { start };
-            self.stay_above_bed();
+            self.stay_above_seabed();
         }
         self.v = end;
     }
 
-    fn stay_above_bed(&mut self) {
-        if let Some(bed) = self.line.bed {
-            let below = (bed.height - self.z).max(0.0);
+    fn stay_above_seabed(&mut self) {
+        if let Some(seabed) = self.line.seabed {
+            let below = (seabed.height - self.z).max(0.0);
             self.miss(below, self.length_scale());
         }
     }
 
     fn lie(&mut self, section: &Section, to: f64) {
-        let bed = self.line.bed.expect("only a bed carries");
+        let seabed = self.line.seabed.expect("only a seabed carries");
         let length = to - self.s;
         assert!(section.weight >= 0.0, "what floats does not lie: {:?}", self.line);
         self.miss(self.v, self.force_scale());
-        self.miss(self.z - bed.height, self.length_scale());
+        self.miss(self.z - seabed.height, self.length_scale());
         let (before, after) = (self.h, self.solved.at(to).horizontal);
         let friction = self.solved.friction();
-        assert!(friction <= bed.friction, "Coulomb's law: {:?}", self.line);
+        assert!(friction <= seabed.friction, "Coulomb's law: {:?}", self.line);
         let gain = friction * section.weight * length;
-        let heights = [-bed.height, self.line.rise - bed.height];
+        let heights = [-seabed.height, self.line.rise - seabed.height];
         let [laid_first, hauled] = match is_laid_from_b(heights, self.line.length()) {
             true => [after, before],
             false => [before, after],
@@ -150,7 +150,7 @@ impl Walk<'_> {
             self.x += length + elongation;
         }
         self.elongation += elongation;
-        (self.h, self.v, self.z) = (after, 0.0, bed.height);
+        (self.h, self.v, self.z) = (after, 0.0, seabed.height);
     }
 
     fn is_slack_in_flight(&self, section: &Section) -> bool {

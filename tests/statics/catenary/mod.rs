@@ -3,7 +3,7 @@
 //! ```text
 //!                        ● B        judged: the end forces the solver gives are integrated from A to B along the line by
 //!                      ╱            Gauss quadrature of dx/ds = H/T + H/EA, dz/ds = V/T + V/EA, dV/ds = w; the walk must
-//!  A ●══════════════╱               arrive at B, with B's forces, never under the bed, and on it obey Coulomb's law
+//!  A ●══════════════╱               arrive at B, with B's forces, never under the seabed, and on it obey Coulomb's law
 //! ```
 //!
 //! `tests/reference/catenary.csv` is made by `python_tests/make_catenary_reference.py`. Source of the published figures: SeaFEM
@@ -14,7 +14,7 @@ mod judge;
 mod random;
 mod references;
 
-use moorline::statics::catenary::{Bed, Catenary, Section, solve};
+use moorline::statics::catenary::{Catenary, FlatSeabed, Section, solve};
 
 /// A line to solve.
 #[derive(Debug, Clone)]
@@ -22,21 +22,21 @@ struct Line {
     sections: Vec<Section>,
     span: f64,
     rise: f64,
-    bed: Option<Bed>,
+    seabed: Option<FlatSeabed>,
 }
 
 /// A seabed at a height over end A [m] with a friction [-].
-fn bed(height: f64, friction: f64) -> Option<Bed> {
-    Some(Bed { height, friction })
+fn seabed(height: f64, friction: f64) -> Option<FlatSeabed> {
+    Some(FlatSeabed { height, friction })
 }
 
 impl Line {
-    fn of(sections: Vec<Section>, span: f64, rise: f64, bed: Option<Bed>) -> Line {
+    fn of(sections: Vec<Section>, span: f64, rise: f64, seabed: Option<FlatSeabed>) -> Line {
         Line {
             sections,
             span,
             rise,
-            bed,
+            seabed,
         }
     }
 
@@ -44,7 +44,7 @@ impl Line {
     fn uniform(
         [length, weight, axial_stiffness]: [f64; 3],
         [span, rise]: [f64; 2],
-        bed: Option<Bed>,
+        seabed: Option<FlatSeabed>,
     ) -> Line {
         Line::of(
             vec![Section {
@@ -54,12 +54,12 @@ impl Line {
             }],
             span,
             rise,
-            bed,
+            seabed,
         )
     }
 
     fn solve(&self) -> Catenary {
-        solve(&self.sections, self.span, self.rise, self.bed).unwrap_or_else(|e| panic!("{e}: {self:?}"))
+        solve(&self.sections, self.span, self.rise, self.seabed).unwrap_or_else(|e| panic!("{e}: {self:?}"))
     }
 
     fn length(&self) -> f64 {

@@ -3,7 +3,7 @@
 use moorline::statics::catenary::Section;
 
 use super::judge::judge;
-use super::{Line, bed};
+use super::{Line, seabed};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): deterministic, one word of state.
 pub struct Dice(pub u64);
@@ -67,30 +67,30 @@ impl Dice {
         )
     }
 
-    /// A line over a bed through A, of a length between the chord and span + rise.
-    fn over_bed(&mut self, sections: Vec<Section>, friction: f64) -> Line {
+    /// A line over a seabed through A, of a length between the chord and span + rise.
+    fn over_seabed(&mut self, sections: Vec<Section>, friction: f64) -> Line {
         let length: f64 = sections.iter().map(|s| s.length).sum();
         let slope: f64 = self.decades(-2.0, 0.5);
         let (shortest, longest) = (1.0_f64.hypot(slope), 1.0 + slope);
         let share = self.unit();
         let span = length / (shortest + (longest - shortest) * share * share * 1.02);
-        Line::of(sections, span, slope * span, bed(0.0, friction))
+        Line::of(sections, span, slope * span, seabed(0.0, friction))
     }
 
-    /// Puts the bed below the lower end by decades `lower` to `upper` of the length.
-    fn lower_bed(&mut self, mut line: Line, lower: f64, upper: f64) -> Line {
+    /// Puts the seabed below the lower end by decades `lower` to `upper` of the length.
+    fn lower_seabed(&mut self, mut line: Line, lower: f64, upper: f64) -> Line {
         let depth = line.length() * self.decades(lower, upper);
-        line.bed = bed(
+        line.seabed = seabed(
             line.rise.min(0.0) - depth,
-            line.bed.map_or(0.0, |bed| bed.friction),
+            line.seabed.map_or(0.0, |seabed| seabed.friction),
         );
         line
     }
 
     /// The same for a part of the lines [-]; the others stay as they are.
-    fn some_lower_bed(&mut self, part: f64, line: Line, [lower, upper]: [f64; 2]) -> Line {
+    fn some_lower_seabed(&mut self, part: f64, line: Line, [lower, upper]: [f64; 2]) -> Line {
         match self.chance(part) {
-            true => self.lower_bed(line, lower, upper),
+            true => self.lower_seabed(line, lower, upper),
             false => line,
         }
     }
@@ -120,29 +120,29 @@ pub const CLASSES: [(&str, Make); 26] = [
     }),
     ("touching down", |d| {
         let section = d.section();
-        d.over_bed(vec![section], 0.0)
+        d.over_seabed(vec![section], 0.0)
     }),
     ("touching down with friction", |d| {
         let (section, friction) = (d.section(), d.decades(-3.0, 0.3));
-        d.over_bed(vec![section], friction)
+        d.over_seabed(vec![section], friction)
     }),
-    ("touching down between two ends above the bed", |d| {
+    ("touching down between two ends above the seabed", |d| {
         let (section, share) = (d.section(), d.between(0.1, 0.999));
         let line = d.chord(vec![section], share);
-        d.lower_bed(line, -3.0, -0.5)
+        d.lower_seabed(line, -3.0, -0.5)
     }),
     ("touching down between two ends with friction", |d| {
         let (section, share) = (d.section(), d.between(0.1, 0.999));
         let mut line = d.chord(vec![section], share);
-        line.bed = bed(0.0, d.decades(-3.0, 0.3));
-        d.lower_bed(line, -3.0, -0.5)
+        line.seabed = seabed(0.0, d.decades(-3.0, 0.3));
+        d.lower_seabed(line, -3.0, -0.5)
     }),
-    ("slack on the bed", |d| {
+    ("slack on the seabed", |d| {
         let (section, friction) = (d.section(), d.friction());
         let share = d.between(0.0, 0.99);
         let (span, rise) = (share * section.length * d.unit(), share * section.length);
         let rise = (rise - span) * d.unit();
-        Line::of(vec![section], span, rise, bed(0.0, friction))
+        Line::of(vec![section], span, rise, seabed(0.0, friction))
     }),
     ("vertical", |d| {
         let section = d.section();
@@ -151,29 +151,29 @@ pub const CLASSES: [(&str, Make); 26] = [
         if d.chance(0.1) {
             line.rise = 0.0;
         }
-        d.some_lower_bed(0.5, line, [-3.0, 0.0])
+        d.some_lower_seabed(0.5, line, [-3.0, 0.0])
     }),
     ("of tiny span", |d| {
         let section = d.section();
         let span = section.length * d.decades(-300.0, -3.0);
         let rise = section.length * d.between(-1.1, 1.1);
-        d.some_lower_bed(0.5, Line::of(vec![section], span, rise, None), [-3.0, 0.0])
+        d.some_lower_seabed(0.5, Line::of(vec![section], span, rise, None), [-3.0, 0.0])
     }),
     ("over-stretched", |d| {
         let (section, share) = (d.section(), 1.0 + d.decades(-8.0, 0.3));
         let line = d.chord(vec![section], share);
-        d.some_lower_bed(0.5, line, [-5.0, 0.0])
+        d.some_lower_seabed(0.5, line, [-5.0, 0.0])
     }),
     ("soft", |d| {
         let (mut section, share) = (d.section(), d.between(0.01, 2.0));
         section.axial_stiffness = section.length * section.weight * d.decades(-3.0, 1.5);
         let line = d.chord(vec![section], share);
         let rough = Line {
-            bed: bed(0.0, d.friction()),
+            seabed: seabed(0.0, d.friction()),
             ..line.clone()
         };
         if d.chance(0.5) {
-            d.lower_bed(rough, -3.0, 0.0)
+            d.lower_seabed(rough, -3.0, 0.0)
         } else {
             line
         }
@@ -182,14 +182,14 @@ pub const CLASSES: [(&str, Make); 26] = [
         let (mut section, share) = (d.section(), 1.0 - d.decades(-9.0, -0.2));
         section.axial_stiffness = d.decades(10.0, 13.0);
         let line = d.chord(vec![section], share);
-        d.some_lower_bed(0.3, line, [-3.0, 0.0])
+        d.some_lower_seabed(0.3, line, [-3.0, 0.0])
     }),
     ("light", |d| {
         let (mut section, share) = (d.section(), 1.0 + d.decades(-9.0, -0.2) * d.sign(0.7));
         section.weight = d.decades(-11.0, -3.0);
         section.axial_stiffness = d.decades(2.0, 13.0);
         let line = d.chord(vec![section], share);
-        d.some_lower_bed(0.3, line, [-3.0, 0.0])
+        d.some_lower_seabed(0.3, line, [-3.0, 0.0])
     }),
     ("weightless", |d| {
         let share = d.between(0.2, 1.3);
@@ -201,13 +201,13 @@ pub const CLASSES: [(&str, Make); 26] = [
             }],
         };
         let line = d.chord(sections, share);
-        d.some_lower_bed(0.3, line, [-3.0, 0.0])
+        d.some_lower_seabed(0.3, line, [-3.0, 0.0])
     }),
     ("buoyant", |d| {
         let (mut section, share) = (d.section(), d.between(0.05, 1.1));
         section.weight = -section.weight;
         let line = d.chord(vec![section], share);
-        d.some_lower_bed(0.5, line, [-3.0, 0.0])
+        d.some_lower_seabed(0.5, line, [-3.0, 0.0])
     }),
     ("of several sections, suspended", |d| {
         let (sections, share) = (d.sections(6.0, |_, w| w), d.between(0.05, 0.9999));
@@ -215,46 +215,46 @@ pub const CLASSES: [(&str, Make); 26] = [
     }),
     ("of several sections, touching down", |d| {
         let (sections, friction) = (d.sections(6.0, |_, w| w), d.friction());
-        d.over_bed(sections, friction)
+        d.over_seabed(sections, friction)
     }),
-    ("of several sections, between two ends above the bed", |d| {
+    ("of several sections, between two ends above the seabed", |d| {
         let (sections, share) = (d.sections(6.0, |_, w| w), d.between(0.05, 1.05));
         let mut line = d.chord(sections, share);
-        line.bed = bed(0.0, d.friction());
-        d.lower_bed(line, -4.0, -0.3)
+        line.seabed = seabed(0.0, d.friction());
+        d.lower_seabed(line, -4.0, -0.3)
     }),
     ("of sections that sink and float, suspended", |d| {
         let sections = d.sections(6.0, |d, w| w * -d.sign(0.5));
         let share = d.between(0.05, 1.05);
         d.chord(sections, share)
     }),
-    ("of sections that sink and float, over a bed", |d| {
+    ("of sections that sink and float, over a seabed", |d| {
         let sections = d.sections(7.0, |d, w| w * -d.sign(0.6));
         let share = d.between(0.05, 1.02);
         let line = d.chord(sections, share);
         if d.chance(0.3) {
             return Line {
                 rise: line.rise.abs(),
-                bed: bed(0.0, 0.0),
+                seabed: seabed(0.0, 0.0),
                 ..line
             };
         }
-        d.lower_bed(line, -4.0, -0.5)
+        d.lower_seabed(line, -4.0, -0.5)
     }),
     ("of sections some of which are weightless", |d| {
         let sections = d.sections(5.0, |d, w| if d.chance(0.5) { w } else { 0.0 });
         let share = d.between(0.05, 1.02);
         let line = d.chord(sections, share);
-        d.some_lower_bed(0.5, line, [-4.0, -0.5])
+        d.some_lower_seabed(0.5, line, [-4.0, -0.5])
     }),
     (
-        "of sections that sink, float or weigh nothing, over a bed with friction",
+        "of sections that sink, float or weigh nothing, over a seabed with friction",
         |d| {
             let weight = |d: &mut Dice, w: f64| if d.chance(0.25) { 0.0 } else { w * -d.sign(0.6) };
             let (sections, share) = (d.sections(7.0, weight), d.between(0.05, 1.02));
             let mut line = d.chord(sections, share);
-            line.bed = bed(0.0, d.decades(-3.0, 0.2));
-            d.lower_bed(line, -4.0, -0.5)
+            line.seabed = seabed(0.0, d.decades(-3.0, 0.2));
+            d.lower_seabed(line, -4.0, -0.5)
         },
     ),
     ("of sections unlike each other by many decades", |d| {
@@ -265,7 +265,7 @@ pub const CLASSES: [(&str, Make); 26] = [
             section.axial_stiffness *= d.decades(-2.0, 2.0);
         }
         let line = d.chord(sections, share);
-        d.some_lower_bed(0.5, line, [-4.0, -0.5])
+        d.some_lower_seabed(0.5, line, [-4.0, -0.5])
     }),
     ("of several sections, slack or vertical", |d| {
         let (sections, share) = (d.sections(4.0, |_, w| w), d.between(0.0, 1.01));
@@ -275,23 +275,23 @@ pub const CLASSES: [(&str, Make); 26] = [
         } else {
             0.1 * line.span * d.unit()
         };
-        d.some_lower_bed(0.7, line, [-4.0, -0.5])
+        d.some_lower_seabed(0.7, line, [-4.0, -0.5])
     }),
-    ("with both ends on the bed", |d| {
+    ("with both ends on the seabed", |d| {
         let section = d.section();
         let span = section.length * (1.0 + d.decades(-9.0, -0.3) * d.sign(0.5));
-        Line::of(vec![section], span, 0.0, bed(0.0, d.friction()))
+        Line::of(vec![section], span, 0.0, seabed(0.0, d.friction()))
     }),
-    ("with one end on or just above the bed", |d| {
+    ("with one end on or just above the seabed", |d| {
         let section = d.section();
         let share = 1.0 - d.decades(-7.0, -0.2);
         let mut line = d.chord(vec![section], share);
         let friction = d.friction();
-        line.bed = bed(line.rise.min(0.0), friction);
+        line.seabed = seabed(line.rise.min(0.0), friction);
         if d.chance(0.5) {
             line
         } else {
-            d.lower_bed(line, -15.0, -5.0)
+            d.lower_seabed(line, -15.0, -5.0)
         }
     }),
     ("whose chord is its length, nearly or exactly", |d| {
@@ -302,7 +302,7 @@ pub const CLASSES: [(&str, Make); 26] = [
             d.decades(-16.0, -6.0) * d.sign(0.5)
         };
         let line = d.chord(vec![section], 1.0 + off);
-        d.some_lower_bed(0.5, line, [-9.0, 0.0])
+        d.some_lower_seabed(0.5, line, [-9.0, 0.0])
     }),
 ];
 
@@ -317,7 +317,7 @@ fn judge_classes(count: usize, tolerance: f64) {
             let solved = line.solve();
             let violation = judge(&line, &solved);
             worst = worst.max(violation);
-            let in_full = line.bed.map_or(0.0, |bed| bed.friction);
+            let in_full = line.seabed.map_or(0.0, |seabed| seabed.friction);
             reduced += usize::from(solved.laid_length() > 0.0 && solved.friction() < in_full);
             steps += solved.iterations();
             steps_max = steps_max.max(solved.iterations());

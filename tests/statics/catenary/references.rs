@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use moorline::statics::catenary::{Bed, Section};
+use moorline::statics::catenary::{FlatSeabed, Section};
 
 use super::Line;
 use crate::common::greatest;
 
 /// Greatest difference of a solved line from a row of reference values: of forces over T at the fairlead (at least the anchor's where
 /// that one is zero), and of positions and lengths over the length [-].
-fn compare_row(row: &HashMap<String, String>, bed: Option<Bed>) -> (f64, f64) {
+fn compare_row(row: &HashMap<String, String>, seabed: Option<FlatSeabed>) -> (f64, f64) {
     let number = |name: &str| -> f64 { row[name].parse().unwrap_or_else(|_| panic!("{name} of {row:?}")) };
     let section = |i: usize| Section {
         length: number(&format!("L{i}")),
@@ -18,7 +18,7 @@ fn compare_row(row: &HashMap<String, String>, bed: Option<Bed>) -> (f64, f64) {
         axial_stiffness: number(&format!("EA{i}")),
     };
     let sections = (1..=number("nseg") as usize).map(section).collect();
-    let line = Line::of(sections, number("XF"), number("ZF"), bed);
+    let line = Line::of(sections, number("XF"), number("ZF"), seabed);
     let solved = line.solve();
     let scale = match number("T_fair") {
         tension if tension > 0.0 => tension,
@@ -60,11 +60,11 @@ fn compare_table(path: &Path, tolerance: f64) -> usize {
     for row in reader.deserialize() {
         let row: HashMap<String, String> = row.expect("a row of the table");
         let height = row
-            .get("bed_height")
-            .map_or(0.0, |height| height.parse().expect("bed_height is a number"));
+            .get("seabed_height")
+            .map_or(0.0, |height| height.parse().expect("seabed_height is a number"));
         let friction = row["CB"].parse().expect("CB is a number");
-        let bed = (row["seabed"] == "1").then_some(Bed { height, friction });
-        let (force, length) = compare_row(&row, bed);
+        let seabed = (row["seabed"] == "1").then_some(FlatSeabed { height, friction });
+        let (force, length) = compare_row(&row, seabed);
         let entry = worst.entry(row["cls"].clone()).or_default();
         *entry = (entry.0 + 1, entry.1.max(force), entry.2.max(length));
         let found = format!(

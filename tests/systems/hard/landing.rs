@@ -1,4 +1,4 @@
-//! Chains whose touchdown wanders in a storm: the seabed makes no noise of its own.
+//! Chains whose touchdown wanders in a storm: the seabed adds no noise.
 
 use moorline::scene::{Integrator, Scene};
 

@@ -57,18 +57,18 @@ fn a_stiffer_line_tends_to_an_inextensible_one_in_steps_that_stay_affordable() {
 }
 
 #[test]
-fn a_hundred_times_harder_bed_takes_the_same_steps_to_the_same_answers() {
+fn a_hundred_times_harder_seabed_takes_the_same_steps_to_the_same_answers() {
     for integrator in INTEGRATORS {
         for (contact, bound) in [(ContactLaw::Regularised, 1e-9), (ContactLaw::AsGiven, 0.12)] {
             let run = |factor: f64| {
-                let mut scene = harder_bed(shipped("oc3_catenary"), factor);
-                if let Some(bed) = &mut scene.seabed {
-                    bed.contact = contact;
+                let mut scene = harder_seabed(shipped("oc3_catenary"), factor);
+                if let Some(seabed) = &mut scene.seabed {
+                    seabed.contact = contact;
                 }
                 Run::of(&by(scene, integrator, 0.02), 40.0, 0.05)
             };
             let (given, harder) = (run(1.0), run(100.0));
-            let case = Case(format!("bed × 100, {contact:?}, {integrator:?}"));
+            let case = Case(format!("seabed × 100, {contact:?}, {integrator:?}"));
             case.sound(&harder, 2e-2, 170.0);
             case.at_most(1.03, "steps", harder.substeps as f64 / given.substeps as f64);
             case.at_most(bound, "tension", harder.tension_error(&given, 20.0));

@@ -138,7 +138,7 @@ pub(super) fn step(network: &mut LeapfrogNetwork<AxialImplicit>, model: &Model, 
     for (free, point) in coupling.points.iter_mut().enumerate() {
         point.prepare(network, free, model, (t, step));
     }
-    let friction = model.bottom.as_ref().and_then(|bottom| bottom.friction.as_ref());
+    let friction = model.seabed.as_ref().and_then(|seabed| seabed.friction.as_ref());
     let mut passes = 0;
     loop {
         passes += 1;
@@ -210,13 +210,13 @@ impl CoupledPoint {
             return;
         };
         let last = state.half_step[0];
-        let bed = SeabedBelow::under(model, state.position);
+        let seabed = SeabedBelow::under(model, state.position);
         let (waves, place) = (network.waves_at(free, t), [state.position.z, t]);
         let mut load = load_in_water((model, index, law), place, last, waves, Some(step.kick));
-        let rise = bed.normal.dot(&last);
+        let rise = seabed.normal.dot(&last);
         self.springs.clear();
         let with_state = |spring: ContactSpring| (spring, spring.pushes(rise).is_some());
-        let own = ContactSpring::under_point(law, &bed, step);
+        let own = ContactSpring::under_point(law, &seabed, step);
         self.springs.extend(own.map(with_state));
         for (line, end) in network.ends_at(free) {
             let share = line.end_share(end, step);
@@ -224,7 +224,7 @@ impl CoupledPoint {
             self.springs.extend(share.contact.map(with_state));
         }
         (self.load, self.last, self.velocity) = (load, last, last);
-        self.normal = bed.normal;
+        self.normal = seabed.normal;
         self.friction = Vector3::zeros();
     }
 
@@ -447,8 +447,8 @@ impl Stage for Prepare<'_> {
     type Found = ();
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) {
-        line.prepare::<CURRENT, BED>(self.step, self.ends);
+    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) {
+        line.prepare::<CURRENT, SEABED>(self.step, self.ends);
     }
 }
 
@@ -461,7 +461,7 @@ impl Stage for Tensions {
     type Found = ();
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) {
+    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) {
         let sizes = line.sizes(self.step);
         if line.kernel.open.is_empty() {
             return;
@@ -480,7 +480,7 @@ impl Stage for Settle {
     type Found = bool;
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) -> bool {
+    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) -> bool {
         let sizes = line.sizes(self.step);
         let before = match line.kernel.open.is_empty() {
             true => {
@@ -489,7 +489,7 @@ impl Stage for Settle {
             }
             false => line.combine_tensions(self.velocities),
         };
-        line.pass::<BED>(before, &sizes)
+        line.pass::<SEABED>(before, &sizes)
     }
 }
 
@@ -503,8 +503,8 @@ impl Stage for Finish<'_> {
     type Found = ();
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) {
+    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) {
         let sizes = line.sizes(self.step);
-        line.finish::<BED>(self.step, self.ends, &sizes);
+        line.finish::<SEABED>(self.step, self.ends, &sizes);
     }
 }

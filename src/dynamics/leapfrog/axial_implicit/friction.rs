@@ -88,12 +88,12 @@ impl SeabedRow {
     ) -> Lanes {
         let [on, off] = [1.0, -1.0].map(Lanes::splat);
         let rise = self.normal.dot(velocity);
-        let pushes = node.bed.push(rise).where_positive(node.free);
+        let pushes = node.contact.push(rise).where_positive(node.free);
         let before = *self;
         (self.slides, self.sticks) = (pushes.choose(on, off), off);
         let mut changed = Lanes::splat(0.0);
         if let (Some(friction), true) = (friction, pushes.any_positive()) {
-            let push = node.bed.push(rise);
+            let push = node.contact.push(rise);
             let needed = before.needed(node, velocity);
             let (axes, mass) = (Axes::new(self.normal, node.tangent), self.inverse.inverted());
             let along = mass.across + mass.excess * axes.share * axes.share;
@@ -128,7 +128,7 @@ impl NodeRow {
             return;
         }
         let (inverse, normal) = (seabed.inverse, seabed.normal);
-        let (spring, resistance) = (self.bed.spring, self.bed.resistance);
+        let (spring, resistance) = (self.contact.spring, self.contact.resistance);
         // sliding
         let response = inverse.times(normal, self.tangent);
         let fall = self.fall + inverse.times(seabed.friction, self.tangent);
@@ -153,23 +153,23 @@ impl AxialLine {
     #[inline(always)]
     pub(super) fn meet_seabed(&mut self, sizes: &Sizes) {
         let line = &self.layout;
-        let (Some(contact), Some(bottom)) = (&line.contact, line.bottom()) else {
+        let (Some(contact), Some(seabed)) = (&line.contact, line.seabed()) else {
             return;
         };
         for at in line.rows() {
-            let (node, seabed) = (
+            let (node, row) = (
                 &mut self.kernel.rows.nodes[at - 1],
                 &mut self.kernel.seabed[at - 1],
             );
-            let (normal, velocity) = (bottom.normal.load(at), line.velocity.load(at));
-            node.bed = contact.over_step(at, sizes.kick);
+            let (normal, velocity) = (seabed.normal.load(at), line.velocity.load(at));
+            node.contact = contact.over_step(at, sizes.kick);
             let inverse = Slender {
                 across: node.across,
                 excess: node.excess,
             };
-            *seabed = SeabedRow::off(normal, inverse);
-            seabed.slides = node.bed.push(normal.dot(velocity)).where_positive(node.free);
-            node.settle_on(seabed);
+            *row = SeabedRow::off(normal, inverse);
+            row.slides = node.contact.push(normal.dot(velocity)).where_positive(node.free);
+            node.settle_on(row);
         }
         if self.layout.friction().is_some() {
             let greatest = self.expect_tensions(sizes);

@@ -196,7 +196,7 @@ impl AxialLine {
         }
     }
 
-    /// Inverse masses, and the velocities that nodes would come to without tension and bed.
+    /// Inverse masses, and the velocities that nodes would come to without tension and seabed.
     #[inline(always)]
     pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, sizes: &Sizes) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
@@ -222,7 +222,7 @@ impl AxialLine {
         }
     }
 
-    /// Lets the nodes meet the level bed.
+    /// Lets the nodes meet the level seabed.
     #[inline(always)]
     pub(super) fn prepare_contact(&mut self, sizes: &Sizes) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
@@ -232,7 +232,7 @@ impl AxialLine {
         let (velocity, nodes) = (line.velocity.rows(last), &mut self.kernel.rows.nodes[..last]);
         for at in 1..last + 1 {
             let node = &mut nodes[at - 1];
-            node.bed = contact.over_step(at, sizes.kick);
+            node.contact = contact.over_step(at, sizes.kick);
             node.touches = node.pushed(velocity[at].z);
             node.settle();
         }
@@ -322,25 +322,25 @@ impl NodeRow {
         }
     }
 
-    /// 1 where the level bed pushes nodes that rise at `rise` [m/s], else −1.
+    /// 1 where the level seabed pushes nodes that rise at `rise` [m/s], else −1.
     #[inline(always)]
     pub(super) fn pushed(&self, rise: Lanes) -> Lanes {
-        let pushes = self.bed.push(rise).where_positive(self.free); // held ends yield to no bed
+        let pushes = self.contact.push(rise).where_positive(self.free); // held ends yield to no seabed
         pushes.choose(Lanes::splat(1.0), Lanes::splat(-1.0))
     }
 
-    /// Adds the level bed to the nodes it pushes: a rank-one update of the inverse mass, and its impulse.
+    /// Adds the level seabed to the nodes it pushes: a rank-one update of the inverse mass, and its impulse.
     #[inline(always)]
     pub(super) fn settle(&mut self) {
         (self.held, self.loose) = (Lanes::splat(0.0), self.fall);
         if !self.touches.any_positive() {
             return;
         }
-        let (one, resistance, lift) = (Lanes::splat(1.0), self.bed.resistance, self.lift());
+        let (one, resistance, lift) = (Lanes::splat(1.0), self.contact.resistance, self.lift());
         let share = (one + resistance * (self.across + lift * self.tangent.z))
             .recip()
             .where_positive(self.touches);
-        let impulse = self.bed.push(self.fall.z) * share;
+        let impulse = self.contact.push(self.fall.z) * share;
         self.held = resistance * share;
         self.loose = self.fall + self.tangent.scale(lift * impulse);
         self.loose.z = self.loose.z + self.across * impulse;

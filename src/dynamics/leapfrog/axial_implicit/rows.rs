@@ -24,9 +24,9 @@ pub(super) mod springs {
 
 /// Kinds of seabed under the nodes.
 pub(super) mod under {
-    /// No bed.
+    /// No seabed.
     pub(crate) const NOTHING: u8 = 0;
-    /// A level bed without friction.
+    /// A level seabed without friction.
     pub(crate) const LEVEL: u8 = 1;
     /// a seabed with a slope, soundings or friction.
     pub(crate) const ROUGH: u8 = 2;
@@ -255,7 +255,7 @@ impl SegmentRow {
     }
 }
 
-/// Nodes: M⁻¹ x = a x + b (t·x) t − c (s·x) s, with s = (a I + b t tᵀ) ẑ over a level bed.
+/// Nodes: M⁻¹ x = a x + b (t·x) t − c (s·x) s, with s = (a I + b t tᵀ) ẑ over a level seabed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodeRow {
     /// Masses across and along the line [kg].
@@ -275,13 +275,13 @@ pub(super) struct NodeRow {
     pub tangent: Vectors,
     /// s of nodes on a seabed with a slope, soundings or friction [1/kg].
     pub response: Vectors,
-    /// c, 0 off the bed [kg].
+    /// c, 0 off the seabed [kg].
     pub held: Lanes,
-    /// The level bed.
-    pub bed: NodeContact,
-    /// 1 where the level bed pushes, −1 elsewhere.
+    /// The level seabed.
+    pub contact: NodeContact,
+    /// 1 where the level seabed pushes, −1 elsewhere.
     pub touches: Lanes,
-    /// Velocity without tension, without and with the bed [m/s].
+    /// Velocity without tension, without and with the seabed [m/s].
     pub fall: Vectors,
     pub loose: Vectors,
     /// Impulse of the segments on nodes over a seabed with a slope, soundings or friction [N s].
@@ -305,7 +305,7 @@ impl NodeRow {
             tangent: Vectors::zero(),
             response: Vectors::zero(),
             held: zero,
-            bed: NodeContact::none(),
+            contact: NodeContact::none(),
             touches: Lanes::splat(-1.0),
             fall: Vectors::zero(),
             loose: Vectors::zero(),
@@ -314,17 +314,17 @@ impl NodeRow {
         }
     }
 
-    /// b t_z, which makes s = a ẑ + b t_z t over a level bed [1/kg].
+    /// b t_z, which makes s = a ẑ + b t_z t over a level seabed [1/kg].
     #[inline(always)]
     pub(super) fn lift(&self) -> Lanes {
         self.excess * self.tangent.z
     }
 
-    /// s·x [1/kg] over a bed, and t·x, of a vector x.
+    /// s·x [1/kg] over a seabed, and t·x, of a vector x.
     #[inline(always)]
-    fn shares<const BED: u8>(&self, x: Vectors) -> [Lanes; 2] {
+    fn shares<const SEABED: u8>(&self, x: Vectors) -> [Lanes; 2] {
         let along = self.tangent.dot(x);
-        let rise = match BED {
+        let rise = match SEABED {
             under::NOTHING => Lanes::splat(0.0),
             under::LEVEL => self.across * x.z + self.lift() * along,
             _ => self.response.dot(x),
@@ -334,14 +334,14 @@ impl NodeRow {
 
     /// M⁻¹ x.
     #[inline(always)]
-    pub(super) fn inverse_mass<const BED: u8>(&self, x: Vectors) -> Vectors {
-        let [rise, along] = self.shares::<BED>(x);
+    pub(super) fn inverse_mass<const SEABED: u8>(&self, x: Vectors) -> Vectors {
+        let [rise, along] = self.shares::<SEABED>(x);
         let (across, along) = (x.scale(self.across), self.excess * along);
-        if BED == under::NOTHING {
+        if SEABED == under::NOTHING {
             return across + self.tangent.scale(along);
         }
         let held = self.held * rise;
-        if BED == under::ROUGH {
+        if SEABED == under::ROUGH {
             return across + self.tangent.scale(along) - self.response.scale(held);
         }
         let mut inverted = across + self.tangent.scale(along - self.lift() * held);
@@ -351,16 +351,16 @@ impl NodeRow {
 
     /// Finds the forms of the unit vectors q and q′ of the segments before and after.
     #[inline(always)]
-    pub(super) fn weigh<const BED: u8>(&mut self, q: Vectors, other: Vectors) {
-        let [rise, along] = self.shares::<BED>(q);
-        let [other_rise, other_along] = self.shares::<BED>(other);
+    pub(super) fn weigh<const SEABED: u8>(&mut self, q: Vectors, other: Vectors) {
+        let [rise, along] = self.shares::<SEABED>(q);
+        let [other_rise, other_along] = self.shares::<SEABED>(other);
         let (excess, other_excess) = (self.excess * along, self.excess * other_along);
         self.forms = [
             self.across + excess * along,
             self.across * q.dot(other) + excess * other_along,
             self.across + other_excess * other_along,
         ];
-        if BED != under::NOTHING {
+        if SEABED != under::NOTHING {
             let (held, other_held) = (self.held * rise, self.held * other_rise);
             let [own, both, others] = self.forms;
             self.forms = [

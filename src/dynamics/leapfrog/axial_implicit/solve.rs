@@ -18,7 +18,7 @@ const SHORT: f64 = 0.9;
 /// Differences between the result of a pass and its assumptions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Found {
-    /// > 0 where the bed pushes other nodes than assumed, or other segments are slack.
+    /// > 0 where the seabed pushes other nodes than assumed, or other segments are slack.
     landed: Lanes,
     flipped: Lanes,
     /// 2·[`SHORT`] times the most that T̄ changes by the true stretch [N], for segments that turn little; > 0 where one turns more.
@@ -47,7 +47,7 @@ impl Found {
 impl AxialLine {
     /// Finds what couples the segments through their nodes.
     #[inline(always)]
-    pub(super) fn weigh_nodes<const BED: u8>(&mut self) {
+    pub(super) fn weigh_nodes<const SEABED: u8>(&mut self) {
         let segments = &self.kernel.rows.segments[..self.kernel.rows.nodes.len()];
         let direction = |at: usize| segments[at].direction;
         let mut q = direction(segments.len() - 1).moved_up_after(Vectors::zero());
@@ -55,7 +55,7 @@ impl AxialLine {
             if at > 0 {
                 q = direction(at - 1);
             }
-            node.weigh::<BED>(q, direction(at));
+            node.weigh::<SEABED>(q, direction(at));
         }
     }
 
@@ -104,7 +104,7 @@ impl AxialLine {
 
     /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N].
     #[inline(always)]
-    pub(super) fn find_velocities<const BED: u8>(&mut self, before: Lanes, sizes: &Sizes) {
+    pub(super) fn find_velocities<const SEABED: u8>(&mut self, before: Lanes, sizes: &Sizes) {
         let (rows, kick) = (self.kernel.rows.nodes.len(), sizes.kick);
         let (segments, new) = (
             &self.kernel.rows.segments[..rows],
@@ -118,17 +118,17 @@ impl AxialLine {
                 below = pull(at - 1);
             }
             let impulse = pull(at) - below;
-            if BED == under::ROUGH {
+            if SEABED == under::ROUGH {
                 node.impulse = impulse;
             }
-            new[at + 1] = node.loose + node.inverse_mass::<BED>(impulse);
+            new[at + 1] = node.loose + node.inverse_mass::<SEABED>(impulse);
         }
         self.layout.velocity_before.wrap();
     }
 
     /// Compares the new velocities with the assumptions.
     #[inline(always)]
-    pub(super) fn look_over<const BED: u8>(&mut self, sizes: &Sizes) -> Found {
+    pub(super) fn look_over<const SEABED: u8>(&mut self, sizes: &Sizes) -> Found {
         let mut found = Found::new();
         let (line, last) = (&self.layout, self.layout.striping.rows());
         let (segments, nodes) = (
@@ -140,7 +140,7 @@ impl AxialLine {
         for at in 1..last + 1 {
             found.check(&segments[at - 1], new[at + 1] - new[at], sizes);
         }
-        if BED == under::LEVEL {
+        if SEABED == under::LEVEL {
             for at in line.rows() {
                 found.look_at(&nodes[at - 1], new[at]);
             }
@@ -183,13 +183,13 @@ impl Found {
 }
 
 impl AxialLine {
-    /// Corrects how the nodes meet the bed where a pass found it not to be as assumed; false if that requires another pass.
+    /// Corrects how the nodes meet the seabed where a pass found it not to be as assumed; false if that requires another pass.
     #[inline(always)]
-    pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
-        if BED == under::ROUGH {
+    pub(super) fn contact_holds<const SEABED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
+        if SEABED == under::ROUGH {
             return self.seabed_holds(found.greatest, sizes);
         }
-        let landed = BED == under::LEVEL && found.landed.any_positive();
+        let landed = SEABED == under::LEVEL && found.landed.any_positive();
         if landed {
             self.revise_contact();
         }
@@ -243,7 +243,7 @@ impl AxialLine {
         again.any_positive()
     }
 
-    /// Takes the nodes to meet the bed as the last pass found.
+    /// Takes the nodes to meet the seabed as the last pass found.
     #[inline(always)]
     fn revise_contact(&mut self) {
         let velocity = &self.layout.velocity_before;

@@ -84,7 +84,7 @@ impl ExplicitLine {
         drag.dot(self.layout.water_velocity(at))
     }
 
-    /// Adds the work of the ends over a step, and that on the dampers beside them.
+    /// Adds the work of the ends over a step, and that on the dampers next to them.
     pub(super) fn balance_ends(&mut self, step: Step) {
         let Some(mut balance) = self.balance.take() else {
             return;

@@ -16,7 +16,7 @@ use crate::dynamics::leapfrog::layout::{
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::real::choose;
-use crate::model::Bottom;
+use crate::model::Seabed;
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::DragCoefficients;
 use crate::physics::slender::Slender;
@@ -129,7 +129,7 @@ struct NodeRows<'a> {
     current: Option<&'a CurrentNow>,
     waves: Option<&'a WaveArrays>,
     contact: ContactRows<'a>,
-    bottom: Option<&'a Bottom>,
+    seabed: Option<&'a Seabed>,
     /// 1 for nodes that move freely, 0 elsewhere.
     interior: &'a [Lanes],
 }
@@ -218,7 +218,7 @@ impl ExplicitLine {
             current: line.current.as_ref(),
             waves: line.waves.as_ref(),
             contact: ContactRows::default(),
-            bottom: None,
+            seabed: None,
             interior: self.kernel.interior.rows(last),
         };
         if let Some(water) = &self.kernel.water {
@@ -234,9 +234,9 @@ impl ExplicitLine {
                 resistance: contact.resistance.rows(last),
                 normal: &[],
             };
-            if let Some(rough) = &mut contact.bottom {
+            if let Some(rough) = &mut contact.seabed {
                 nodes.contact.normal = rough.normal.rows(last);
-                nodes.bottom = Some(&rough.bottom);
+                nodes.seabed = Some(&rough.seabed);
                 moving.friction = rough.friction.rows_mut(last);
             }
         }
@@ -297,7 +297,7 @@ impl NodeRows<'_> {
     #[inline(always)]
     fn land(&self, at: usize, by: &Kicking, free: Vectors, sizes: Sizes) -> (Vectors, Vectors) {
         let none = (free, Vectors::zero());
-        let (Some(bottom), interior) = (self.bottom, self.interior[at]) else {
+        let (Some(seabed), interior) = (self.seabed, self.interior[at]) else {
             return none;
         };
         let resistance = self.contact.resistance[at] * interior;
@@ -316,7 +316,7 @@ impl NodeRows<'_> {
             spring: sizes.kick * self.contact.spring[at] * interior,
             resistance: sizes.kick * resistance,
         };
-        let landed = landing.solve(free, bottom.friction.as_ref());
+        let landed = landing.solve(free, seabed.friction.as_ref());
         let friction = landed.friction.scale(sizes.kick.recip());
         (
             choose(interior, landed.velocity, free),
@@ -338,7 +338,7 @@ impl WaterRows<'_> {
 }
 
 impl ContactRows<'_> {
-    /// Force of the bed: F = P − R u' ≥ 0 with u' = u + Δt μ F; `rise` is u [m/s], and `yields` Δt μ [s/kg].
+    /// Force of the seabed: F = P − R u' ≥ 0 with u' = u + Δt μ F; `rise` is u [m/s], and `yields` Δt μ [s/kg].
     #[inline(always)]
     fn push(&self, at: usize, [rise, yields]: [Lanes; 2]) -> Lanes {
         let resistance = self.resistance[at];
@@ -354,15 +354,15 @@ impl ExplicitLine {
     #[inline(always)]
     fn choose_sweep(&mut self, step: &Step, drift: f64) {
         match (&self.kernel.water, self.layout.flows()) {
-            (None, _) => self.choose_bed::<{ around::DRY }>(step, drift),
-            (Some(_), false) => self.choose_bed::<{ around::STILL }>(step, drift),
-            (Some(_), true) => self.choose_bed::<{ around::FLOWING }>(step, drift),
+            (None, _) => self.choose_seabed::<{ around::DRY }>(step, drift),
+            (Some(_), false) => self.choose_seabed::<{ around::STILL }>(step, drift),
+            (Some(_), true) => self.choose_seabed::<{ around::FLOWING }>(step, drift),
         }
     }
 
     #[inline(always)]
-    fn choose_bed<const AROUND: u8>(&mut self, step: &Step, drift: f64) {
-        match (&self.layout.contact, self.layout.bottom()) {
+    fn choose_seabed<const AROUND: u8>(&mut self, step: &Step, drift: f64) {
+        match (&self.layout.contact, self.layout.seabed()) {
             (None, _) => self.sweep::<AROUND, { under::NOTHING }>(step, drift),
             (Some(_), None) => self.sweep::<AROUND, { under::LEVEL }>(step, drift),
             (Some(_), Some(_)) => self.sweep::<AROUND, { under::ROUGH }>(step, drift),

@@ -9,7 +9,7 @@
 //! velocity of a node that appears in it. The neighbour takes up mass that moves with it: M v̇ = f with M growing.
 //!
 //! Beyond the lengths that [`Winch::passage`](crate::model::Winch::passage) names the end segment splits in two, or merges with its
-//! neighbour. A split interpolates position and velocity linearly. Lumped masses are linear in the lengths beside them, so that mass and
+//! neighbour. A split interpolates position and velocity linearly. Lumped masses are linear in the adjacent lengths, so that mass and
 //! momentum stay what they were, the half node at the winch counted in, which moves at V_B. A merge gives the neighbour what is left of the
 //! momentum; it undoes a split exactly. The energy that either makes or takes counts as the winch's.
 //!
@@ -17,7 +17,7 @@
 //! height of the mass that the neighbour takes up. The end's force times V_B holds the second part.
 //!
 //! Derivation: dE/dt of the segment energy e·W(λ − 1) with e(t) and l(t), W′ = T.
-//! Valid for winches that are slow beside axial waves. Bends of the line within the merged segments are lost to their chord: a relative error
+//! Valid for winches that are slow compared with axial waves. Bends of the line within the merged segments are lost to their chord: a relative error
 //! of tension of about (e κ)²/8 · EA/T at a curvature κ, once at every merge.
 
 use nalgebra::Vector3;
@@ -97,7 +97,7 @@ impl ExplicitLine {
         self.lay_out(0);
     }
 
-    /// Hands back how far the winch is, with room for the nodes.
+    /// Stores the length paid out, with room for the nodes.
     pub(super) fn store_winch(&self, state: &mut LineState) {
         if let Some(winch) = &self.kernel.winch {
             let nodes = self.layout.segment_count + 1;
@@ -326,7 +326,7 @@ impl ExplicitLine {
             put(into, from, n + 1, |i| values[i], 0.0);
         }
         if let (Some(into), Some(contact)) = (&mut layout.contact, &nodes.contact) {
-            let level = |i: usize| match contact.bottom {
+            let level = |i: usize| match contact.seabed {
                 Some(_) => contact.lift(i),
                 None => contact.level[i],
             };
@@ -334,8 +334,8 @@ impl ExplicitLine {
             put(&mut into.stiffness, from, n, |i| contact.stiffness[i], 0.0);
             put(&mut into.damping, from, n, |i| contact.damping[i], 0.0);
             put(&mut into.yields, from, n, |i| 1.0 / contact.mass[i], 0.0);
-            if let (Some(bottom), false) = (&mut into.bottom, contact.stick.is_empty()) {
-                put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
+            if let (Some(seabed), false) = (&mut into.seabed, contact.stick.is_empty()) {
+                put(&mut seabed.stick, from, n + 1, |i| contact.stick[i], 0.0);
             }
         }
         for at in beyond(layout.striping, from, n + 1) {

@@ -1,11 +1,11 @@
-//! The bed under a line.
+//! The seabed under a line.
 
 use std::sync::Arc;
 
 use super::Layout;
 use crate::math::lanes::Vectors;
 use crate::math::striping::{Column, Field, Striping};
-use crate::model::{Bottom, Contact};
+use crate::model::{Contact, Seabed};
 use crate::physics::friction::Friction;
 use crate::physics::ground::Ground;
 
@@ -22,17 +22,17 @@ pub struct ContactArrays {
     pub yields: Column,
     /// Force on the nodes over the step, at no velocity [N].
     pub spring: Column,
-    /// Loss of that force with the velocity at which a node leaves the bed [N s/m].
+    /// Loss of that force with the velocity at which a node leaves the seabed [N s/m].
     pub resistance: Column,
     /// The seabed where it has a slope, soundings or friction.
-    pub bottom: Option<BottomArrays>,
+    pub seabed: Option<SeabedArrays>,
 }
 
 /// A seabed with a slope, soundings or friction.
 #[derive(Debug, Clone)]
-pub struct BottomArrays {
-    pub bottom: Arc<Bottom>,
-    /// Stiffness along the bed of a node that sticks [N/m]; 0 without friction.
+pub struct SeabedArrays {
+    pub seabed: Arc<Seabed>,
+    /// Stiffness along the seabed of a node that sticks [N/m]; 0 without friction.
     pub stick: Column,
     /// Friction on the nodes in the last step [N].
     pub friction: Field,
@@ -47,12 +47,12 @@ pub struct BottomArrays {
 impl ContactArrays {
     pub(super) fn new(contact: &Contact, striping: Striping) -> ContactArrays {
         let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
-        let bottom = contact.bottom.as_ref();
-        let level: Vec<f64> = bottom.map_or_else(|| contact.level.clone(), |_| lifts());
+        let seabed = contact.seabed.as_ref();
+        let level: Vec<f64> = seabed.map_or_else(|| contact.level.clone(), |_| lifts());
         let keep = |values: &[f64]| striping.column(values, 0.0);
         ContactArrays {
-            bottom: bottom.map(|bottom| BottomArrays {
-                bottom: bottom.clone(),
+            seabed: seabed.map(|seabed| SeabedArrays {
+                seabed: seabed.clone(),
                 stick: keep(&contact.stick),
                 friction: Field::zeros(striping),
                 normal: Field::zeros(striping),
@@ -70,30 +70,30 @@ impl ContactArrays {
 }
 
 impl Layout {
-    /// The bed, where it is more than a level plane without friction.
-    pub fn bottom(&self) -> Option<&BottomArrays> {
-        self.contact.as_ref()?.bottom.as_ref()
+    /// The seabed, where it is more than a level plane without friction.
+    pub fn seabed(&self) -> Option<&SeabedArrays> {
+        self.contact.as_ref()?.seabed.as_ref()
     }
 
     /// Shape of the seabed, where it is more than a level plane without friction.
     #[inline(always)]
     pub fn ground(&self) -> Option<&Ground> {
-        Some(&self.bottom()?.bottom.ground)
+        Some(&self.seabed()?.seabed.ground)
     }
 
     /// Friction of the seabed.
     #[inline(always)]
     pub fn friction(&self) -> Option<&Friction> {
-        self.bottom()?.bottom.friction.as_ref()
+        self.seabed()?.seabed.friction.as_ref()
     }
 
     /// Keeps the friction on a row of nodes [N].
     #[inline(always)]
     pub fn set_friction(&mut self, at: usize, friction: Vectors) {
         if let Some(contact) = &mut self.contact
-            && let Some(bottom) = &mut contact.bottom
+            && let Some(seabed) = &mut contact.seabed
         {
-            bottom.friction.store(friction, at);
+            seabed.friction.store(friction, at);
         }
     }
 }

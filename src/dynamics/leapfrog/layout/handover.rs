@@ -88,7 +88,7 @@ fn padding(i: usize) -> Vector3<f64> {
 
 impl Layout {
     /// Takes over positions and velocities of a line; the halo is yet to be renewed. Padding starts anew: it may have met what a step
-    /// that was too long made of the nodes beside it.
+    /// that was too long made of its neighbours.
     pub fn load(&mut self, state: &LineState) {
         self.released = state.released;
         let memory = &state.half_step;
@@ -122,7 +122,7 @@ impl Layout {
         }
     }
 
-    /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions. Whether all nodes have finite
+    /// Copies them back after steps of `steps` [s], with velocities extrapolated to the time of the positions. Whether all nodes have finite
     /// positions, and speeds that mooring lines reach.
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
         self.vector_unit.dispatch(HandBack(self, state, steps))
@@ -162,10 +162,10 @@ impl Layout {
             // the one behind them
             nodes.take(4 * rows, 3, &self.motion(rows + 1, extrapolation));
         }
-        if let Some(bottom) = self.bottom() {
+        if let Some(seabed) = self.seabed() {
             let places = state.position.iter().zip(self.striping.slots());
             for (anchor, (position, at)) in state.anchor.iter_mut().zip(places) {
-                *anchor = position + bottom.friction.get(at) / bottom.stick[at];
+                *anchor = position + seabed.friction.get(at) / seabed.stick[at];
             }
         }
         sound.all_positive()

@@ -9,7 +9,7 @@ use crate::physics::seabed::{self, ContactCoefficients, PARTS};
 
 /// Shape and friction of a seabed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Bottom {
+pub struct Seabed {
     /// Shape of the seabed.
     pub ground: Ground,
     /// True if the shape is a level plane.
@@ -18,8 +18,8 @@ pub struct Bottom {
     pub friction: Option<Friction>,
 }
 
-impl Bottom {
-    /// Position of a node at a place [m] relative to the level from which the bed pushes it, `lift` [m] above the bed
+impl Seabed {
+    /// Position of a node at a place [m] relative to the level from which the seabed pushes it, `lift` [m] above the seabed
     /// along its normal.
     pub fn touch(&self, place: Vector3<f64>, lift: f64) -> Touch {
         let touch = self.ground.touch(place);
@@ -29,16 +29,16 @@ impl Bottom {
         }
     }
 
-    /// Velocity at which a node leaves the bed, along its normal [m/s].
+    /// Velocity at which a node leaves the seabed, along its normal [m/s].
     pub fn rise(&self, place: Vector3<f64>, velocity: Vector3<f64>) -> f64 {
         self.ground.normal(place.x, place.y).dot(&velocity)
     }
 }
 
 impl Contact {
-    /// Height above the bed at which contact with a node begins, along the normal [m].
+    /// Height above the seabed at which contact with a node begins, along the normal [m].
     pub fn lift(&self, node: usize) -> f64 {
-        self.level[node] - self.bed
+        self.level[node] - self.seabed_level
     }
 
     /// Spring and damper of a segment.
@@ -49,13 +49,13 @@ impl Contact {
         }
     }
 
-    /// Half of the stiffnesses of the segments beside a node [N/m].
+    /// Half of the stiffnesses of the segments next to a node [N/m].
     pub fn stiffness_under(&self, node: usize) -> f64 {
         let beside = self.beside(node);
         beside.map(|(segment, _)| 0.5 * self.stiffness[segment]).sum()
     }
 
-    /// Segments beside a node, each with the node at its other end.
+    /// Segments next to a node, each with the node at its other end.
     pub fn beside(&self, node: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
         let before = node.checked_sub(1).map(|segment| (segment, segment));
         let after = (node < self.stiffness.len()).then_some((node, node + 1));
@@ -64,8 +64,8 @@ impl Contact {
 
     /// Position of a node at a place [m] relative to the level from which the seabed pushes it.
     pub fn touch(&self, node: usize, place: Vector3<f64>) -> Touch {
-        match &self.bottom {
-            Some(bottom) => bottom.touch(place, self.lift(node)),
+        match &self.seabed {
+            Some(seabed) => seabed.touch(place, self.lift(node)),
             None => Touch {
                 penetration: self.level[node] - place.z,
                 normal: Vector3::z(),
@@ -77,9 +77,9 @@ impl Contact {
 
     /// Penetration of a node at a place [m] and the normal of the seabed there.
     pub fn stand(&self, node: usize, place: Vector3<f64>) -> (f64, Vector3<f64>) {
-        match &self.bottom {
-            Some(bottom) => {
-                let (below, normal) = bottom.ground.stand(place);
+        match &self.seabed {
+            Some(seabed) => {
+                let (below, normal) = seabed.ground.stand(place);
                 (below + self.lift(node), normal)
             }
             None => (self.level[node] - place.z, Vector3::z()),
@@ -120,43 +120,43 @@ impl Contact {
         carried.iter().sum::<f64>() / PARTS.len() as f64
     }
 
-    /// z of the bed under a place [m].
+    /// z of the seabed under a place [m].
     pub fn height_under(&self, place: Vector3<f64>) -> f64 {
-        match &self.bottom {
-            Some(bottom) if !bottom.level => bottom.ground.height(place.x, place.y),
-            _ => self.bed,
+        match &self.seabed {
+            Some(seabed) if !seabed.level => seabed.ground.height(place.x, place.y),
+            _ => self.seabed_level,
         }
     }
 }
 
 impl PointContact {
-    /// Height above the bed at which contact with the point begins, along the normal [m].
+    /// Height above the seabed at which contact with the point begins, along the normal [m].
     pub fn lift(&self) -> f64 {
-        self.level - self.bed
+        self.level - self.seabed_level
     }
 }
 
 impl Line {
-    /// The bed under the line, where it is more than a level plane without friction.
-    pub fn bottom(&self) -> Option<(&Contact, &Bottom)> {
+    /// The seabed under the line, where it is more than a level plane without friction.
+    pub fn seabed(&self) -> Option<(&Contact, &Seabed)> {
         let contact = self.nodes.contact.as_ref()?;
-        Some((contact, contact.bottom.as_deref()?))
+        Some((contact, contact.seabed.as_deref()?))
     }
 
     /// The friction under the line.
     pub fn friction(&self) -> Option<&Friction> {
-        self.bottom()?.1.friction.as_ref()
+        self.seabed()?.1.friction.as_ref()
     }
 }
 
 impl Model {
     /// Returns whether the seabed, if there is one, is a level plane.
-    pub fn bed_is_level(&self) -> bool {
-        self.bottom.as_ref().is_none_or(|bottom| bottom.level)
+    pub fn seabed_is_level(&self) -> bool {
+        self.seabed.as_ref().is_none_or(|seabed| seabed.level)
     }
 
     /// The friction of the seabed.
     pub fn friction(&self) -> Option<&Friction> {
-        self.bottom.as_ref()?.friction.as_ref()
+        self.seabed.as_ref()?.friction.as_ref()
     }
 }
