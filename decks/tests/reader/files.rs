@@ -96,7 +96,7 @@ fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
 #[test]
 fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_seabed() {
     let folder = tempdir().unwrap();
-    let deck = OPENFAST.replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
+    let deck = OPENFAST.replace("2.0e6    kbot", "110 WtrDpth\nseabed.txt SeafloorFile");
     let axes = "2 2\n-900 900\n-900 900\n-900 -900 -100\n";
     let heights = format!("{axes}-900 900 -100\n900 -900 -110\n900 900 -110\n");
     let found = with_files(folder.path(), &deck, &[("seabed.txt", &heights)]);
