@@ -125,7 +125,7 @@ class Simulation:
     def tensions(self, line: str) -> NDArray[np.float64]:
         """Effective tensions at the nodes of a line [N]; at the ends the size of the force."""
     def segment_tensions(self, line: str) -> NDArray[np.float64]:
-        """Tensions of the segments beside the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn."""
+        """Tensions of the segments next to the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn."""
     def save(self) -> State:
         """All that changes. A simulation that is restored to it continues to the same bits."""
     def restore(self, state: State) -> None:
