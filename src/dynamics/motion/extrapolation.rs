@@ -240,8 +240,8 @@ impl Extrapolation {
         }
     }
 
-    /// Factors for a step [s] that follows the newest sample, from which a motion at the same step is predicted as well where that sample is
-    /// the end of the path.
+    /// Evaluates the factors of a prediction over a step [s] from the newest sample. With [`Reconstruction::Interpolate`] this sample is the end
+    /// of the path, and only the choice of the degree and the slopes at the sample are used.
     fn renew(&mut self, clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) {
         let (was_even, start) = (self.even, clock.times[0]);
         let rate = 1.0 / step;

@@ -25,7 +25,7 @@ const MEMORIES: [f64; 8] = [0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92];
 /// Part of the mean square of the residuals that is kept from sample to sample [-].
 const KEPT: f64 = 0.9;
 
-/// Velocity that the fourth difference of equal steps adds to that of a cubic a step later, times the step [-].
+/// Coefficient of the fourth difference in the velocity one step after the newest sample, times the step [-]: 1 + ½ + ⅓ + ¼.
 const NEXT: f64 = 25.0 / 12.0;
 
 /// Scaled derivatives of one filter along four axes [m, rad].
