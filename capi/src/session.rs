@@ -174,7 +174,7 @@ impl Session {
         let simulation = equilibrium(&self.scene, time, &self.inputs)?;
         self.watch = Some(Watch::new(&self.scene, &simulation));
         self.simulation = Some(simulation);
-        self.watch();
+        self.note_state();
         self.origin = self.inputs.clone();
         self.start_time = time;
         Ok(())
@@ -194,7 +194,7 @@ impl Session {
     }
 
     /// Notes on the present state, each once.
-    fn watch(&mut self) {
+    fn note_state(&mut self) {
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             let notes = watch.look(simulation);
             self.note(&notes);
@@ -214,7 +214,7 @@ impl Session {
             let advanced = simulation.advance(step);
             advanced.map_err(|error| Failure::new(MOORLINE_STEP_ERROR, error.to_string()))?;
         }
-        self.watch();
+        self.note_state();
         Ok(())
     }
 

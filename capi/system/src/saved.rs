@@ -132,9 +132,11 @@ impl System {
             self.watch = Some(Watch::new(&self.deck.scene, &simulation));
             self.simulation = Some(simulation);
             self.start = body.start;
-        } else if let (Some(simulation), Some(watch)) = (&mut self.simulation, &mut self.watch) {
+        } else if let Some(simulation) = &mut self.simulation {
             simulation.restore(body.snapshot);
-            watch.resume(simulation);
+            if let Some(watch) = &mut self.watch {
+                watch.resume(simulation);
+            }
         }
         self.place = body.place;
         self.ahead = body.ahead;

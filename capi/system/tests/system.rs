@@ -373,7 +373,7 @@ fn the_host_may_begin_at_any_time() {
 }
 
 #[test]
-fn a_host_that_steps_too_coarsely_reads_so_in_the_log() {
+fn a_coupled_point_that_jumps_is_noted_once_in_the_log() {
     let (folder, path) = deck(DECK);
     let log = folder.path().join("log.txt");
     let mut system = System::create(&path, Settings::default(), Log::from_level(NONE)).unwrap();
