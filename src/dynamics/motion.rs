@@ -357,10 +357,10 @@ impl AxesPath {
         [start, [position, velocity, curvature]]
     }
 
-    /// The newest two samples of the position along the first three axes, and where the present segments end [m, rad].
-    pub fn newest(&self) -> ([Vector3<f64>; 2], Vector3<f64>) {
-        let [last, second, ..] = &self.positions;
-        ([last.xyz(), second.xyz()], self.end[0].xyz())
+    /// The newest three samples of the position along the first three axes [m, rad].
+    pub fn newest(&self) -> [Vector3<f64>; 3] {
+        let [newest, last, second, ..] = &self.positions;
+        [newest.xyz(), last.xyz(), second.xyz()]
     }
 
     /// Predicts from the positions of the host.

@@ -66,7 +66,7 @@ results! {
     pub enum SolverResult {
         /// Internal steps of the last communication step [-].
         Substeps = "substeps" => |simulation, _| Some(simulation.substeps() as f64),
-        /// Estimated error of tension [-], over its variation, from extrapolating the displacements between communication points.
+        /// Estimated error of tension [-], over its variation, from the path of the displacements between communication points.
         InputError = "input_error" => |simulation, _| Some(simulation.input_error()),
         /// Energy that the time integration has produced (positive) or lost since the start [J].
         EnergyError = "energy_error" => |simulation, _| simulation.energy_balance().map(|balance| balance.error()),

@@ -1,4 +1,4 @@
-//! Error of the extrapolation of a host's motion, and the resulting error of tension.
+//! Error of the path of a host's motion between communication points, and the resulting error of tension.
 //!
 //! Displacements that a host gives at the start of every communication step h are extrapolated over it. The next
 //! sample differs from the path's end by m, and the path has to be bent back at a velocity of m/h. With the velocity
@@ -14,11 +14,14 @@
 //!
 //! The second part is evaluated for the line with the greatest ratio of impedance to tension at rest, while this line is tight. It dominates where the
 //! tension is small and follows the acceleration of the end, as on cables and risers. ⟨|J|⟩ is used in place of √⟨J²⟩, so that one jump in the
-//! acceleration of the motion itself does not count for ten periods.
+//! acceleration of the motion itself does not count for ten periods. A path that is interpolated passes through the samples, m = 0; its velocities,
+//! where the host gives none, have errors δ too, and δ = J h/12 takes the place of m/h. A path that jumps has jumps m.
 //!
 //! With displacements only and 12 to 40 steps in a period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and `taut_polyester`,
-//! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities up to 26 times, where both are small. It leaves out the
-//! resonance of a line with an axial mode at the frequency of the communication points. The error falls with h³ or faster, as m/h does.
+//! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities up to 26 times, where both are small. Interpolated displacements: 2.5
+//! to 17 times and 0.8 to 5 times. Jumps on other lines than cables: 1.1 to 4 times. It leaves out the resonance of a line with an axial mode at the frequency of the communication points, and the
+//! curvature of interpolated cubics with exact velocities, (ωh)²/12 of an acceleration of frequency ω: 2.3 % with 12 steps in a period, 0.2 % with 40.
+//! The error falls with h³ or faster, as m/h does.
 //!
 //! Mean values decay with the time of ten periods, of the frequency √(⟨a²⟩/⟨v²⟩) with the acceleration a. The first
 //! samples, which do not determine a motion, are not counted. The fastest part of the motion dominates the measure,
@@ -30,8 +33,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-use super::scale::Scale;
-use super::{inputs::Inputs, paths::Paths};
+use super::paths::Paths;
 use crate::dynamics::motion::AxesPath;
 use crate::dynamics::reaction;
 use crate::model::{End, Line, Model, Role, State};
@@ -54,14 +56,14 @@ const CONSTANT: f64 = 1e-6;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;
 
-/// Mean squares of the motion given and of its extrapolation error.
+/// Mean squares of the motion given and of the error of its path.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct InputRecord {
     /// Samples so far, up to the number not counted [-].
     samples: usize,
     /// Time in the sums [s].
     time: f64,
-    /// Σ m²/h [m²/s].
+    /// Σ m²/h, of the interpolated path Σ δ²h [m²/s].
     missed: f64,
     /// Σ v² h [m²/s].
     speed: f64,
@@ -88,23 +90,27 @@ impl InputRecord {
         recorded
     }
 
-    /// Records the inputs at the end of the first of two `gaps` between samples [s], before they continue the paths.
+    /// Records the newest sample of the paths `after`, which continue those `before`, at the end of the first of two `gaps` between samples [s].
     #[inline(never)]
-    fn take(&mut self, model: &Model, scale: &Scale, paths: &Paths, inputs: &Inputs, gaps: [f64; 2]) {
+    fn take(&mut self, levers: &[f64], [before, after]: [&Paths; 2], gaps: [f64; 2], interpolates: bool) {
         let mut squares = [0.0; 3];
-        let coupled = model.points.iter().zip(&inputs.points);
-        let coupled = coupled.filter(|(point, _)| matches!(point.role, Role::Coupled { .. }));
-        for ((point, input), path) in coupled.zip(&paths.points) {
-            let place = point.reference + Vector3::from(input.displacement);
-            add(&mut squares, &path.0, place, gaps, 1.0);
+        let mut add = |before: &AxesPath, after: &AxesPath, lever: f64| {
+            let missed = match interpolates {
+                true => gaps[0] * gaps[0] / JUMP * jump(before, after),
+                false => (after.newest()[0] - before.end()[0].xyz()).norm(),
+            };
+            let [velocity, acceleration] = rates(after.newest(), gaps);
+            let norms = [missed, velocity.norm(), acceleration.norm()];
+            for (sum, norm) in squares.iter_mut().zip(norms) {
+                *sum += (lever * norm).powi(2);
+            }
+        };
+        for (before, after) in before.points.iter().zip(&after.points) {
+            add(&before.0, &after.0, 1.0);
         }
-        let vessels = inputs.vessels.iter().zip(&scale.levers);
-        for ((input, &lever), path) in vessels.zip(&paths.vessels) {
-            let [x, y, z, roll, pitch, yaw] = input.pose;
-            let [place, angles] = &path.0;
-            add(&mut squares, place, Vector3::new(x, y, z), gaps, 1.0);
-            let turned = Vector3::new(roll, pitch, yaw);
-            add(&mut squares, angles, turned, gaps, lever);
+        for ((before, after), &lever) in before.vessels.iter().zip(&after.vessels).zip(levers) {
+            add(&before.0[0], &after.0[0], 1.0);
+            add(&before.0[1], &after.0[1], lever);
         }
         self.add(squares, gaps[0]);
     }
@@ -206,7 +212,7 @@ impl LightEnd {
         LightEnd {
             line: index,
             end,
-            impedance: (line.segments.axial_stiffness[segment] * mass).sqrt(),
+            impedance: (line.segments.in_motion(segment).0 * mass).sqrt(),
             mover,
         }
     }
@@ -241,47 +247,41 @@ fn jump(before: &AxesPath, after: &AxesPath) -> f64 {
     (first - last).xyz().norm()
 }
 
-/// Adds the squares of one path's sample, in metres at a lever [m].
-fn add(squares: &mut Squares, path: &AxesPath, place: Vector3<f64>, gaps: [f64; 2], lever: f64) {
-    let ([last, second], end) = path.newest();
-    let velocity = (place - last) / gaps[0];
+/// Velocity [m/s, rad/s] and acceleration [m/s², rad/s²] of three samples, newest first, with the `gaps` between them [s].
+fn rates([newest, last, second]: [Vector3<f64>; 3], gaps: [f64; 2]) -> [Vector3<f64>; 2] {
+    let velocity = (newest - last) / gaps[0];
     let before = (last - second) / gaps[1];
-    let acceleration = (velocity - before) / (0.5 * (gaps[0] + gaps[1]));
-    let vectors = [place - end, velocity, acceleration];
-    for (sum, vector) in squares.iter_mut().zip(vectors) {
-        *sum += lever * lever * vector.norm_squared();
-    }
+    [velocity, (velocity - before) / (0.5 * (gaps[0] + gaps[1]))]
 }
 
 impl Simulation {
-    /// Record including the inputs at the start of the next step, where these are extrapolated.
+    /// Record including the sample of the next step, whose paths are laid out.
     pub(super) fn record_inputs(&self) -> InputRecord {
-        let snapshot = &self.snapshot;
+        let (snapshot, paths) = (&self.snapshot, [&*self.snapshot.paths, &*self.paths]);
         let mut record = snapshot.input_record;
-        let extrapolates = self.model.solver.input_reconstruction != Reconstruction::Interpolate;
-        if extrapolates && !snapshot.follows_scene {
-            let (model, state) = (&*self.model, &snapshot.state);
-            let (paths, inputs) = (&snapshot.paths, &snapshot.inputs);
-            if let Some(gaps) = paths.gaps(state.time)
-                && record.counts()
-            {
-                record.take(model, &self.scale, paths, inputs, gaps);
-                if let Some(end) = &self.light_end {
-                    record.watch(end, model, state, [paths, &self.paths], gaps[0]);
-                }
+        if snapshot.follows_scene {
+            return record;
+        }
+        if let Some(gaps) = paths[1].gaps()
+            && record.counts()
+        {
+            let interpolates = self.model.solver.input_reconstruction == Reconstruction::Interpolate;
+            record.take(&self.scale.levers, paths, gaps, interpolates);
+            if let Some(end) = &self.light_end {
+                record.watch(end, &self.model, &snapshot.state, paths, gaps[0]);
             }
         }
         record
     }
 
-    /// Estimated error of tension, RMS over its standard deviation, from the extrapolation of the host's inputs over
-    /// the last ten periods of the motion [-]; 0 where nothing is extrapolated.
+    /// Estimated error of tension, RMS over its standard deviation, from the path between the host's samples over
+    /// the last ten periods of the motion [-].
     pub fn input_error(&self) -> f64 {
         let light = self.light_end.as_ref();
         self.snapshot.input_record.error(self.scale.size, light)
     }
 
-    /// Warning on the inputs of a host whose extrapolation costs more than the tolerance allows.
+    /// Warning on a host's inputs where the path between them costs more than the tolerance allows.
     pub fn input_warning(&self) -> Option<String> {
         let record = &self.snapshot.input_record;
         let (error, tolerance) = (self.input_error(), self.model.solver.tolerance);
@@ -290,11 +290,24 @@ impl Simulation {
         }
         let points = TAU / (record.frequency() * record.step);
         let step = record.step * (tolerance / error).powf(1.0 / ORDER);
+        let (fault, cure) = match self.model.solver.input_reconstruction {
+            Reconstruction::Jump => (
+                "a path that jumps to each",
+                "solver.input_reconstruction = \"smooth\"",
+            ),
+            Reconstruction::Interpolate => (
+                "the velocities derived from them",
+                "velocities as well as displacements",
+            ),
+            Reconstruction::Smooth | Reconstruction::Filtered => (
+                "its extrapolation",
+                "velocities as well as displacements or solver.input_reconstruction = \"interpolate\"",
+            ),
+        };
         let time = self.time();
         Some(format!(
-            "at t = {time:.6} s, about {points:.0} communication steps a period of the motion are too few for its extrapolation: tension is off \
-             by about {:.2} % of its variation, {:.2} % are allowed (solver.tolerance); communication steps of {} s or \
-             velocities as well as displacements would do, or solver.input_reconstruction = \"interpolate\"; said once",
+            "at t = {time:.6} s, about {points:.0} communication steps a period of the motion are too few for {fault}: tension is off \
+             by about {:.2} % of its variation, {:.2} % are allowed (solver.tolerance); communication steps of {} s or {cure} would do; said once",
             100.0 * error,
             100.0 * tolerance,
             rounded_down(step),

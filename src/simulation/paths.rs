@@ -102,9 +102,9 @@ impl Paths {
         self.filters = filters;
     }
 
-    /// Times from the newest sample to now, `time` [s], and from the one before to the newest [s], where both are known and in order.
-    pub(super) fn gaps(&self, time: f64) -> Option<[f64; 2]> {
-        self.clock.gaps(time)
+    /// Times between the newest sample, the one before and the next [s], where all are known and in order.
+    pub(super) fn gaps(&self) -> Option<[f64; 2]> {
+        self.clock.gaps()
     }
 
     /// Continues the paths of the winches by a step [s].

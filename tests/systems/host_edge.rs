@@ -99,9 +99,13 @@ fn hosted(model: &Simulation, period: f64, points: f64, velocities: bool) -> Hos
     exact.follow_scene().unwrap();
     set_motion(&mut host, 0.0, velocities);
     host.restart(0.0).unwrap();
+    let ahead = match model.model().solver.input_reconstruction {
+        Reconstruction::Interpolate => step,
+        _ => 0.0,
+    };
     let (mut sums, mut estimate, mut warning) = ([0.0; 4], 0.0_f64, None);
     for k in 0..(end / step) as usize {
-        set_motion(&mut host, k as f64 * step, velocities);
+        set_motion(&mut host, k as f64 * step + ahead, velocities);
         for simulation in [&mut exact, &mut host] {
             simulation.advance(step).unwrap();
         }
@@ -175,20 +179,66 @@ fn a_host_that_samples_finely_or_gives_velocities_is_not_warned() {
 }
 
 #[test]
-fn a_body_at_rest_and_inputs_that_are_interpolated_have_no_error_of_inputs() {
-    let mut scene = shipped("oc3_catenary");
-    let mut still = start(&scene);
-    for k in 0..200 {
-        let noise = 1e-9 * f64::from(k * 7919 % 101);
-        still.set_displacement(1, [noise, 0.0, 0.0]);
-        still.advance(0.1).unwrap();
+fn the_estimated_error_of_interpolated_displacements_is_a_bound_of_that_of_tension() {
+    for (name, period) in SAMPLED.into_iter().chain(LIGHT) {
+        let mut scene = shipped(name);
+        scene.solver.input_reconstruction = Reconstruction::Interpolate;
+        let model = start(&scene);
+        for points in [12.0, 17.0, 25.0] {
+            let hosted = hosted(&model, period, points, false);
+            let (error, estimate) = (hosted.error, hosted.estimate);
+            let what = format!("{name}, {points} points: {error} estimated {estimate}");
+            assert!(estimate > 0.8 * error && estimate < 20.0 * error, "{what}");
+            assert_eq!(hosted.warning.is_some(), estimate > 0.02, "{what}");
+            if let Some(text) = hosted.warning {
+                assert_says(&text, &["too few for the velocities derived from them"]);
+                assert!(!text.contains("input_reconstruction"), "{text}");
+            }
+        }
     }
-    assert_eq!(still.input_error(), 0.0);
-    scene.solver.input_reconstruction = Reconstruction::Interpolate;
-    let mut knowing = start(&scene);
-    for k in 1..100 {
-        set_motion(&mut knowing, f64::from(k), false);
-        knowing.advance(1.0).unwrap();
+}
+
+#[test]
+fn a_path_that_jumps_has_an_estimated_error_with_a_smooth_path_as_its_cure() {
+    for (name, period) in SAMPLED {
+        let mut scene = shipped(name);
+        scene.solver.input_reconstruction = Reconstruction::Jump;
+        let hosted = hosted(&start(&scene), period, 25.0, true);
+        let (error, estimate) = (hosted.error, hosted.estimate);
+        assert!(
+            estimate > error && estimate < 6.0 * error,
+            "{name}: {error} estimated {estimate}"
+        );
+        let cure = "or solver.input_reconstruction = \"smooth\" would do";
+        assert_says(&hosted.warning.unwrap(), &["a path that jumps to each", cure]);
     }
-    assert_eq!(knowing.input_error(), 0.0);
+}
+
+#[test]
+fn interpolated_motion_with_velocities_is_off_by_the_curvature_of_cubics_at_most() {
+    for (name, period) in SAMPLED.into_iter().chain([LIGHT[0]]) {
+        let mut scene = shipped(name);
+        scene.solver.input_reconstruction = Reconstruction::Interpolate;
+        let model = start(&scene);
+        for points in [12.0, 17.0] {
+            let error = hosted(&model, period, points, true).error;
+            let curvature = (std::f64::consts::TAU / points).powi(2) / 12.0;
+            assert!(error < curvature, "{name}, {points} points: {error}, {curvature}");
+        }
+    }
+}
+
+#[test]
+fn a_body_at_rest_has_no_error_of_inputs() {
+    for reconstruction in [Reconstruction::Smooth, Reconstruction::Interpolate] {
+        let mut scene = shipped("oc3_catenary");
+        scene.solver.input_reconstruction = reconstruction;
+        let mut still = start(&scene);
+        for k in 0..200 {
+            let noise = 1e-9 * f64::from(k * 7919 % 101);
+            still.set_displacement(1, [noise, 0.0, 0.0]);
+            still.advance(0.1).unwrap();
+        }
+        assert_eq!(still.input_error(), 0.0, "{reconstruction:?}");
+    }
 }

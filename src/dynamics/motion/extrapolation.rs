@@ -78,10 +78,11 @@ impl Clock {
         }
     }
 
-    /// Times from the newest sample to `time` [s], and from the one before to the newest [s], where both are known and in order.
-    pub fn gaps(&self, time: f64) -> Option<[f64; 2]> {
-        let gaps = [time - self.times[0], self.times[0] - self.times[1]];
-        (self.count > 1 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
+    /// Times between the newest sample, the one before and the next [s], where all are known and in order.
+    pub fn gaps(&self) -> Option<[f64; 2]> {
+        let [newest, last, second, ..] = self.times;
+        let gaps = [newest - last, last - second];
+        (self.count > 2 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
     }
 
     /// Adds the sample of a step from a time [s] of a length [s], taken at its end with [`Reconstruction::Interpolate`], else at its start:
