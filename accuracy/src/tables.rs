@@ -42,7 +42,7 @@ pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Resu
     table.flush()
 }
 
-/// Writes, for every level of error, the cheapest run of moorline and of every peer, and the peer's cost over moorline's.
+/// Writes, for every level of error, the cheapest run of moorline and of every peer, and the peer's cost over moorline's, empty where moorline has no run.
 ///
 /// # Errors
 /// `out` refuses.
@@ -56,7 +56,9 @@ pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::
             let own = verdict.own.map(|own| ("moorline", Some(own)));
             for (_, run) in own.into_iter().chain(verdict.peers.iter().copied()) {
                 let Some(run) = run else { continue };
-                let ratio = verdict.own.map_or(f64::NAN, |own| run.cost / own.cost);
+                let ratio = verdict
+                    .own
+                    .map_or(String::new(), |own| number(run.cost / own.cost));
                 let words = [
                     machine.to_string(),
                     study.name.clone(),
@@ -68,8 +70,8 @@ pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::
                     run.code.name().to_string(),
                     run.label.clone(),
                 ];
-                let numbers = costs(run).into_iter().chain([ratio]).map(number);
-                table.write_record(words.into_iter().chain(numbers))?;
+                let costs = costs(run).map(number);
+                table.write_record(words.into_iter().chain(costs).chain([ratio]))?;
             }
         }
     }
