@@ -181,17 +181,17 @@ impl<'s> Draft<'s> {
         };
         if let Some(problem) = name_problem(name) {
             self.findings
-                .beside
+                .of_supplement
                 .push(format!("the vessel given for all coupled points: {problem}"));
         }
         if others.any(|other| other == *name) {
-            self.findings.beside.push(taken(name));
+            self.findings.of_supplement.push(taken(name));
         }
         if self.supplement.positions.contains_key(name) {
             let problem = format!(
                 "`{name}` takes the coupled points where they are, with its origin at (0, 0, 0): give no position for it"
             );
-            self.findings.beside.push(problem);
+            self.findings.of_supplement.push(problem);
         }
     }
 
@@ -207,18 +207,18 @@ impl<'s> Draft<'s> {
             let points = self.scene.points.iter().map(|point| &point.name);
             let mut names = points.chain(self.scene.lines.iter().map(|line| &line.name));
             if names.any(|other| other == name) {
-                self.findings.beside.push(taken(name));
+                self.findings.of_supplement.push(taken(name));
             } else if !known.contains(&name.as_str()) {
                 let problem = format!(
                     "the vessel `{name}` is given for all coupled points, but the file has none: leave it out"
                 );
-                self.findings.beside.push(problem);
+                self.findings.of_supplement.push(problem);
             }
         }
         let placed = self.supplement.positions.keys();
         for name in placed.filter(|name| !known.contains(&name.as_str())) {
             let problem = format!("a position is given for `{name}`, but the file has {in_words}");
-            self.findings.beside.push(problem);
+            self.findings.of_supplement.push(problem);
         }
     }
 }

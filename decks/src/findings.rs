@@ -27,8 +27,8 @@ impl<T> Placed<T> {
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     pub mistakes: Vec<SceneError>,
-    /// Mistakes in what is given with the file.
-    pub beside: Vec<String>,
+    /// Mistakes in the supplement of the file.
+    pub of_supplement: Vec<String>,
     remarks: Vec<Remark>,
 }
 

@@ -54,13 +54,13 @@ impl Supplement {
     fn problem_of_scene(&self) -> &'static str {
         match (self.depth, &self.vessel) {
             (Some(_), _) => {
-                "a scene gives the depth of its water itself, as `seabed.depth`: a depth beside it is for decks"
+                "a scene gives the depth of its water itself, as `seabed.depth`: the option is for decks"
             }
             (None, Some(_)) => {
-                "a scene gives its vessels itself, as [[vessels]] and `on` of its points: a vessel beside it is for decks"
+                "a scene gives its vessels itself, as [[vessels]] and `on` of its points: the option is for decks"
             }
             (None, None) => {
-                "a scene gives the places of its vessels itself, as `position`: places beside it are for decks"
+                "a scene gives the places of its vessels itself, as `position`: the option is for decks"
             }
         }
     }
@@ -92,8 +92,8 @@ pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Lo
     };
     let mut draft = read(&text, supplement);
     let path = path.to_path_buf();
-    if !draft.findings.beside.is_empty() {
-        let problem = draft.findings.beside.join("; ");
+    if !draft.findings.of_supplement.is_empty() {
+        let problem = draft.findings.of_supplement.join("; ");
         return Err(LoadError::Unreadable { path, problem });
     }
     match finish(&mut draft, folder_of(&path)) {

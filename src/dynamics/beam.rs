@@ -469,7 +469,7 @@ impl BeamWork {
             lost -= drag(k, moved / case.length, self.tangent[i]).dot(&moved);
         }
         if let Some(contact) = &case.nodes.contact {
-            for (element, _) in contact.beside(i) {
+            for (element, _) in contact.adjacent(i) {
                 let seabeds = self.contact(case, element).into_iter();
                 let push: f64 = seabeds
                     .map(|(part, seabed)| part.shares[i - element] * seabed.force)

@@ -143,8 +143,8 @@ pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     let (segments, enough) = (&line.segments, damping_enough(line));
     let mut limit = ExplicitLimit::none();
     for i in loose_nodes(line) {
-        let spring: f64 = beside(line, i).map(|segment| stiffness(line, segment)).sum();
-        let lags = beside(line, i).map(|segment| lag(segments, segment));
+        let spring: f64 = adjacent(line, i).map(|segment| stiffness(line, segment)).sum();
+        let lags = adjacent(line, i).map(|segment| lag(segments, segment));
         let omega = ((2.0 * spring + heave(line, i)) / line.least_mass(i)).sqrt();
         let lag = lags.fold(0.0, f64::max);
         limit = limit.or(ExplicitLimit::new(omega, lag, fading(line, i), enough));
@@ -195,7 +195,7 @@ fn share_at(line: &Line, node: usize, shares: EndShares) -> f64 {
 }
 
 /// Segments adjacent to a node: one at an end.
-fn beside(line: &Line, node: usize) -> Range<usize> {
+fn adjacent(line: &Line, node: usize) -> Range<usize> {
     node.saturating_sub(1)..(node + 1).min(line.segment_count())
 }
 
@@ -295,7 +295,7 @@ pub fn axial_frequency_squared(line: &Line, shares: EndShares) -> f64 {
     let first = *nodes.start();
     let mass = |i: usize| line.nodes.mass[i] + share_at(line, i, shares);
     let own = |i: usize| {
-        let springs = beside(line, i).map(|segment| stiffness(line, segment));
+        let springs = adjacent(line, i).map(|segment| stiffness(line, segment));
         springs.sum::<f64>() / mass(i)
     };
     let shared = |i: usize| match i == first {
@@ -420,7 +420,7 @@ pub fn transverse_step(line: &Line, tension: f64, shares: EndShares) -> f64 {
                 None => line.nodes.mass_normal[i],
                 Some(_) => line.nodes.mass[i], // in air
             };
-        let inverse: f64 = lengths[beside(line, i)].iter().map(|l| 1.0 / l).sum();
+        let inverse: f64 = lengths[adjacent(line, i)].iter().map(|l| 1.0 / l).sum();
         let stiffness = tension.max(0.0) * inverse;
         let omega = (2.0 * stiffness / mass).sqrt();
         limit = limit.min(TRANSVERSE_COURANT * 2.0 / omega);

@@ -56,7 +56,7 @@ impl Bearing {
         reach: impl Fn(usize) -> f64,
     ) -> Option<Bearing> {
         let mut sum = Bearing::default();
-        for (segment, _) in contact.beside(node) {
+        for (segment, _) in contact.adjacent(node) {
             let ends = [stand(segment), stand(segment + 1)];
             if let Some(both) = Bearing::of_segment(contact.coefficients(segment), ends, reach(segment)) {
                 sum.add(&both[node - segment]);

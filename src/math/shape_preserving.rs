@@ -202,8 +202,8 @@ impl<'a> Limiter<'a> {
             return 0.0;
         }
         let least = around.iter().copied().reduce(minmod).map_or(0.0, f64::abs);
-        let beside = &self.spans[k.saturating_sub(1)..(k + 2).min(self.spans.len())];
-        let shortest = beside.iter().copied().fold(f64::INFINITY, f64::min);
+        let adjacent = &self.spans[k.saturating_sub(1)..(k + 2).min(self.spans.len())];
+        let shortest = adjacent.iter().copied().fold(f64::INFINITY, f64::min);
         let span = self.spans[k].min(SPAN_MAX * shortest);
         EXCURSION_MAX * 0.25 * least * span * span
     }

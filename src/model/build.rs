@@ -550,7 +550,7 @@ fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
     if viscoelastic && laws.iter().any(|law| law.law != StretchLaw::Engineering) {
         return Err(SceneError::new(
             format!("lines[{index}].sections"),
-            "a viscoelastic section stands beside sections of engineering strain only, without a table",
+            "a line with a viscoelastic section has other sections of engineering strain only, without a table",
         ));
     }
     Ok(())
@@ -705,12 +705,12 @@ fn contact(scene: &Scene, parts: &[SegmentPart]) -> Contact {
         }
     }
     // a line at rest lies on the seabed; see also `resting`
-    let beside = |i: usize| &sinks[i.saturating_sub(1)..(i + 1).min(sinks.len())];
+    let adjacent = |i: usize| &sinks[i.saturating_sub(1)..(i + 1).min(sinks.len())];
     let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     Contact {
         seabed_level: -seabed.depth,
         level: (0..=parts.len())
-            .map(|i| mean(beside(i)) - seabed.depth)
+            .map(|i| mean(adjacent(i)) - seabed.depth)
             .collect(),
         stiffness,
         damping,

@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_section_with_a_number_of_elements_keeps_it_beside_anything() {
+    fn a_section_with_a_number_of_elements_keeps_it_in_any_line() {
         let mesh = lengths(
             &[piece(0.5, Some(1)), piece(400.0, Some(3)), piece(2.0, Some(9))],
             40.0,
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refinement_has_elements_of_its_length_and_those_beside_it_grow_away_from_it() {
+    fn a_refinement_has_elements_of_its_length_and_its_neighbours_grow_away_from_it() {
         let wanted = Refinement {
             from: 240.0,
             to: 250.0,

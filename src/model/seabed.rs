@@ -51,12 +51,12 @@ impl Contact {
 
     /// Half of the stiffnesses of the segments next to a node [N/m].
     pub fn stiffness_under(&self, node: usize) -> f64 {
-        let beside = self.beside(node);
-        beside.map(|(segment, _)| 0.5 * self.stiffness[segment]).sum()
+        let adjacent = self.adjacent(node);
+        adjacent.map(|(segment, _)| 0.5 * self.stiffness[segment]).sum()
     }
 
     /// Segments next to a node, each with the node at its other end.
-    pub fn beside(&self, node: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+    pub fn adjacent(&self, node: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
         let before = node.checked_sub(1).map(|segment| (segment, segment));
         let after = (node < self.stiffness.len()).then_some((node, node + 1));
         before.into_iter().chain(after)
@@ -99,7 +99,7 @@ impl Contact {
         };
         let (near, rise, normal) = depth(node);
         let mut force = 0.0;
-        for (segment, other) in self.beside(node) {
+        for (segment, other) in self.adjacent(node) {
             let (k, (far, far_rise, _)) = (self.coefficients(segment), depth(other));
             for part in PARTS {
                 let at = [part.between(near, far), part.between(rise, far_rise)];

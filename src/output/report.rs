@@ -96,7 +96,7 @@ fn statics(record: &Record) -> String {
         })
         .collect();
     table(
-        "The discretised lines at rest in the reference configuration beside the closed-form elastic catenary.",
+        "The discretised lines at rest in the reference configuration, with the closed-form elastic catenary.",
         &["", "equilibrium", "catenary", "difference"],
         &rows,
     )

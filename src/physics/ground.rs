@@ -213,7 +213,7 @@ impl Grid {
 
     /// The cells around a node.
     fn corners(&self, heights: &[Vec<f64>], [i, j]: [usize; 2]) -> Vec<Corner> {
-        let beside = |line: &[f64], at: usize| -> Vec<(usize, f64)> {
+        let adjacent = |line: &[f64], at: usize| -> Vec<(usize, f64)> {
             let known = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
             let known = known.filter(|other| *other < line.len());
             let found: Vec<_> = known
@@ -222,8 +222,8 @@ impl Grid {
             if found.is_empty() { vec![(at, 0.0)] } else { found }
         };
         let mut corners = Vec::with_capacity(4);
-        for (other_i, reach_x) in beside(&self.x, i) {
-            for (other_j, reach_y) in beside(&self.y, j) {
+        for (other_i, reach_x) in adjacent(&self.x, i) {
+            for (other_j, reach_y) in adjacent(&self.y, j) {
                 let soundings = [(i, j), (other_i, j), (i, other_j), (other_i, other_j)];
                 let change = soundings.map(|(i, j)| heights[j][i]).map(|z| z - heights[j][i]);
                 let (low, high) = change

@@ -34,8 +34,7 @@ type Row = (usize, Vec<String>);
 /// The file, the line and what would be right.
 pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
     let name = path.display();
-    let looked_for = " (it is looked for beside the scene)";
-    let bytes = input_file::read_table(path, "a file of soundings", looked_for)?;
+    let bytes = input_file::read_table(path, "a file of soundings")?;
     let text = String::from_utf8(bytes).map_err(|error| format!("{name} cannot be read as text: {error}"))?;
     let grid = parse(&text).and_then(below_water);
     grid.map_err(|problem| format!("{name}{problem}"))

@@ -11,6 +11,8 @@ use std::path::Path;
 pub const SIZE_MAX: u64 = 64 << 20;
 /// Longest motion file [bytes]; it is read as a stream.
 pub(crate) const MOTION_SIZE_MAX: u64 = 4 << 30;
+/// Hint on a missing file that a scene or a deck names.
+pub(super) const RELATIVE: &str = " (a relative path starts at the folder of the file that names it)";
 /// Names of standard input.
 const STANDARD_INPUT: [&str; 3] = ["/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"];
 
@@ -31,11 +33,11 @@ impl Unopened {
         }
     }
 
-    /// The file's name, the reason, and where a missing file is looked for.
-    pub fn at(&self, path: &Path, looked_for: &str) -> String {
+    /// The file's name, the reason, and a hint where there is no such file.
+    pub fn at(&self, path: &Path, hint: &str) -> String {
         let mut text = path.display().to_string();
         let colon = if self.is_missing { ":" } else { "" };
-        let hint = if self.is_missing { looked_for } else { "" };
+        let hint = if self.is_missing { hint } else { "" };
         // a String takes every text
         let _ = write!(text, "{colon} {}{hint}", self.problem);
         text
@@ -118,12 +120,12 @@ impl Read for InputFile {
     }
 }
 
-/// The whole of a table that should be `noun`; `looked_for` says where a missing one is looked for.
+/// The whole of a table that should be `noun` and that another file names.
 ///
 /// # Errors
 /// The name of the file and the reason.
-pub(crate) fn read_table(path: &Path, noun: &str, looked_for: &str) -> Result<Vec<u8>, String> {
-    let mut file = open(path, noun, SIZE_MAX).map_err(|unopened| unopened.at(path, looked_for))?;
+pub(crate) fn read_table(path: &Path, noun: &str) -> Result<Vec<u8>, String> {
+    let mut file = open(path, noun, SIZE_MAX).map_err(|unopened| unopened.at(path, RELATIVE))?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)
         .map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
@@ -142,7 +144,7 @@ mod tests {
         fs::write(&path, vec![b'x'; size]).unwrap();
         let problem = open(&path, "a CSV file", 1 << 20).unwrap_err();
         assert_eq!(problem.problem, "is longer than 1 MiB");
-        assert_eq!(read_table(&path, "a table", "").unwrap().len(), size);
+        assert_eq!(read_table(&path, "a table").unwrap().len(), size);
     }
 
     #[test]
@@ -159,11 +161,11 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn devices_and_folders_are_refused_before_they_are_read() {
-        let read = |path: &str| read_table(Path::new(path), "a table", " (beside the scene)");
+        let read = |path: &str| read_table(Path::new(path), "a table");
         let problem = read("/dev/zero").unwrap_err();
         assert!(problem.starts_with("/dev/zero is a device or a pipe, not a table"));
         assert_eq!(read("/").unwrap_err(), "/ is a folder, not a table");
         let problem = read("/nowhere").unwrap_err();
-        assert_eq!(problem, "/nowhere: no such file (beside the scene)");
+        assert_eq!(problem, format!("/nowhere: no such file{RELATIVE}"));
     }
 }

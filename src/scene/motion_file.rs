@@ -56,7 +56,7 @@ pub(super) struct OneBody {
 /// # Errors
 /// The file, the line and what would be right.
 pub(super) fn read(path: &Path, body: &str) -> Result<OneBody, String> {
-    let moves = read_moves(path, " (it is looked for beside the scene)")?;
+    let moves = read_moves(path, input_file::RELATIVE)?;
     let (columns, is_recorded) = (moves.columns, moves.is_recorded);
     let names: Vec<String> = moves.bodies.iter().filter_map(|(name, _)| name.clone()).collect();
     let is_meant = |name: &Option<String>| name.as_ref().is_none_or(|name| name == body);
@@ -79,26 +79,26 @@ pub(super) fn read(path: &Path, body: &str) -> Result<OneBody, String> {
     })
 }
 
-/// The motions of all bodies in a file; `looked_for` says where a missing one is looked for.
+/// The motions of all bodies in a file, with a hint where there is no such file.
 ///
 /// # Errors
 /// The file, the line and what would be right.
-pub(super) fn read_moves(path: &Path, looked_for: &str) -> Result<Moves, String> {
+pub(super) fn read_moves(path: &Path, hint: &str) -> Result<Moves, String> {
     let file = input_file::open(path, "a CSV file", input_file::MOTION_SIZE_MAX)
-        .map_err(|unopened| unopened.at(path, looked_for))?;
-    let beside = units_beside(path)?;
-    parse(BufReader::new(file), &beside).map_err(|problem| format!("{}{problem}", path.display()))
+        .map_err(|unopened| unopened.at(path, hint))?;
+    let of_units_file = read_units(path)?;
+    parse(BufReader::new(file), &of_units_file).map_err(|problem| format!("{}{problem}", path.display()))
 }
 
 /// The motions in a text; problems begin with a comma and a line, or a colon.
-fn parse(input: impl BufRead, beside: &BTreeMap<String, String>) -> Result<Moves, String> {
+fn parse(input: impl BufRead, of_units_file: &BTreeMap<String, String>) -> Result<Moves, String> {
     let mut lines = Lines::new(input);
     let (line, first) = lines.next()?.unwrap_or((1, String::new()));
     let separator = Separator::of(&first);
     let bare = separator.cells(&first).iter().all(|cell| is_number(cell));
     let table = match bare {
         true => Table::without_header(separator, &first),
-        false => Table::of_header(separator, &first, beside),
+        false => Table::of_header(separator, &first, of_units_file),
     };
     let mut table = table.map_err(|problem| format!(", line {line}: {problem}"))?;
     let mut row = if bare { Some((line, first)) } else { lines.next()? };
@@ -114,13 +114,13 @@ fn parse(input: impl BufRead, beside: &BTreeMap<String, String>) -> Result<Moves
 }
 
 /// Units of columns by name, in the file that a run writes next to its results; none where there is no such file.
-fn units_beside(path: &Path) -> Result<BTreeMap<String, String>, String> {
+fn read_units(path: &Path) -> Result<BTreeMap<String, String>, String> {
     let path = path.with_extension("units.csv");
     if !path.is_file() {
         return Ok(BTreeMap::new());
     }
     let unreadable = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let bytes = input_file::read_table(&path, "a table of units", "")?;
+    let bytes = input_file::read_table(&path, "a table of units")?;
     let text = String::from_utf8_lossy(&bytes);
     let mut table = csv::ReaderBuilder::new()
         .flexible(true)
@@ -233,7 +233,7 @@ impl Table {
     fn of_header(
         separator: Separator,
         row: &str,
-        beside: &BTreeMap<String, String>,
+        of_units_file: &BTreeMap<String, String>,
     ) -> Result<Table, String> {
         let headings = separator.headings(row);
         if !headings.first().is_some_and(|first| is_time(&first.name)) {
@@ -257,7 +257,7 @@ impl Table {
         table.check(row)?;
         for column in &mut table.columns {
             let heading = &headings[column.place];
-            if let Some(unit) = heading.unit.as_ref().or(beside.get(&heading.name)) {
+            if let Some(unit) = heading.unit.as_ref().or(of_units_file.get(&heading.name)) {
                 column.set_unit(unit)?;
                 table.has_units |= heading.unit.is_some();
             }

@@ -153,7 +153,7 @@ fn unfinished(text: &str) -> Option<String> {
     (whole.is_empty() || digits == 0).then(|| {
         let whole = if whole.is_empty() { "0" } else { whole };
         let zero = if digits == 0 { "0" } else { "" };
-        format!("`{text}` lacks a digit beside its point: write {sign}{whole}.{zero}{rest}")
+        format!("`{text}` lacks a digit next to its point: write {sign}{whole}.{zero}{rest}")
     })
 }
 

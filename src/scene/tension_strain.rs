@@ -115,8 +115,7 @@ impl Value for TensionStrain {
 /// The file, the line and what would be right.
 pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let name = path.display();
-    let looked_for = " (it is looked for beside the file that names it); it must hold two columns, strain [-] and tension [N]";
-    let bytes = input_file::read_table(path, "a table of strain and tension", looked_for)?;
+    let bytes = input_file::read_table(path, "a table of strain and tension")?;
     let text = String::from_utf8_lossy(&bytes);
     let mut rows: Vec<[f64; 2]> = Vec::new();
     let mut heading = (1, "");

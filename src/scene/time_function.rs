@@ -374,7 +374,7 @@ impl MotionText {
         match (self.file, self.table) {
             (Some(_), Some(_)) => Err("`file` and `table` cannot both be given".into()),
             (Some(_), _) | (_, Some(_)) if swings || self.ramp.is_some() => Err(
-                "`x`, `y`, `z`, `roll`, `pitch`, `yaw` and `ramp` cannot be given beside `file` or `table`".into(),
+                "`x`, `y`, `z`, `roll`, `pitch`, `yaw` and `ramp` cannot be given with `file` or `table`".into(),
             ),
             (Some(file), None) => Ok(MotionPath::File(MotionFile {
                 file,

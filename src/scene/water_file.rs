@@ -47,7 +47,7 @@ pub(super) fn components(path: &Path) -> Result<Vec<[f64; 4]>, String> {
     Ok(components)
 }
 
-/// Rows of height z [m] and velocity vx, vy [m/s] from rows that have vz besides, below three lines of headings.
+/// Rows of height z [m] and velocity vx, vy [m/s] from rows that also have vz, below three lines of headings.
 ///
 /// # Errors
 /// The file, the line and what would be right.
@@ -76,8 +76,7 @@ pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
 
 /// The text of a file.
 fn text_of(path: &Path) -> Result<String, String> {
-    let looked_for = " (it is looked for beside the scene)";
-    let bytes = input_file::read_table(path, "a table of numbers", looked_for)?;
+    let bytes = input_file::read_table(path, "a table of numbers")?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

@@ -248,7 +248,7 @@ impl Simulation {
         let Sides { values, apart } = match Trial::of_last_step(self)? {
             Some(mut trial) => trial.both_sides(motion, read)?,
             None if motion.is_velocity => return Ok(vec![0.0; read(self)?.len()]),
-            None => trial::beside_statics(self, motion, read)?,
+            None => trial::both_sides_of_statics(self, motion, read)?,
         };
         let [below, above] = values;
         let pairs = above?.into_iter().zip(below?);

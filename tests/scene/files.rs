@@ -129,7 +129,7 @@ fn a_motion_file_with_a_mistake_is_refused_with_its_line() {
     fs::remove_file(folder.path().join("motion.csv")).unwrap();
     let said = load(&folder.path().join("scene.toml")).unwrap_err().list();
     assert!(
-        said.ends_with("no such file (it is looked for beside the scene)"),
+        said.ends_with("no such file (a relative path starts at the folder of the file that names it)"),
         "{said}"
     );
 }

@@ -272,7 +272,10 @@ fn moving_water(deck: &Deck, water: &mut Water, draft: &mut Draft<'_>) {
         let Some(name) = water_file(key, &value.value) else {
             continue;
         };
-        let text = format!("{key} {}: read from {name} beside this file", value.value);
+        let text = format!(
+            "{key} {}: read from {name} in the folder of this file",
+            value.value
+        );
         draft.findings.remark(value, text);
         let file = Some(name.to_string());
         let at = if name == WAVES_FILE {

@@ -145,8 +145,8 @@ impl<'a> BeamView<'a> {
     /// Curvature at a node beyond that of the rest shape [1/m]: its bending moment over the bending stiffness there.
     pub fn curvature(&self, node: usize) -> f64 {
         let last = self.beam.elements.len() - 1;
-        let beside = [node.saturating_sub(1), node.min(last)];
-        let compliance = beside.map(|i| 0.5 / self.beam.elements[i].law.bending);
+        let adjacent = [node.saturating_sub(1), node.min(last)];
+        let compliance = adjacent.map(|i| 0.5 / self.beam.elements[i].law.bending);
         self.bending_moment(node) * compliance.iter().sum::<f64>()
     }
 

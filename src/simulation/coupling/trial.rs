@@ -1,4 +1,4 @@
-//! Steps that are repeated, or made in advance, along a path whose end is moved aside.
+//! Steps that are repeated, or made in advance, along a path whose end is moved moved.
 
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
@@ -135,14 +135,14 @@ impl Trial {
 
     /// Makes the step up to a length [s] of it.
     pub(super) fn run(&mut self, length: f64) -> Result<&Simulation, String> {
-        self.step_beside(length, None)
+        self.step_with(length, None)
     }
 
-    fn step_beside(&mut self, length: f64, aside: Option<(EndMotion, f64)>) -> Result<&Simulation, String> {
+    fn step_with(&mut self, length: f64, change: Option<(EndMotion, f64)>) -> Result<&Simulation, String> {
         let simulation = &mut self.simulation;
         simulation.restore(self.start.clone());
         let mut paths = self.paths.clone();
-        if let Some((motion, by)) = aside {
+        if let Some((motion, by)) = change {
             let span = [self.start.state.time, self.length];
             shift_end(&mut paths, simulation, motion, span, by)?;
         }
@@ -165,7 +165,7 @@ impl Trial {
         }
         let mut side = |by: f64| {
             let length = self.length;
-            self.step_beside(length, Some((motion, by))).map(&read)
+            self.step_with(length, Some((motion, by))).map(&read)
         };
         Ok(Sides {
             values: [side(-by)?, side(by)?],
@@ -175,28 +175,28 @@ impl Trial {
 }
 
 /// Reads values at statics with a displacement on either side of that of the inputs.
-pub(super) fn beside_statics<T>(
+pub(super) fn both_sides_of_statics<T>(
     simulation: &Simulation,
     motion: EndMotion,
     read: impl Fn(&Simulation) -> T,
 ) -> Result<Sides<T>, String> {
     let by = distance(simulation, motion);
     let side = |by: f64| {
-        let mut aside = simulation.clone();
+        let mut moved = simulation.clone();
         match motion.body {
             Body::Point(point) => {
-                let mut displacement = aside.displacement(point);
+                let mut displacement = moved.displacement(point);
                 displacement[motion.axis] += by;
-                aside.set_displacement(point, displacement);
+                moved.set_displacement(point, displacement);
             }
             Body::Vessel(vessel) => {
-                let mut pose = aside.pose(vessel);
+                let mut pose = moved.pose(vessel);
                 pose[motion.axis] += by;
-                aside.set_pose(vessel, pose);
+                moved.set_pose(vessel, pose);
             }
         }
-        aside.restart(simulation.time()).map_err(|e| e.to_string())?;
-        Ok::<T, String>(read(&aside))
+        moved.restart(simulation.time()).map_err(|e| e.to_string())?;
+        Ok::<T, String>(read(&moved))
     };
     Ok(Sides {
         values: [side(-by)?, side(by)?],

@@ -67,7 +67,7 @@ impl LeftTables {
         if let Some(soundings) = self.soundings {
             let at = "seabed.grid";
             let mut lines = lines.filter(|_| !self.left.contains(at));
-            if let Some(text) = lines.find_map(|line| beside_soundings(simulation, line, soundings)) {
+            if let Some(text) = lines.find_map(|line| outside_soundings(simulation, line, soundings)) {
                 say(&mut self.left, at.to_string(), text, notes);
             }
         }
@@ -150,7 +150,7 @@ fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -
 }
 
 /// Note on a line that lies on the seabed outside the soundings, whose least and greatest x and y [m] are given.
-fn beside_soundings(simulation: &Simulation, line: usize, soundings: [[f64; 2]; 2]) -> Option<String> {
+fn outside_soundings(simulation: &Simulation, line: usize, soundings: [[f64; 2]; 2]) -> Option<String> {
     let of = &simulation.model.lines[line];
     let contact = of.nodes.contact.as_ref()?;
     let outside = |[least, most]: [f64; 2], at: f64| least < most && !(least..=most).contains(&at);
