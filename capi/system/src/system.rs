@@ -255,7 +255,11 @@ impl System {
     fn log_watch(&mut self) {
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             for note in watch.look(simulation) {
-                self.log.write(WARNING, &note.to_string());
+                let hint = match note.at.starts_with("solver.") {
+                    true => "; MOORLINE_PATH and MOORLINE_TOLERANCE set these keys of the solver",
+                    false => "",
+                };
+                self.log.write(WARNING, &format!("{note}{hint}"));
             }
         }
     }

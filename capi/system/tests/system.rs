@@ -393,3 +393,27 @@ fn a_coupled_point_that_jumps_is_noted_once_in_the_log() {
         "{log}"
     );
 }
+
+#[test]
+fn samples_too_few_for_a_path_that_jumps_are_noted_with_the_variable_that_sets_the_path() {
+    let (folder, path) = deck(DECK);
+    let log = folder.path().join("log.txt");
+    let mut system = System::create(&path, Settings::default(), Log::from_level(NONE)).unwrap();
+    system.log.set_file(&log).unwrap();
+    system.start(&PLACE, &[0.0; 9], false).unwrap();
+    let (rate, step) = (std::f64::consts::TAU / 10.0, 0.4);
+    for k in 0..200 {
+        let time = f64::from(k) * step;
+        let (mut place, mut velocity) = (PLACE, [0.0; 9]);
+        place[6] += 0.5 * (1.0 - (rate * time).cos());
+        velocity[6] = 0.5 * rate * (rate * time).sin();
+        system.step(&place, &velocity, time, step).unwrap();
+    }
+    let log = std::fs::read_to_string(log).unwrap();
+    for words in [
+        "are too few for a path that jumps to each",
+        "MOORLINE_PATH and MOORLINE_TOLERANCE set these keys",
+    ] {
+        assert_eq!(log.matches(words).count(), 1, "{log}");
+    }
+}
