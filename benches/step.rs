@@ -1,4 +1,4 @@
-//! Cost of an internal step: of the kernels alone, with the widest vectors of the machine and in the portable build, compared with the time that the roots
+//! Cost of an internal step: of the kernels alone, with the best vectors of the machine and in the portable build, compared with the time that the roots
 //! and quotients of the explicit one alone take; and of whole communication steps by both leapfrogs.
 //!
 //! `-- PART`, one of divider, explicit, axial, compared and whole, measures that part alone; `-- --write` measures all and makes the table
@@ -15,11 +15,12 @@ use std::time::Instant;
 use moorline::dynamics::leapfrog::step::Step;
 use moorline::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, LeapfrogNetwork};
 use moorline::math::lanes::{LANES, Lanes};
+use moorline::math::unit::VectorUnit;
 use moorline::model::{Kinematics, Model, State};
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
 
 const SCENES: [&str; 4] = ["oc3_catenary", "oc4_chain", "taut_polyester", "lindahl_fast"];
 const ELEMENTS: [usize; 6] = [10, 20, 28, 40, 80, 160];
@@ -96,7 +97,7 @@ fn divider(table: &mut String) {
         .map(|k| [1.0, 2.0, 3.0].map(|a| Lanes::splat(a + f64::from(k))))
         .collect();
     let mut found = vec![Lanes::splat(0.0); numbers.len()];
-    let [wide, portable] = [Arch::new(), Arch::Scalar].map(|unit| {
+    let [wide, portable] = [VectorUnit::best(), VectorUnit::portable()].map(|unit| {
         let mut best = f64::INFINITY;
         for _ in 0..TURNS * REPETITIONS {
             let clock = Instant::now();
@@ -139,7 +140,7 @@ fn kernel_heading(kernel: &str, times: &str) {
     );
 }
 
-/// Records the cost of a step, [ns] with the widest vectors and with portable ones.
+/// Records the cost of a step, [ns] with the best vectors and with portable ones.
 fn note_kernel(
     table: &mut String,
     (what, lines): (&str, usize),

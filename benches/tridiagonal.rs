@@ -1,4 +1,4 @@
-//! Time of a tridiagonal solve: folded into four lanes, with the machine's widest vectors and with portable ones, against Thomas's
+//! Time of a tridiagonal solve: folded into four lanes, with the machine's best vectors and with portable ones, against Thomas's
 //! elimination and its variant from both ends.
 
 use std::hint::black_box;
@@ -8,7 +8,8 @@ use moorline::math::lanes::Lanes;
 use moorline::math::random::Random;
 use moorline::math::striped_tridiagonal::{Eliminated, Equations};
 use moorline::math::striping::Striping;
-use pulp::{Arch, NullaryFnOnce};
+use moorline::math::unit::VectorUnit;
+use pulp::NullaryFnOnce;
 
 /// Repetitions of which the fastest counts, and solves of each.
 const REPETITIONS: usize = 300;
@@ -162,8 +163,8 @@ fn main() {
         };
         (system.lower[0], system.upper[count - 1]) = (0.0, 0.0);
         let mut folded = Folded::new(&system);
-        let [widest, portable] =
-            [Arch::new(), Arch::Scalar].map(|unit| time(|| unit.dispatch(Solve(black_box(&mut folded)))));
+        let [widest, portable] = [VectorUnit::best(), VectorUnit::portable()]
+            .map(|unit| time(|| unit.dispatch(Solve(black_box(&mut folded)))));
         let (mut pivot, mut x) = (vec![0.0; count], vec![0.0; count]);
         let from_one = time(|| thomas(black_box(&system), &mut pivot, black_box(&mut x)));
         let from_both = time(|| twisted(black_box(&system), &mut pivot, black_box(&mut x)));

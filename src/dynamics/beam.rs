@@ -34,7 +34,7 @@ use crate::elements::beam::{BeamEnd, FourElements, add_elements, add_lift, add_r
 use crate::math::lanes::LANES;
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, cayley_vector};
-use crate::math::unit;
+use crate::math::unit::VectorUnit;
 use crate::model::{Beam, LineState, Nodes};
 use crate::physics::contact_step::{ContactStep, contact_step};
 use crate::physics::fading_damper::damper_reach;
@@ -249,7 +249,7 @@ impl BeamWork {
         FourElements::gather(&mut self.elements, &case.beam.elements, &state.rest, &self.before);
         FourNodes::gather(self, case, shape);
         self.chain.clear_right();
-        unit::of_four().dispatch(nodes::Move {
+        VectorUnit::best().dispatch(nodes::Move {
             work: self,
             part: 0.0,
         });
@@ -275,9 +275,9 @@ impl BeamWork {
 
     /// Applies the solution of the linear system over a beam of a length [m]; returns the greatest change [-] and the greatest |θ| [-].
     fn correct(&mut self, length: f64) -> (f64, f64) {
-        let [moved, turned] = unit::of_four().dispatch(nodes::Changes(self)).map(f64::sqrt);
+        let [moved, turned] = VectorUnit::best().dispatch(nodes::Changes(self)).map(f64::sqrt);
         let part = (TURN_MAX / turned).min(1.0);
-        let turn = unit::of_four().dispatch(nodes::Move { work: self, part });
+        let turn = VectorUnit::best().dispatch(nodes::Move { work: self, part });
         ((moved / length).max(turned), turn.sqrt())
     }
 
@@ -304,7 +304,7 @@ impl BeamWork {
 
     /// Sets the forces out of balance and, with a `tangent`, their slopes.
     fn assemble(&mut self, case: &BeamStep, tangent: bool) {
-        unit::of_four().dispatch(nodes::SetNodes {
+        VectorUnit::best().dispatch(nodes::SetNodes {
             work: self,
             length: case.length,
             tangent,

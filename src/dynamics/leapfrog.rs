@@ -50,8 +50,6 @@ pub struct EndMotion {
 
 /// Stages of a step of a line that depend on the treatment of its tension.
 pub trait Kernel: Debug + Clone + Sized {
-    /// Rows of nodes that vectors of eight numbers do not pay for [-].
-    const FEW_ROWS: usize;
     /// True if prescribed ends move by the secants of their paths.
     const SECANTS: bool;
     /// Quantities at the start of the steps that bound their length.
@@ -143,7 +141,7 @@ impl<K: Kernel> LeapfrogLine<K> {
     fn new(model: &Model, line: &Line, tied: [bool; 2]) -> Option<LeapfrogLine<K>> {
         let water = Water::around(model, line);
         let longest = line.winch.as_ref().map_or(line, |winch| winch.longest());
-        let layout = Layout::new(model, (longest, water), K::FEW_ROWS, tied)?;
+        let layout = Layout::new(model, (longest, water), tied)?;
         Some(LeapfrogLine {
             kernel: K::new(model, line, &layout),
             balance: layout.energy_balance.then(LineBalance::default),

@@ -8,9 +8,10 @@
 //! start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use nalgebra::Vector3;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
 
 use super::threads::ThreadPool;
+use crate::math::unit::VectorUnit;
 use crate::model::{Model, State, WaveSpan, WaveSpans};
 use crate::physics::airy::{Instant, Orbit, Waves};
 
@@ -20,8 +21,8 @@ const ROUNDING: f64 = 1e-9;
 /// Scratch of the spans.
 #[derive(Debug)]
 pub(super) struct SeaWork {
-    /// Widest vectors of this machine; results do not depend on it.
-    unit: Arch,
+    /// Best vectors of this machine; results do not depend on them.
+    unit: VectorUnit,
     /// Per thread.
     instants: Vec<Instant>,
     /// Spans that began last.
@@ -114,7 +115,7 @@ impl SeaWork {
     /// Scratch.
     pub(super) fn new() -> SeaWork {
         SeaWork {
-            unit: Arch::new(),
+            unit: VectorUnit::best(),
             instants: vec![Instant::default()],
             due: Vec::new(),
             spare: Vec::new(),
@@ -244,7 +245,7 @@ fn sample(
     (time, ahead): (f64, f64),
     (position, velocity): (&[Vector3<f64>], &[Vector3<f64>]),
     found: &mut Vec<Orbit>,
-    (unit, instant): (Arch, &mut Instant),
+    (unit, instant): (VectorUnit, &mut Instant),
 ) {
     waves.turn_to(time + ahead, instant);
     found.clear();

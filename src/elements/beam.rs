@@ -17,7 +17,7 @@ use pulp::NullaryFnOnce;
 use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::math::pivoted_chain::{Block, BlockLanes, PivotedChain};
 use crate::math::triad::{Triad, each};
-use crate::math::unit;
+use crate::math::unit::VectorUnit;
 use crate::model::{BeamElement, FreePoint, Point};
 use crate::physics::seabed::{PARTS, Part};
 use crate::physics::section::{
@@ -393,7 +393,7 @@ pub(crate) fn add_elements(
     mixture: Mixture,
     tangent: bool,
 ) {
-    unit::of_four().dispatch(AddElements {
+    VectorUnit::best().dispatch(AddElements {
         chain,
         elements,
         now,

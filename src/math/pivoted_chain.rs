@@ -15,7 +15,7 @@ use pulp::NullaryFnOnce;
 
 use super::lanes::{LANES, Lanes};
 use super::triad::each;
-use super::unit;
+use super::unit::VectorUnit;
 
 /// Greatest multiple of a pivot row that is subtracted from another before rows are exchanged [-].
 const MULTIPLE_MAX: f64 = 1e3;
@@ -240,7 +240,7 @@ impl PivotedChain {
 
     /// Solves in place; false where a block is singular or the solution is not finite.
     pub fn solve(&mut self) -> bool {
-        unit::of_four().dispatch(Solve {
+        VectorUnit::best().dispatch(Solve {
             chain: self,
             factorise: true,
         })
@@ -275,7 +275,7 @@ impl PivotedChain {
 
     /// Solves for another right-hand side, after [`PivotedChain::solve`]; false where the solution is not finite.
     pub fn solve_again(&mut self) -> bool {
-        unit::of_four().dispatch(Solve {
+        VectorUnit::best().dispatch(Solve {
             chain: self,
             factorise: false,
         })

@@ -10,7 +10,7 @@ use super::winches::{self, WinchPath};
 use super::{Simulation, Snapshot};
 use crate::dynamics::motion::{AxesPath, Clock, Extrapolation, Fading, HostPath, InputSample, VesselPath};
 use crate::dynamics::{StepError, StepFailure};
-use crate::math::unit;
+use crate::math::unit::VectorUnit;
 use crate::model::{Line, Model, Point, Role};
 use crate::scene::Reconstruction;
 
@@ -199,7 +199,7 @@ impl Simulation {
         paths.clock.add_sample(time, step, reconstruction, extrapolation);
         if !snapshot.follows_scene {
             let inputs = &snapshot.inputs;
-            unit::of_four().dispatch(Extend {
+            VectorUnit::best().dispatch(Extend {
                 paths,
                 before,
                 model,

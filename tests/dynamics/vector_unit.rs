@@ -1,4 +1,4 @@
-//! The kernels run with the widest vectors of the machine; the results must not depend on it.
+//! The kernels run with the best vectors of the machine; the results must not depend on it.
 
 use crate::common::*;
 use moorline::dynamics::leapfrog::step::Step;
@@ -36,7 +36,7 @@ fn swayed<K: Kernel>(scene: &Scene, size: f64, steps: usize, portable: bool) -> 
 }
 
 #[test]
-fn the_widest_vectors_and_portable_ones_agree_bit_for_bit() {
+fn the_best_vectors_and_portable_ones_agree_bit_for_bit() {
     for name in ["oc3_catenary", "taut_polyester"] {
         for elements in [2, 3, 10, 21, 40] {
             let scene = with_integrator(with_elements(shipped(name), elements), Integrator::Leapfrog, 0.05);
@@ -51,7 +51,7 @@ fn the_widest_vectors_and_portable_ones_agree_bit_for_bit() {
 }
 
 #[test]
-fn implicit_tensions_are_the_same_with_the_widest_vectors_and_portable_ones() {
+fn implicit_tensions_are_the_same_with_the_best_vectors_and_portable_ones() {
     for name in ["oc3_catenary", "taut_polyester", "lindahl_fast"] {
         for elements in [2, 3, 5, 10, 21, 40] {
             let scene = with_elements(shipped(name), elements);

@@ -150,7 +150,6 @@ pub struct AxialImplicit {
 }
 
 impl Kernel for AxialImplicit {
-    const FEW_ROWS: usize = 2;
     const SECANTS: bool = true;
     /// None: each line has its own limit.
     type Bound = ();

@@ -118,7 +118,6 @@ impl NullaryFnOnce for DragRate<'_> {
 }
 
 impl Kernel for Explicit {
-    const FEW_ROWS: usize = 5;
     const SECANTS: bool = false;
     type Bound = ExplicitLimit;
     type Points = Vec<ContactSpring>;

@@ -8,7 +8,6 @@ mod handover;
 mod water;
 
 use nalgebra::Vector3;
-use pulp::Arch;
 
 use super::step::Step;
 use super::surface::SurfaceNow;
@@ -16,7 +15,7 @@ use super::{ENDS, EndMotion};
 use crate::dynamics::viscoelastic::{Relaxed, ViscoelasticArrays};
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striping::{Column, Field, Slot, Striping};
-use crate::math::unit;
+use crate::math::unit::VectorUnit;
 use crate::model::{End, Line, Model};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
@@ -40,9 +39,7 @@ pub struct Layout {
     /// Slots of nodes and segments.
     pub striping: Striping,
     /// The vectors of the machine that kernels run with; results do not depend on it.
-    pub vector_unit: Arch,
-    /// Rows that vectors of eight numbers do not pay for [-].
-    few_rows: usize,
+    pub vector_unit: VectorUnit,
     pub law: StretchLaw,
     pub negative_tension: bool,
     /// True if the energy balance is evaluated.
@@ -88,14 +85,9 @@ pub(super) fn inverse_norm(square: Lanes) -> Lanes {
 }
 
 impl Layout {
-    /// Arrays for a line whose ends are `tied` to prescribed points or else to free ones, and whose kernel has no use for vectors of eight numbers over
-    /// `few_rows` or less; `None` where its sections have different strain measures, which the kernels do not mix.
-    pub fn new(
-        model: &Model,
-        (line, water): (&Line, Water<'_>),
-        few_rows: usize,
-        tied: [bool; 2],
-    ) -> Option<Layout> {
+    /// Arrays for a line whose ends are `tied` to prescribed points or else to free ones; `None` where its sections have different strain measures, which
+    /// the kernels do not mix.
+    pub fn new(model: &Model, (line, water): (&Line, Water<'_>), tied: [bool; 2]) -> Option<Layout> {
         let n = line.segment_count();
         let striping = match tied[1] && is_plain_at_b(line) {
             true => Striping::without_last(n + 1),
@@ -116,8 +108,7 @@ impl Layout {
             segment_count: n,
             last: [n, n - 1].map(|i| striping.slot(i)),
             striping,
-            vector_unit: unit::over_rows(striping.rows(), few_rows),
-            few_rows,
+            vector_unit: VectorUnit::best(),
             law: line.uniform_law()?,
             negative_tension: model.solver.negative_tension,
             energy_balance: model.energy_balance,
@@ -155,8 +146,8 @@ impl Layout {
     /// Runs the kernels as they are compiled for any machine of the target, or for the best vectors of this one.
     pub fn set_portable(&mut self, portable: bool) {
         self.vector_unit = match portable {
-            true => Arch::Scalar,
-            false => unit::over_rows(self.striping.rows(), self.few_rows),
+            true => VectorUnit::portable(),
+            false => VectorUnit::best(),
         };
     }
 
