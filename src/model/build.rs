@@ -13,10 +13,11 @@ use nalgebra::Vector3;
 use self::reach::may_touch_seabed;
 use super::{
     Bending, Contact, Current, Drag, End, FreePoint, FroudeKrylov, Line, Model, Motion, Network, Nodes,
-    Point, PointContact, Release, Role, Seabed, Section, Segments, Surface, Vessel, Winch, mesh,
+    Point, PointContact, Release, Role, Seabed, Segments, Surface, Vessel, Winch, mesh,
 };
 use crate::math::circle;
 use crate::physics::bending;
+use crate::physics::catenary::Section;
 use crate::physics::flow::Profile;
 use crate::physics::friction::Friction;
 use crate::physics::ground::{Grid, Ground};
@@ -439,12 +440,6 @@ fn build_line(
     let at_winch = winch_segments(index, line, &mut lengths)?;
     let beam = beam::build(scene, index, line, &laws, &lengths)?;
     let parts = segment_parts(&laws, &lengths);
-    let sections = line.sections.iter().zip(&laws).map(|(section, law)| Section {
-        length: section.length,
-        weight: law.weight,
-        axial_stiffness: law.axial_stiffness,
-        law: law.law.clone(),
-    });
     let mut built = Line {
         name: line.name.clone(),
         ends,
@@ -452,7 +447,7 @@ fn build_line(
         nodes: nodes(scene, &parts, may_touch_seabed(scene, names, line)),
         bending: None,
         surface: None,
-        sections: sections.collect(),
+        sections: catenary_sections(line, &laws),
         initial: line.initial.clone(),
         beam,
         release: releases(line),
@@ -554,6 +549,16 @@ fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
         ));
     }
     Ok(())
+}
+
+/// Sections of the closed-form catenary.
+fn catenary_sections(line: &scene::Line, laws: &[LineLaw]) -> Vec<Section> {
+    let section = |(section, law): (&scene::Section, &LineLaw)| Section {
+        length: section.length,
+        weight: law.weight,
+        axial_stiffness: law.axial_stiffness,
+    };
+    line.sections.iter().zip(laws).map(section).collect()
 }
 
 /// Sections as used by the mesher.

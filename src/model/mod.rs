@@ -22,6 +22,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::physics::airy::{Orbit, Waves};
+use crate::physics::catenary::Section;
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::morison::DragCoefficients;
 use crate::physics::point::{Sphere, Wetted};
@@ -278,19 +279,6 @@ impl Release {
     }
 }
 
-/// Section for the closed-form catenary.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Section {
-    /// Unstretched length [m].
-    pub length: f64,
-    /// Weight in the surroundings [N/m].
-    pub weight: f64,
-    /// Axial stiffness EA [N].
-    pub axial_stiffness: f64,
-    /// Strain measure.
-    pub law: StretchLaw,
-}
-
 /// Properties of the segments, one entry each.
 #[derive(Debug, Clone)]
 pub struct Segments {
@@ -459,6 +447,13 @@ impl Line {
     /// Returns whether the line resists bending, as a cable or as a beam.
     pub fn bends(&self) -> bool {
         self.bending.is_some() || self.beam.is_some()
+    }
+
+    /// Returns whether the closed-form catenary applies to the line: engineering strain, and a level seabed if any is in reach.
+    pub fn has_catenary(&self, model: &Model) -> bool {
+        let mut laws = self.segments.law.iter();
+        laws.all(|law| *law == StretchLaw::Engineering)
+            && (model.seabed_is_level() || self.nodes.contact.is_none())
     }
 
     /// Returns whether a current acts on the line.

@@ -64,12 +64,14 @@ mod flight;
 mod root;
 mod sections;
 mod shape;
+mod stiffness;
 mod touchdown;
 mod uniform;
 
 pub use energy::CatenaryEnergy;
 use sections::Sections;
 use shape::{Kind, Piece, Shape};
+pub use stiffness::in_flight;
 use touchdown::Touchdown;
 use uniform::{EndForces, Uniform};
 

@@ -13,7 +13,6 @@ use crate::dynamics::energy_balance::{EnergyBalance, Flow};
 use crate::dynamics::{beam, reaction};
 use crate::elements;
 use crate::model::{End, Line, LineState, Model, PointState, State, WinchState};
-use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Catenary, FlatSeabed};
 use crate::statics::{self, StaticsError, catenary_network, equilibrium, guess};
@@ -155,31 +154,15 @@ fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
 
 /// The closed-form catenary between two places, where it applies: engineering strain, and a level seabed if any is in reach.
 fn solve_catenary(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) -> Option<Catenary> {
-    if line
-        .sections
-        .iter()
-        .any(|section| section.law != StretchLaw::Engineering)
-    {
+    if !line.has_catenary(model) {
         return None;
     }
-    if line.nodes.contact.is_some() && !model.seabed_is_level() {
-        return None;
-    }
-    let sections: Vec<catenary::Section> = line
-        .sections
-        .iter()
-        .map(|section| catenary::Section {
-            length: section.length,
-            weight: section.weight,
-            axial_stiffness: section.axial_stiffness,
-        })
-        .collect();
     let seabed = line.nodes.contact.as_ref().map(|contact| FlatSeabed {
         height: contact.seabed_level - a.z,
         friction: model.seabed_friction,
     });
     let span = (b.x - a.x).hypot(b.y - a.y);
-    catenary::solve(&sections, span, b.z - a.z, seabed).ok()
+    catenary::solve(&line.sections, span, b.z - a.z, seabed).ok()
 }
 
 /// Closed-form catenary of a line in its reference configuration; none where an end is free, or where the line would

@@ -5,7 +5,7 @@
 //!   R = Σ F_line + F_load(t) − w ẑ,
 //!
 //! w the weight less the buoyancy of the submerged part, F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
-//! free flight is exact (see `stiffness`), that of a line on the seabed a difference quotient of its closed form; across its plane a line
+//! free flight is exact (see [`catenary::in_flight`]), that of a line on the seabed a difference quotient of its closed form; across its plane a line
 //! has H/X. Steps are limited, and cut until the power R·δ has not turned: without friction the potential energy is convex
 //! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the seabed rests on it
 //! where it would sink.
@@ -17,17 +17,14 @@
 //!
 //! Source: energy and convexity as for cables under gravity, Irvine (1981), Cable Structures, chapter 2; the rest is derived here.
 
-mod stiffness;
-
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use super::StaticsError;
-use super::catenary::Catenary;
+use super::catenary::{self, Catenary};
 use super::{equilibrium, guess};
 use crate::elements::{Workspace, for_free_points, place_ends};
 use crate::math::block_banded::Pivots;
 use crate::model::{ClosedForm, Line, Model, Network, PointState, State};
-use crate::physics::stretch::StretchLaw;
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-12;
@@ -52,13 +49,7 @@ pub fn serves(model: &Model, network: &Network) -> bool {
     if model.current.is_some() && spheres.any(|sphere| sphere.drag > 0.0) {
         return false;
     }
-    lines.all(|line| {
-        let mut sections = line.sections.iter();
-        line.bending.is_none()
-            && !line.drifts(model)
-            && sections.all(|section| section.law == StretchLaw::Engineering)
-            && (model.seabed_is_level() || line.nodes.contact.is_none())
-    })
+    lines.all(|line| line.bending.is_none() && !line.drifts(model) && line.has_catenary(model))
 }
 
 /// As [`equilibrium::solve`], with every network on closed-form catenaries that can be.
@@ -486,7 +477,7 @@ impl<'a> Problem<'a> {
         let pulls = [solved.horizontal_a(), solved.horizontal()];
         let length = line.unstretched_length();
         let slopes = if solved.laid().next().is_none() {
-            Slopes::in_flight(&stiffness::in_flight(&line.sections, solved))
+            Slopes::in_flight(&catenary::in_flight(&line.sections, solved))
         } else {
             let (slopes, solves) = self.slopes_on_seabed(state, line, solved);
             work.counters.solves += solves;

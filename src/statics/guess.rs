@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::catenary::{self, Catenary, FlatSeabed, Section};
+use super::catenary::{self, Catenary, FlatSeabed};
 use crate::model::{Line, Model};
 use crate::scene::InitialShape;
 
@@ -89,13 +89,7 @@ pub(crate) fn closed_form(
         height: contact.height_under(a) - a.z,
         friction: model.seabed_friction,
     });
-    let section = |section: &crate::model::Section| Section {
-        length: section.length,
-        weight: section.weight,
-        axial_stiffness: section.axial_stiffness,
-    };
-    let sections: Vec<Section> = line.sections.iter().map(section).collect();
-    catenary::solve(&sections, span, rise, seabed).ok()
+    catenary::solve(&line.sections, span, rise, seabed).ok()
 }
 
 fn hang_parabola(

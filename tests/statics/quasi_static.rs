@@ -3,10 +3,10 @@
 
 use crate::common::*;
 use moorline::elements::Workspace;
-use moorline::model::{Body, End, Model, Section as ModelSection, State};
+use moorline::model::{Body, End, Model, State};
 use moorline::scene::{Reconstruction, Scene, Strain};
 use moorline::simulation::Simulation;
-use moorline::statics::catenary::{self, Catenary, FlatSeabed, Section};
+use moorline::statics::catenary::{self, Catenary, FlatSeabed};
 use moorline::statics::{catenary_network, equilibrium};
 use nalgebra::Vector3;
 
@@ -134,22 +134,11 @@ fn moored() -> Scene {
 fn closed_form(model: &Model, state: &State) -> Catenary {
     let line = &model.lines[0];
     let [a, b] = line.ends.map(|point| state.points[point].position);
-    let section = |&ModelSection {
-                       length,
-                       weight,
-                       axial_stiffness,
-                       ..
-                   }: &ModelSection| Section {
-        length,
-        weight,
-        axial_stiffness,
-    };
-    let sections: Vec<Section> = line.sections.iter().map(section).collect();
     let seabed = FlatSeabed {
         height: -50.0 - a.z,
         friction: model.seabed_friction,
     };
-    catenary::solve(&sections, (b - a).xy().norm(), b.z - a.z, Some(seabed)).unwrap()
+    catenary::solve(&line.sections, (b - a).xy().norm(), b.z - a.z, Some(seabed)).unwrap()
 }
 
 #[test]

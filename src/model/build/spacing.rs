@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use super::{LineLaw, Seabed, line_law};
+use super::{LineLaw, Seabed, catenary_sections, line_law};
 use crate::model::mesh::{Place, Refinement, line_elements};
 use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Catenary, FlatSeabed};
@@ -235,16 +235,7 @@ fn hang(
     seabed: Option<FlatSeabed>,
     chord: Vector3<f64>,
 ) -> Option<Catenary> {
-    let sections: Vec<catenary::Section> = line
-        .sections
-        .iter()
-        .zip(laws)
-        .map(|(section, law)| catenary::Section {
-            length: section.length,
-            weight: law.weight,
-            axial_stiffness: law.axial_stiffness,
-        })
-        .collect();
+    let sections = catenary_sections(line, laws);
     catenary::solve(&sections, chord.xy().norm(), chord.z, seabed).ok()
 }
 

@@ -16,8 +16,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::model::Section;
-use crate::statics::catenary::Catenary;
+use super::{Catenary, Section};
 
 /// A section that weighs less than this share of its tension is nearly straight [-].
 const STRAIGHT: f64 = 0.5;
@@ -31,7 +30,7 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 /// ∂(H, V)/∂(X, Z) of a line in free flight [N/m].
-pub(super) fn in_flight(sections: &[Section], solved: &Catenary) -> Matrix2<f64> {
+pub fn in_flight(sections: &[Section], solved: &Catenary) -> Matrix2<f64> {
     let (horizontal, mut vertical) = (solved.horizontal_a(), solved.vertical_a());
     if horizontal == 0.0 {
         return hanging_vertically(sections, vertical);
@@ -104,10 +103,8 @@ fn hanging_vertically(sections: &[Section], mut vertical: f64) -> Matrix2<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::in_flight;
-    use crate::model::Section;
-    use crate::physics::stretch::StretchLaw;
-    use crate::statics::catenary;
+    use super::super::solve as solve_line;
+    use super::{Catenary, Section, in_flight};
     use nalgebra::Matrix2;
 
     fn section(length: f64, weight: f64, axial_stiffness: f64) -> Section {
@@ -115,17 +112,11 @@ mod tests {
             length,
             weight,
             axial_stiffness,
-            law: StretchLaw::Engineering,
         }
     }
 
-    fn solve(sections: &[Section], span: f64, rise: f64) -> catenary::Catenary {
-        let plain = |s: &Section| catenary::Section {
-            length: s.length,
-            weight: s.weight,
-            axial_stiffness: s.axial_stiffness,
-        };
-        catenary::solve(&sections.iter().map(plain).collect::<Vec<_>>(), span, rise, None).unwrap()
+    fn solve(sections: &[Section], span: f64, rise: f64) -> Catenary {
+        solve_line(sections, span, rise, None).unwrap()
     }
 
     #[test]
