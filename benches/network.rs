@@ -83,7 +83,8 @@ fn main() {
             equilibrium::solve(&model, &places, 0.0, &mut work).expect("an equilibrium");
         });
         let catenary = least(|| {
-            catenary_network::solve(&model, &places, 0.0, &mut work).expect("an equilibrium");
+            let mut state = equilibrium::hang(&model, &places, 0.0, &mut work).expect("places");
+            catenary_network::rest(&model, 0, &mut state, &mut work).expect("an equilibrium");
         });
         let mut simulation = Simulation::new(&scene).expect("an equilibrium");
         simulation.follow_scene().expect("an equilibrium");

@@ -32,7 +32,7 @@ mod segment;
 mod surface;
 mod viscoelastic;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::math::block_banded::{Ends, Pivots};
 use crate::math::sparse_blocks::PointSystem;
@@ -60,10 +60,14 @@ pub struct Workspace {
     pub(crate) systems: Vec<PointSystem>,
     /// Per line of the model: its closed form at the last evaluation of a network of catenaries.
     pub(crate) catenaries: Vec<Option<Catenary>>,
+    /// Per line of the model: −∂F/∂r of the forces F on ends A and B by their positions r, on the closed form [N/m].
+    pub(crate) stiffness: Vec<[[Matrix3<f64>; 2]; 2]>,
     /// State before a step of the caller.
     pub(crate) start: State,
     /// State before a step.
     pub(crate) before: State,
+    /// First guess of an equilibrium in a current.
+    pub(crate) hung: State,
     /// First guess of an equilibrium.
     pub(crate) saved: State,
     /// Last equilibrium between two others.
@@ -126,8 +130,10 @@ impl Workspace {
             points,
             systems,
             catenaries: vec![None; model.lines.len()],
+            stiffness: vec![[[Matrix3::zeros(); 2]; 2]; model.lines.len()],
             start: blank_state(model),
             before: blank_state(model),
+            hung: blank_state(model),
             saved: blank_state(model),
             trial: blank_state(model),
             counters: Counters::default(),
@@ -429,7 +435,7 @@ impl Workspace {
     }
 
     /// Takes the solution at the free points from their system.
-    fn take_solution(&mut self, network: &Network, number: usize) {
+    pub(crate) fn take_solution(&mut self, network: &Network, number: usize) {
         for (slot, &index) in network.free_points.iter().enumerate() {
             self.points[index].solution = self.systems[number].solution(slot);
         }

@@ -600,8 +600,7 @@ fn line_bending(
 
 /// Takes the initial shape as the one without bending moments, where the scene selects it and gives one.
 fn rest_as_it_lies(line: &mut Line, points: &[Point], rest_shape: RestShape) {
-    let [a, b] = line.ends.map(|point| points[point].reference);
-    let nodes = line.given_shape(a, b);
+    let nodes = line.given_shape(line.ends.map(|point| points[point].reference));
     if let (Some(bending), Some(nodes), RestShape::Initial) = (&mut line.bending, nodes, rest_shape) {
         bending.rest_at(&nodes);
     }

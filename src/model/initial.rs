@@ -6,25 +6,27 @@ use super::Line;
 use crate::scene::InitialShape;
 
 impl Line {
-    /// Node positions [m] of the user's initial shape, between ends at `a` and `b` [m]; `None` for the static one and
+    /// Node positions [m] of the user's initial shape, between the ends of the line [m]; `None` for the static one and
     /// for the catenary.
-    pub fn given_shape(&self, a: Vector3<f64>, b: Vector3<f64>) -> Option<Vec<Vector3<f64>>> {
-        let length = self.unstretched_length();
-        let on_chord = |sag: f64| {
-            self.nodes
-                .arc
-                .iter()
-                .map(|arc| {
-                    let u = arc / length;
-                    a + u * (b - a) - 4.0 * sag * u * (1.0 - u) * Vector3::z()
-                })
-                .collect()
-        };
+    pub fn given_shape(&self, ends: [Vector3<f64>; 2]) -> Option<Vec<Vector3<f64>>> {
         match &self.initial {
             InitialShape::Static | InitialShape::Catenary => None,
-            InitialShape::Straight => Some(on_chord(0.0)),
-            InitialShape::Parabola(sag) => Some(on_chord(*sag)),
+            InitialShape::Straight => Some(self.parabola(ends, 0.0).collect()),
+            InitialShape::Parabola(sag) => Some(self.parabola(ends, *sag).collect()),
             InitialShape::Nodes(nodes) => Some(nodes.iter().map(|node| Vector3::from(*node)).collect()),
         }
+    }
+
+    /// Nodes on a parabola of a sag [m] between two ends [m], at equal parts of the chord and of the line.
+    pub(crate) fn parabola(
+        &self,
+        [a, b]: [Vector3<f64>; 2],
+        sag: f64,
+    ) -> impl Iterator<Item = Vector3<f64>> + '_ {
+        let length = self.unstretched_length();
+        self.nodes.arc.iter().map(move |arc| {
+            let u = arc / length;
+            a + u * (b - a) - 4.0 * sag * u * (1.0 - u) * Vector3::z()
+        })
     }
 }

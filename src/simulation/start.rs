@@ -1,6 +1,6 @@
 //! Start of a simulation: at rest, at the initial shapes of the scene or in its static equilibrium.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 use super::flow;
 use super::input_error::InputRecord;
@@ -14,8 +14,9 @@ use crate::dynamics::{beam, reaction};
 use crate::elements;
 use crate::model::{End, Line, LineState, Model, PointState, State, WinchState};
 use crate::scene::{InitialShape, Integrator};
-use crate::statics::catenary::{self, Catenary, FlatSeabed};
-use crate::statics::{self, StaticsError, catenary_network, equilibrium, guess};
+use crate::statics::catenary::Catenary;
+use crate::statics::guess::{self, Plane};
+use crate::statics::{self, StaticsError, catenary_network, equilibrium};
 
 /// Treatment of lines with an initial shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,8 +111,8 @@ fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> R
 fn take_shapes(model: &Model, number: usize, state: &mut State) {
     for &index in &model.networks[number].lines {
         let line = &model.lines[index];
-        let [a, b] = line.ends.map(|point| state.points[point].position);
-        let Some(mut nodes) = guess::start_shape(model, line, a, b) else {
+        let ends = line.ends.map(|point| state.points[point].position);
+        let Some(mut nodes) = guess::start_shape(model, line, ends) else {
             continue;
         };
         // free points are where they rest, which is not where the scene puts them
@@ -152,19 +153,6 @@ fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The closed-form catenary between two places, where it applies: engineering strain, and a level seabed if any is in reach.
-fn solve_catenary(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) -> Option<Catenary> {
-    if !line.has_catenary(model) {
-        return None;
-    }
-    let seabed = line.nodes.contact.as_ref().map(|contact| FlatSeabed {
-        height: contact.seabed_level - a.z,
-        friction: model.seabed_friction,
-    });
-    let span = (b.x - a.x).hypot(b.y - a.y);
-    catenary::solve(&line.sections, span, b.z - a.z, seabed).ok()
-}
-
 /// Closed-form catenary of a line in its reference configuration; none where an end is free, or where the line would
 /// rise out of the water, which the closed form does not model.
 pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
@@ -172,10 +160,9 @@ pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary>
     if ends.iter().any(|point| point.free().is_some()) {
         return None;
     }
-    let [a, b] = ends.map(|point| point.reference);
-    let solved = solve_catenary(model, line, a, b)?;
-    let height = |&s: &f64| Vector3::new(0.0, 0.0, a.z + solved.at(s).z);
-    let shape = || line.nodes.arc.iter().map(height).collect::<Vec<_>>();
-    let surface = line.surface.as_ref();
-    (!surface.is_some_and(|surface| surface.is_pierced(&shape()))).then_some(solved)
+    let plane = Plane::new(ends.map(|point| point.reference));
+    let solved = line
+        .has_catenary(model)
+        .then(|| guess::closed_form(model, line, &plane))??;
+    (!guess::is_pierced(line, &solved, plane.a)).then_some(solved)
 }

@@ -19,12 +19,12 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::StaticsError;
 use super::catenary::{self, Catenary};
-use super::{equilibrium, guess};
+use super::guess::{self, Plane};
+use super::{StaticsError, equilibrium};
 use crate::elements::{Workspace, for_free_points, place_ends};
 use crate::math::block_banded::Pivots;
-use crate::model::{ClosedForm, Line, Model, Network, PointState, State};
+use crate::model::{ClosedForm, FreePoint, Line, Model, Network, PointState, State};
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-12;
@@ -50,23 +50,6 @@ pub fn serves(model: &Model, network: &Network) -> bool {
         return false;
     }
     lines.all(|line| line.bending.is_none() && !line.drifts(model) && line.has_catenary(model))
-}
-
-/// As [`equilibrium::solve`], with every network on closed-form catenaries that can be.
-///
-/// # Errors
-/// No equilibrium was found, or there is none.
-pub fn solve(
-    model: &Model,
-    points: &[PointState],
-    t: f64,
-    work: &mut Workspace,
-) -> Result<State, StaticsError> {
-    let mut state = equilibrium::hang(model, points, t, work)?;
-    for number in 0..model.networks.len() {
-        rest(model, number, &mut state, work)?;
-    }
-    Ok(state)
 }
 
 /// Finds the equilibrium like [`equilibrium::rest`], on closed-form catenaries where that is possible. A network
@@ -115,141 +98,28 @@ pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, wo
     true
 }
 
-/// Stiffness of the lines of a network on its catenaries.
-pub(crate) struct HungNetwork {
-    /// In the order of the network.
-    pub lines: Vec<HungLine>,
-    /// Axes along which its free points cannot move.
-    held: Vec<[bool; 3]>,
-}
-
-/// Stiffness of one line on its catenary.
-pub(crate) struct HungLine {
-    /// Forces on the points at ends A and B [N].
-    pub end_force: [Vector3<f64>; 2],
-    /// −∂F/∂r of those by the positions of ends A and B [N/m].
-    pub stiffness: [[Matrix3<f64>; 2]; 2],
-}
-
-/// The catenaries of a network between its points as they are; `None` where a line has none.
-pub(crate) fn hung(model: &Model, number: usize, state: &State, work: &mut Workspace) -> Option<HungNetwork> {
+/// Finds the catenaries of a network between its points as they are, with their stiffness, and solves the system of its free points for
+/// other right-hand sides to follow; false where a line has no catenary or the points are not stable.
+pub(crate) fn linearise(model: &Model, number: usize, state: &State, work: &mut Workspace) -> bool {
     let problem = Problem::new(model, number, state.time);
     if !(serves(model, problem.network) && problem.evaluate(state, work)) {
-        return None;
+        return false;
     }
-    let mut lines = Vec::with_capacity(problem.network.lines.len());
-    for &index in &problem.network.lines {
-        let [a, b] = model.lines[index].ends.map(|end| state.points[end].position);
-        lines.push(HungLine {
-            end_force: Plane::new(a, b).end_forces(work.catenaries[index].as_ref()?),
-            stiffness: problem.line_stiffness(state, work, index),
-        });
-    }
-    let mut held = Vec::with_capacity(problem.network.free_points.len());
-    for_free_points(model, problem.network, |index, free| {
-        held.push([0, 1, 2].map(|axis| problem.is_held(state, work, index, free.axes, axis)));
-    });
-    Some(HungNetwork { lines, held })
-}
-
-impl HungNetwork {
-    /// Displacements [m] of ends A and B of every line as prescribed points move by `moved` [m] and the free points follow; `None` where those
-    /// find no balance.
-    pub(crate) fn respond(
-        &self,
-        model: &Model,
-        number: usize,
-        moved: impl Fn(usize) -> Vector3<f64>,
-        work: &mut Workspace,
-    ) -> Option<Vec<[Vector3<f64>; 2]>> {
-        let network = &model.networks[number];
-        let system = &mut work.systems[number];
-        system.clear();
-        let blocks = self.lines.iter().flat_map(|line| line.stiffness.iter().flatten());
-        let stiffest = blocks.map(Matrix3::amax).fold(0.0, f64::max);
-        let rounding = Matrix3::from_diagonal_element(8.0 * f64::EPSILON * stiffest);
-        for slot in 0..self.held.len() {
-            system.add_block(slot, slot, &rounding);
-        }
-        for (&index, line) in network.lines.iter().zip(&self.lines) {
-            let ends = model.lines[index].ends;
-            for (row, blocks) in ends.into_iter().zip(&line.stiffness) {
-                let Some(row) = work.points[row].slot else {
-                    continue;
-                };
-                for (column, block) in ends.into_iter().zip(blocks) {
-                    match work.points[column].slot {
-                        Some(column) => system.add_block(row, column, block),
-                        None => system.add_right(row, block * moved(column)),
-                    }
-                }
-            }
-        }
-        for (slot, held) in self.held.iter().enumerate() {
-            for axis in (0..3).filter(|&axis| held[axis]) {
-                system.hold(slot, axis);
-            }
-        }
-        if !system.solve(Pivots::Positive) {
-            return None;
-        }
-        let of_point = |point: usize| match work.points[point].slot {
-            Some(slot) => -work.systems[number].solution(slot),
-            None => moved(point),
-        };
-        let lines = network.lines.iter();
-        Some(lines.map(|&line| model.lines[line].ends.map(of_point)).collect())
-    }
-}
-
-/// Ends of a line in the vertical plane through them.
-struct Plane {
-    /// Horizontal direction from A to B [-].
-    along: Vector3<f64>,
-    /// Horizontal distance [m].
-    span: f64,
-    /// Height of B over A [m].
-    rise: f64,
-}
-
-impl Plane {
-    fn new(a: Vector3<f64>, b: Vector3<f64>) -> Plane {
-        let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
-        let span = across.norm();
-        let along = if span > 0.0 { across / span } else { Vector3::x() };
-        Plane {
-            along,
-            span,
-            rise: b.z - a.z,
-        }
-    }
-
-    /// Forces of a line on the points at its ends [N].
-    fn end_forces(&self, solved: &Catenary) -> [Vector3<f64>; 2] {
-        let force = |h: f64, v: f64| h * self.along + v * Vector3::z();
-        let (a, b) = (
-            force(solved.horizontal_a(), solved.vertical_a()),
-            force(solved.horizontal(), solved.vertical_b()),
-        );
-        [a, -b]
-    }
+    problem.assemble(state, work, 0.0);
+    work.systems[number].solve(Pivots::Positive)
 }
 
 /// Nodes of a line, with its closed-form tensions, from its catenary; the line is at rest.
 fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
-    let [a, b] = line.ends.map(|point| state.points[point].position);
-    let plane = Plane::new(a, b);
+    let plane = Plane::new(line.ends.map(|point| state.points[point].position));
     let shape = &mut state.lines[index];
     let closed_form = shape.closed_form.get_or_insert_with(ClosedForm::default);
     closed_form.tension.resize(line.nodes.arc.len(), 0.0);
     closed_form.horizontal.resize(line.nodes.arc.len(), 0.0);
-    let tensions = closed_form.tension.iter_mut();
-    let tensions = tensions.zip(&mut closed_form.horizontal);
-    let nodes = shape.position.iter_mut().zip(&line.nodes.arc);
-    for ((r, &s), (tension, horizontal)) in nodes.zip(tensions) {
+    for (i, &s) in line.nodes.arc.iter().enumerate() {
         let point = solved.at(s);
-        *r = a + point.x * plane.along + point.z * Vector3::z();
-        (*tension, *horizontal) = (point.tension, point.horizontal);
+        shape.position[i] = plane.place(&point);
+        (closed_form.tension[i], closed_form.horizontal[i]) = (point.tension, point.horizontal);
     }
     let last = closed_form.tension.len() - 1;
     (closed_form.tension[0], closed_form.tension[last]) = (solved.tension_a(), solved.tension_b());
@@ -261,7 +131,7 @@ fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
     let weights = line.sections.iter();
     let weight: f64 = weights.map(|section| section.weight * section.length).sum();
     closed_form.axial_energy = energy.axial;
-    closed_form.gravitational_energy = energy.gravitational + weight * a.z;
+    closed_form.gravitational_energy = energy.gravitational + weight * plane.a.z;
     shape.velocity.fill(Vector3::zeros());
     shape.acceleration.fill(Vector3::zeros());
 }
@@ -384,10 +254,9 @@ impl<'a> Problem<'a> {
         });
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
-            let [a, b] = line.ends.map(|point| state.points[point].position);
-            let plane = Plane::new(a, b);
+            let plane = Plane::new(line.ends.map(|point| state.points[point].position));
             work.counters.solves += 1;
-            let Some(solved) = guess::closed_form(self.model, line, a, plane.span, plane.rise) else {
+            let Some(solved) = guess::closed_form(self.model, line, &plane) else {
                 return false;
             };
             for (point, force) in line.ends.into_iter().zip(plane.end_forces(&solved)) {
@@ -398,11 +267,10 @@ impl<'a> Problem<'a> {
             work.catenaries[index] = Some(solved);
         }
         for_free_points(self.model, self.network, |index, free| {
-            let mut total = work.points[index].residual;
-            for axis in (0..3).filter(|&axis| self.is_held(state, work, index, free.axes, axis)) {
-                total[axis] = 0.0;
-            }
-            work.points[index].total = total;
+            let held = self.held(state, work, index, free);
+            let point = &mut work.points[index];
+            let moved = |axis: usize, _| if held[axis] { 0.0 } else { point.residual[axis] };
+            point.total = Vector3::from_fn(moved);
         });
         true
     }
@@ -421,23 +289,24 @@ impl<'a> Problem<'a> {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Returns true where a free point cannot move along an axis: not free there, or pressed on the seabed.
-    fn is_held(&self, state: &State, work: &Workspace, point: usize, axes: [bool; 3], axis: usize) -> bool {
+    /// Axes along which a free point cannot move: not free there, or pressed on the seabed.
+    fn held(&self, state: &State, work: &Workspace, point: usize, free: &FreePoint) -> [bool; 3] {
         let pressed = work.points[point].residual.z <= 0.0
             && state.points[point].position.z <= self.seabed_under(point);
-        !axes[axis] || (axis == 2 && pressed)
+        let [x, y, z] = free.axes;
+        [!x, !y, !z || pressed]
     }
 
-    /// Sets up the linear system; the greatest stiffness [N/m] and the greatest coordinate of a point [m].
+    /// Sets up the stiffness of the lines and the linear system; the greatest stiffness [N/m] and the greatest coordinate of a point [m].
     fn assemble(&self, state: &State, work: &mut Workspace, anchoring: f64) -> (f64, f64) {
         work.systems[self.number].clear();
         let (mut stiffest, mut farthest) = (0.0_f64, 0.0_f64);
         for &index in &self.network.lines {
-            let line = &self.model.lines[index];
-            let blocks = self.line_stiffness(state, work, index);
-            for (end, row) in line.ends.into_iter().zip(&blocks) {
+            let ends = self.model.lines[index].ends;
+            work.stiffness[index] = self.line_stiffness(state, work, index);
+            for (end, row) in ends.into_iter().zip(&work.stiffness[index]) {
                 farthest = farthest.max(state.points[end].position.amax());
-                for (other, block) in line.ends.into_iter().zip(row) {
+                for (other, block) in ends.into_iter().zip(row) {
                     if let (Some(row), Some(column)) = (work.points[end].slot, work.points[other].slot) {
                         work.systems[self.number].add_block(row, column, block);
                         stiffest = stiffest.max(block.amax());
@@ -447,20 +316,20 @@ impl<'a> Problem<'a> {
         }
         let anchoring = Matrix3::from_diagonal_element(anchoring + 8.0 * f64::EPSILON * stiffest);
         for (slot, &index) in self.network.free_points.iter().enumerate() {
-            work.systems[self.number].add_block(slot, slot, &anchoring);
-            work.systems[self.number].add_right(slot, work.points[index].total);
-        }
-        for_free_points(self.model, self.network, |index, free| {
-            let slot = work.points[index].slot.unwrap_or(0);
+            let Some(free) = self.model.points[index].free() else {
+                continue;
+            };
             let heave = free.at(state.points[index].position.z).weight_slope;
             let heave = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, heave));
-            work.systems[self.number].add_block(slot, slot, &heave);
-            for axis in 0..3 {
-                if self.is_held(state, work, index, free.axes, axis) {
-                    work.systems[self.number].hold(work.points[index].slot.unwrap_or(0), axis);
-                }
+            let held = self.held(state, work, index, free);
+            let system = &mut work.systems[self.number];
+            system.add_block(slot, slot, &anchoring);
+            system.add_block(slot, slot, &heave);
+            system.add_right(slot, work.points[index].total);
+            for axis in (0..3).filter(|&axis| held[axis]) {
+                system.hold(slot, axis);
             }
-        });
+        }
         (stiffest, farthest)
     }
 
@@ -470,59 +339,47 @@ impl<'a> Problem<'a> {
         let Some(solved) = &work.catenaries[index] else {
             return [[Matrix3::zeros(); 2]; 2];
         };
-        let plane = Plane::new(
-            state.points[line.ends[0]].position,
-            state.points[line.ends[1]].position,
-        );
-        let pulls = [solved.horizontal_a(), solved.horizontal()];
-        let length = line.unstretched_length();
+        let ends = line.ends.map(|point| state.points[point].position);
+        let (plane, length) = (Plane::new(ends), line.unstretched_length());
         let slopes = if solved.laid().next().is_none() {
             Slopes::in_flight(&catenary::in_flight(&line.sections, solved))
         } else {
-            let (slopes, solves) = self.slopes_on_seabed(state, line, solved);
-            work.counters.solves += solves;
-            slopes
+            work.counters.solves += 3;
+            let step = DIFFERENCE * length.max(ends[0].amax()).max(ends[1].amax());
+            self.slopes_on_seabed(line, solved, &plane, step)
         };
+        let pulls = [solved.horizontal_a(), solved.horizontal()];
         slopes.stiffness(&plane, pulls, length)
     }
 
-    /// Slopes of a line that touches the seabed, by difference quotients, with the number of catenaries solved.
-    fn slopes_on_seabed(&self, state: &State, line: &Line, solved: &Catenary) -> (Slopes, usize) {
+    /// Slopes of a line that touches the seabed, by difference quotients over a `step` [m].
+    fn slopes_on_seabed(&self, line: &Line, solved: &Catenary, plane: &Plane, step: f64) -> Slopes {
         let forces = |c: &Catenary| [c.horizontal_a(), c.vertical_a(), c.horizontal(), c.vertical_b()];
-        let [a, b] = line.ends.map(|point| state.points[point].position);
-        let step = DIFFERENCE * line.unstretched_length().max(a.amax()).max(b.amax());
-        let (plane, base) = (Plane::new(a, b), forces(solved));
+        let base = forces(solved);
         let slope = |span: f64, up_a: f64, up_b: f64| {
-            let lifted = a + up_a * Vector3::z();
-            let moved = guess::closed_form(
-                self.model,
-                line,
-                lifted,
-                plane.span + span,
-                plane.rise + up_b - up_a,
-            );
+            let moved = Plane {
+                a: plane.a + up_a * Vector3::z(),
+                along: plane.along,
+                span: plane.span + span,
+                rise: plane.rise + up_b - up_a,
+            };
+            let moved = guess::closed_form(self.model, line, &moved);
             let moved = moved.map_or(base, |moved| forces(&moved));
             std::array::from_fn(|i| (moved[i] - base[i]) / step)
         };
-        let slopes = Slopes {
+        Slopes {
             by_span: slope(step, 0.0, 0.0),
             by_height_a: slope(0.0, step, 0.0),
             by_height_b: slope(0.0, 0.0, step),
-        };
-        (slopes, 3)
+        }
     }
 
     /// Returns true where a line on its catenary comes out of the water, which the closed form does not model.
     fn is_pierced(&self, state: &State, work: &Workspace) -> bool {
         self.network.lines.iter().any(|&index| {
-            let line = &self.model.lines[index];
-            let (Some(surface), Some(solved)) = (&line.surface, &work.catenaries[index]) else {
-                return false;
-            };
+            let (line, solved) = (&self.model.lines[index], work.catenaries[index].as_ref());
             let a = state.points[line.ends[0]].position;
-            let nodes = line.nodes.arc.iter();
-            let shape: Vec<Vector3<f64>> = nodes.map(|&s| a + solved.at(s).z * Vector3::z()).collect();
-            surface.is_pierced(&shape)
+            solved.is_some_and(|solved| guess::is_pierced(line, solved, a))
         })
     }
 

@@ -34,7 +34,7 @@ use nalgebra::Vector3;
 
 use super::StaticsError;
 use super::guess;
-use crate::elements::friction::point_stick;
+use crate::elements::friction::{point_stick, remove_anchors};
 use crate::elements::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 use crate::physics::friction::Friction;
@@ -104,8 +104,7 @@ pub fn hang(
     t: f64,
     work: &mut Workspace,
 ) -> Result<State, StaticsError> {
-    let places: Vec<Vector3<f64>> = points.iter().map(|point| point.position).collect();
-    check_finite(model, &places)?;
+    check_finite(model, points)?;
     let mut state = State {
         time: t,
         points: points.to_vec(),
@@ -113,12 +112,10 @@ pub fn hang(
         waves: None,
     };
     for (line, work) in model.lines.iter().zip(&mut work.lines) {
-        let [a, b] = line.ends.map(|point| places[point]);
-        let mut position = vec![a; line.segment_count() + 1];
-        guess::hang(model, line, a, b, &mut position, &mut work.tension);
-        state.lines.push(LineState::at_rest(
-            guess::start_shape(model, line, a, b).unwrap_or(position),
-        ));
+        let ends = line.ends.map(|point| points[point].position);
+        let hung = guess::hang(model, line, ends, &mut work.tension);
+        let start = guess::start_shape(model, line, ends).unwrap_or(hung);
+        state.lines.push(LineState::at_rest(start));
     }
     Ok(state)
 }
@@ -139,38 +136,11 @@ pub fn rest(
     Problem::new(model, number, state.time, work).solve(state, work)
 }
 
-/// Moves the prescribed points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.
+/// Moves the prescribed points of a network to where they are `held` and finds the equilibrium at time `t` [s] closest to `state`, without
+/// allocating; velocities and accelerations become zero.
 ///
 /// # Errors
 /// No equilibrium was found, or there is none; the state is then as it was.
-pub fn continue_from(
-    model: &Model,
-    state: &mut State,
-    points: &[Vector3<f64>],
-    t: f64,
-    work: &mut Workspace,
-) -> Result<(), StaticsError> {
-    check_finite(model, points)?;
-    let before = state.clone();
-    for number in 0..model.networks.len() {
-        let held = |point: usize| Kinematics {
-            position: points[point],
-            orientation: before.points[point].orientation,
-            ..Kinematics::default()
-        };
-        if let Err(error) = continue_network(model, number, state, held, t, work) {
-            *state = before;
-            return Err(error);
-        }
-    }
-    state.time = t;
-    Ok(())
-}
-
-/// [`continue_from`] for one network, without allocating; velocities and accelerations become zero.
-///
-/// # Errors
-/// As there.
 pub fn continue_network(
     model: &Model,
     number: usize,
@@ -183,10 +153,8 @@ pub fn continue_network(
     let network = &model.networks[number];
     let mut before = std::mem::take(&mut work.before);
     copy_network(model, network, state, &mut before);
-    work.assemble_static(model, network, state, &problem.case(f64::INFINITY));
+    problem.remember_shape(state, work);
     for &index in &network.lines {
-        let line = &mut work.lines[index];
-        line.tension.copy_from_slice(&line.elastic);
         for point in model.lines[index].ends {
             if model.points[point].free().is_none() {
                 state.points[point] = PointState::held(&held(point));
@@ -220,13 +188,13 @@ fn shift(state: &mut State, before: &State, model: &Model, index: usize) {
     nodes.acceleration.fill(Vector3::zeros());
 }
 
-fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsError> {
-    assert_eq!(points.len(), model.points.len(), "one position per point");
-    for (point, position) in model.points.iter().zip(points) {
-        for (axis, value) in ["x", "y", "z"].into_iter().zip(position.iter()) {
+fn check_finite(model: &Model, points: &[PointState]) -> Result<(), StaticsError> {
+    assert_eq!(points.len(), model.points.len(), "one state per point");
+    for (point, state) in model.points.iter().zip(points) {
+        for (axis, &value) in ["x", "y", "z"].into_iter().zip(&state.position) {
             if !value.is_finite() {
                 let place = format!("point \"{}\", {axis}", point.name);
-                return Err(StaticsError::NotFinite { place, value: *value });
+                return Err(StaticsError::NotFinite { place, value });
             }
         }
     }
@@ -314,7 +282,7 @@ impl<'a> Problem<'a> {
     fn solve_loaded(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let has_friction = self.has_friction();
         if has_friction {
-            self.remove_friction(state);
+            remove_anchors(self.model, self.network, state);
         }
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
@@ -371,6 +339,11 @@ impl<'a> Problem<'a> {
     /// Goes back to a guess, with the tensions that its shape has.
     fn restart(&self, guess: &State, state: &mut State, work: &mut Workspace) {
         copy_network(self.model, self.network, guess, state);
+        self.remember_shape(state, work);
+    }
+
+    /// Takes the tensions of a shape for the predicted ones.
+    fn remember_shape(&self, state: &State, work: &mut Workspace) {
         work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
         self.remember_tensions(work);
     }
@@ -415,13 +388,7 @@ impl<'a> Problem<'a> {
             case.tension_min = relaxation * self.force;
             case.anchoring = relaxation * self.force / self.length + self.rounding_stiffness(&case);
             work.assemble_static(self.model, self.network, state, &case);
-            let (residual, _) = work.greatest_residual(self.network);
-            let tolerance = self.tolerance(state, work, case.stiffness_max);
-            balanced = if residual <= tolerance && self.no_push(work, tolerance) {
-                balanced + 1
-            } else {
-                0
-            };
+            balanced = self.count_balanced(balanced, state, work, &case);
             if balanced >= 3 || (balanced > 0 && step <= STEP_TOLERANCE * self.length) {
                 return true;
             }
@@ -451,6 +418,16 @@ impl<'a> Problem<'a> {
             }
         }
         false
+    }
+
+    /// Counts the assemblies in a row that are in balance, the last one after `balanced` others.
+    fn count_balanced(&self, balanced: usize, state: &State, work: &Workspace, case: &StaticCase) -> usize {
+        let (residual, _) = work.greatest_residual(self.network);
+        let tolerance = self.tolerance(state, work, case.stiffness_max);
+        match residual <= tolerance && self.no_push(work, tolerance) {
+            true => balanced + 1,
+            false => 0,
+        }
     }
 
     /// Relaxation at the start of Newton's method: the force out of balance over the sum of the external forces, so that anchoring hardly

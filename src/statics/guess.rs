@@ -6,116 +6,130 @@ use super::catenary::{self, Catenary, FlatSeabed};
 use crate::model::{Line, Model};
 use crate::scene::InitialShape;
 
-/// Puts the nodes of a line between its ends at `a` and `b` [m] on its closed-form catenary, with the tensions of its
-/// segments [N]. Where there is none, because an end lies under the seabed, the nodes lie on a parabola of about the
-/// right length.
+/// Ends of a line in the vertical plane through them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plane {
+    /// End A [m].
+    pub a: Vector3<f64>,
+    /// Horizontal direction from A to B [-].
+    pub along: Vector3<f64>,
+    /// Horizontal distance [m].
+    pub span: f64,
+    /// Height of B over A [m].
+    pub rise: f64,
+}
+
+impl Plane {
+    /// Plane through ends A and B [m].
+    pub(crate) fn new([a, b]: [Vector3<f64>; 2]) -> Plane {
+        let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
+        let span = across.norm();
+        let along = if span > 0.0 { across / span } else { Vector3::x() };
+        Plane {
+            a,
+            along,
+            span,
+            rise: b.z - a.z,
+        }
+    }
+
+    /// Place of a point of a catenary between the ends [m].
+    pub(crate) fn place(&self, point: &catenary::Point) -> Vector3<f64> {
+        self.a + point.x * self.along + point.z * Vector3::z()
+    }
+
+    /// Places of the nodes of a line on its catenary [m].
+    fn nodes(&self, line: &Line, solved: &Catenary) -> Vec<Vector3<f64>> {
+        let arc = line.nodes.arc.iter();
+        arc.map(|&s| self.place(&solved.at(s))).collect()
+    }
+
+    /// Forces of a line on the points at its ends [N].
+    pub(crate) fn end_forces(&self, solved: &Catenary) -> [Vector3<f64>; 2] {
+        let force = |h: f64, v: f64| h * self.along + v * Vector3::z();
+        let a = force(solved.horizontal_a(), solved.vertical_a());
+        [a, -force(solved.horizontal(), solved.vertical_b())]
+    }
+}
+
+/// Nodes of a line between its ends [m] on its closed-form catenary, with the tensions of its segments [N]. Where there is none, because an end
+/// lies under the seabed, the nodes lie on a parabola of about the right length.
 pub(crate) fn hang(
     model: &Model,
     line: &Line,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-    position: &mut [Vector3<f64>],
+    ends: [Vector3<f64>; 2],
     tension: &mut [f64],
-) {
-    let chord = b - a;
-    match closed_form(model, line, a, chord.xy().norm(), chord.z) {
+) -> Vec<Vector3<f64>> {
+    let plane = Plane::new(ends);
+    let mut nodes = match closed_form(model, line, &plane) {
         Some(solved) => {
-            let arc = &line.nodes.arc;
-            draw(&solved, arc, a, chord, position);
-            for (i, tension) in tension.iter_mut().enumerate() {
-                *tension = solved.at(0.5 * (arc[i] + arc[i + 1])).tension;
+            for (tension, arc) in tension.iter_mut().zip(line.nodes.arc.windows(2)) {
+                *tension = solved.at(0.5 * (arc[0] + arc[1])).tension;
             }
+            plane.nodes(line, &solved)
         }
-        None => hang_parabola(line, a, b, position, tension),
-    }
+        None => hang_parabola(line, ends, tension),
+    };
     if let Some(contact) = line.nodes.contact.as_ref().filter(|_| !model.seabed_is_level()) {
-        for r in position.iter_mut() {
+        for r in &mut nodes {
             r.z = r.z.max(contact.height_under(*r));
         }
     }
-    let last = position.len() - 1;
-    (position[0], position[last]) = (a, b);
+    ending_at(ends, nodes)
 }
 
-/// Nodes [m] of the shape that the scene gives a line at the start, between ends at `a` and `b` [m]; `None` for the static one.
-pub(crate) fn start_shape(
-    model: &Model,
-    line: &Line,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-) -> Option<Vec<Vector3<f64>>> {
-    match line.initial {
-        InitialShape::Catenary => Some(catenary_or_chord(model, line, a, b)),
-        _ => line.given_shape(a, b),
+/// Nodes [m] of the shape that the scene gives a line at the start, between its ends [m]; `None` for the static one.
+pub(crate) fn start_shape(model: &Model, line: &Line, ends: [Vector3<f64>; 2]) -> Option<Vec<Vector3<f64>>> {
+    if line.initial != InitialShape::Catenary {
+        return line.given_shape(ends);
     }
+    let plane = Plane::new(ends);
+    let nodes = closed_form(model, line, &plane).map(|solved| plane.nodes(line, &solved));
+    Some(ending_at(
+        ends,
+        nodes.unwrap_or_else(|| line.parabola(ends, 0.0).collect()),
+    ))
 }
 
-/// Nodes [m] of a line on its closed-form catenary between ends at `a` and `b` [m], on their chord where it has none.
-fn catenary_or_chord(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) -> Vec<Vector3<f64>> {
-    let chord = b - a;
-    let (arc, length) = (&line.nodes.arc, line.unstretched_length());
-    let mut position: Vec<_> = arc.iter().map(|s| a + s / length * chord).collect();
-    if let Some(solved) = closed_form(model, line, a, chord.xy().norm(), chord.z) {
-        draw(&solved, arc, a, chord, &mut position);
-    }
-    let last = position.len() - 1;
-    (position[0], position[last]) = (a, b);
-    position
+/// Nodes [m] whose first and last lie at the ends, without rounding.
+fn ending_at([a, b]: [Vector3<f64>; 2], mut nodes: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    let last = nodes.len() - 1;
+    (nodes[0], nodes[last]) = (a, b);
+    nodes
 }
 
-/// Puts nodes at the lengths `arc` [m] along a catenary that begins at `a` [m], in the plane of its `chord` [m].
-fn draw(solved: &Catenary, arc: &[f64], a: Vector3<f64>, chord: Vector3<f64>, position: &mut [Vector3<f64>]) {
-    let span = chord.xy().norm();
-    let along = if span > 0.0 {
-        Vector3::new(chord.x, chord.y, 0.0) / span
-    } else {
-        Vector3::x()
-    };
-    for (r, &s) in position.iter_mut().zip(arc) {
-        let point = solved.at(s);
-        *r = a + point.x * along + point.z * Vector3::z();
-    }
-}
-
-/// The catenary of a line, from end A at `a` over a span and a rise [m].
-pub(crate) fn closed_form(
-    model: &Model,
-    line: &Line,
-    a: Vector3<f64>,
-    span: f64,
-    rise: f64,
-) -> Option<Catenary> {
+/// The catenary of a line.
+pub(crate) fn closed_form(model: &Model, line: &Line, plane: &Plane) -> Option<Catenary> {
     let seabed = line.nodes.contact.as_ref().map(|contact| FlatSeabed {
-        height: contact.height_under(a) - a.z,
+        height: contact.height_under(plane.a) - plane.a.z,
         friction: model.seabed_friction,
     });
-    catenary::solve(&line.sections, span, rise, seabed).ok()
+    catenary::solve(&line.sections, plane.span, plane.rise, seabed).ok()
 }
 
-fn hang_parabola(
-    line: &Line,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-    position: &mut [Vector3<f64>],
-    tension: &mut [f64],
-) {
+/// Returns true where a line on a catenary from end A at `a` [m] comes out of the water, which the closed form does not model.
+pub(crate) fn is_pierced(line: &Line, solved: &Catenary, a: Vector3<f64>) -> bool {
+    let height = |&s: &f64| (a.z + solved.at(s).z) * Vector3::z();
+    let heights = || line.nodes.arc.iter().map(height).collect::<Vec<_>>();
+    line.surface
+        .as_ref()
+        .is_some_and(|surface| surface.is_pierced(&heights()))
+}
+
+fn hang_parabola(line: &Line, [a, b]: [Vector3<f64>; 2], tension: &mut [f64]) -> Vec<Vector3<f64>> {
     let length = line.unstretched_length();
     let weight: f64 = line.nodes.weight.iter().sum();
     let chord = (b - a).norm();
     let sag = (0.375 * chord.max(0.1 * length) * (length - chord).max(0.0)).sqrt() * weight.signum();
-    let seabed = line
-        .nodes
-        .contact
-        .as_ref()
-        .map_or(f64::NEG_INFINITY, |contact| contact.height_under(a));
-    for (r, arc) in position.iter_mut().zip(&line.nodes.arc) {
-        let u = arc / length;
-        *r = a + u * (b - a) - 4.0 * sag * u * (1.0 - u) * Vector3::z();
+    let contact = line.nodes.contact.as_ref();
+    let seabed = contact.map_or(f64::NEG_INFINITY, |contact| contact.height_under(a));
+    tension.fill(match sag == 0.0 {
+        true => 0.0,
+        false => (weight * chord / (8.0 * sag)).abs(),
+    });
+    let mut nodes: Vec<_> = line.parabola([a, b], sag).collect();
+    for r in &mut nodes {
         r.z = r.z.max(seabed.min(a.z).min(b.z));
     }
-    tension.fill(if sag == 0.0 {
-        0.0
-    } else {
-        (weight * chord / (8.0 * sag)).abs()
-    });
+    nodes
 }

@@ -7,7 +7,7 @@
 //!
 //!   J (u − x) + c = 0 at every node between the ends and every free point,   δR = J (u − x) + c at the ends on the vessel,
 //!
-//! six solves for the free points. Every line is condensed on its ends: once, or for every motion where one of its clamps turns. The force of the mooring is F = −R and
+//! six solves for the free points. Every line is condensed on its ends once; a clamp that turns is a right-hand side. The force of the mooring is F = −R and
 //! its moment M = Σ r × F + m, so that
 //!
 //!   K δ = −δF = Σ δR,   −δM = Σ r × δR + (ω × r) × R − δm,
@@ -25,13 +25,11 @@
 //! stiffness; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its axial stiffness then keep it in place. Beams have
 //! no tangent here.
 
-use std::ops::SubAssign;
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use nalgebra::{Matrix6, Vector3, Vector6};
-
-use super::catenary_network::{self, HungNetwork};
+use super::catenary_network;
 use crate::elements::{StaticCase, Workspace, friction};
-use crate::math::block_banded::{Ends, Pivots};
+use crate::math::block_banded::Pivots;
 use crate::model::{Body, End, Line, Model, Network, Role, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
 
@@ -58,19 +56,21 @@ pub fn of_vessel(
             vessel,
             origin,
         };
-        if problem.ends().next().is_none() {
+        if !problem.meets_vessel() {
             continue;
         }
         let released = |&line: &usize| state.lines[line].released != [false; 2];
         if model.beam_of(number).is_some() || problem.network.lines.iter().any(released) {
             return None;
         }
-        sum += if lies_on_catenaries(problem.network, state) {
+        let lines = if lies_on_catenaries(problem.network, state) {
             problem.of_catenaries(work)?
         } else {
             let mut parts = ANCHORING.into_iter();
             parts.find_map(|part| problem.of_elements(part, work))?
         };
+        let columns = Motion::ALL.map(|axis| problem.column(&lines, &Motion::along(axis), work));
+        sum += Matrix6::from_columns(&columns);
     }
     Some(sum)
 }
@@ -87,15 +87,11 @@ fn of_own_weights(model: &Model, state: &State, vessel: usize, origin: Vector3<f
         let [weight, slope] = own.map_or([0.0; 2], |own| [own.weight, own.weight_slope]);
         let force = point.load_at(state.time) - weight * Vector3::z();
         let arm = at.position - origin;
-        for axis in 0..6 {
+        sum -= Matrix6::from_columns(&Motion::ALL.map(|axis| {
             let motion = Motion::along(axis);
-            let swing = motion.spin.cross(&arm);
-            let change = -slope * (motion.shift + swing).z * Vector3::z();
-            let turning = arm.cross(&change) + swing.cross(&force);
-            let mut column = sum.column_mut(axis);
-            column.fixed_rows_mut::<3>(0).sub_assign(change);
-            column.fixed_rows_mut::<3>(3).sub_assign(turning);
-        }
+            let change = -slope * motion.of(arm).z * Vector3::z();
+            motion.at_origin(arm, force, change)
+        }));
     }
     sum
 }
@@ -122,18 +118,25 @@ struct Motion {
 }
 
 impl Motion {
+    /// Axes of all motions.
+    const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
+
     fn along(axis: usize) -> Motion {
-        let unit = |axis: usize| Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
-        match axis.checked_sub(3) {
-            None => Motion {
-                shift: unit(axis),
-                spin: Vector3::zeros(),
-            },
-            Some(about) => Motion {
-                shift: Vector3::zeros(),
-                spin: unit(about),
-            },
+        let unit = Vector6::ith(axis, 1.0);
+        Motion {
+            shift: unit.fixed_rows::<3>(0).into(),
+            spin: unit.fixed_rows::<3>(3).into(),
         }
+    }
+
+    /// Displacement of a point of the vessel at an arm from the origin [m].
+    fn of(&self, arm: Vector3<f64>) -> Vector3<f64> {
+        self.shift + self.spin.cross(&arm)
+    }
+
+    /// Change of force [N] and moment [N m] about the origin, for that of a force at an arm [m].
+    fn at_origin(&self, arm: Vector3<f64>, force: Vector3<f64>, change: Vector3<f64>) -> Vector6<f64> {
+        joined(change, arm.cross(&change) + self.spin.cross(&arm).cross(&force))
     }
 }
 
@@ -145,57 +148,61 @@ struct Clamp {
     slope: Vector3<f64>,
     /// Second derivatives with the direction and the end's segment.
     hessian: Hessian,
-    /// The end it holds.
-    stands: End,
+    /// The end it holds, 0 for A and 1 for B.
+    side: usize,
+    /// The end's segment.
+    segment: usize,
 }
 
 impl Clamp {
     /// Of an end of a line; `None` where that is pinned.
     fn new(line: &Line, state: &State, index: usize, end: End) -> Option<Clamp> {
         let bending = line.bending.as_ref()?;
-        let (node, at) = (line.end_node(end), line.ends[usize::from(end == End::B)]);
-        let direction = line.clamp(end, &state.points[at])?;
+        let (node, side) = (line.end_node(end), usize::from(end == End::B));
+        let direction = line.clamp(end, &state.points[line.ends[side]])?;
         let position = &state.lines[index].position;
-        let from = node.saturating_sub(usize::from(end == End::B));
-        let chord = position[from + 1] - position[from];
-        let segment = Direction {
+        let segment = node - side;
+        let chord = position[segment + 1] - position[segment];
+        // the clamp is a direction of unit length, free to change
+        let mut pair = [Direction {
+            along: direction,
+            per_length: 1.0,
+        }; 2];
+        pair[1 - side] = Direction {
             along: chord.try_normalize(0.0)?,
             per_length: 1.0 / chord.norm(),
         };
-        // a direction of unit length, free to change
-        let held = Direction {
-            along: direction,
-            per_length: 1.0,
-        };
-        let turn = match end {
-            End::A => Turn::new(held, segment),
-            End::B => Turn::new(segment, held),
-        };
+        let turn = Turn::new(pair[0], pair[1]);
         let (stiffness, rest) = (bending.joint[node], bending.rest[node]);
         Some(Clamp {
             direction,
-            slope: turn.energy(stiffness, rest).slope[usize::from(end == End::B)],
+            slope: turn.energy(stiffness, rest).slope[side],
             hessian: turn.hessian(stiffness, rest),
-            stands: end,
+            side,
+            segment,
         })
     }
 
-    /// Change of the slope of the energy with the segment for a turn ω of the clamp alone [N].
-    fn push(&self, spin: &Vector3<f64>) -> Vector3<f64> {
-        let turned = spin.cross(&self.direction);
-        match self.stands {
-            End::A => self.hessian.mixed.tr_mul(&turned),
-            End::B => self.hessian.mixed * turned,
-        }
+    /// Changes of the slopes of the energy with the clamp and with the segment, for those of the clamp [-] and of the segment [m].
+    fn slopes(&self, turned: Vector3<f64>, growth: Vector3<f64>) -> [Vector3<f64>; 2] {
+        let mut changes = [growth; 2];
+        changes[self.side] = turned;
+        let slopes = self.hessian.product(changes);
+        [slopes[self.side], slopes[1 - self.side]]
     }
 
-    /// −δm [N m] for a turn ω of the clamp and a change of the segment [m].
-    fn moment(&self, spin: &Vector3<f64>, growth: Vector3<f64>) -> Vector3<f64> {
+    /// Adds c of a turn ω of the clamp alone to the change of a line's residual.
+    fn add_push(&self, spin: &Vector3<f64>, change: &mut [Vector3<f64>]) {
+        let [_, push] = self.slopes(spin.cross(&self.direction), Vector3::zeros());
+        change[self.segment] -= push;
+        change[self.segment + 1] += push;
+    }
+
+    /// −δm [N m] for a turn ω of the clamp, with the solution at the nodes of the line [m].
+    fn moment(&self, spin: &Vector3<f64>, solution: &[Vector3<f64>]) -> Vector3<f64> {
         let turned = spin.cross(&self.direction);
-        let slope = match self.stands {
-            End::A => self.hessian.product([turned, growth])[0],
-            End::B => self.hessian.product([growth, turned])[1],
-        };
+        let growth = solution[self.segment] - solution[self.segment + 1];
+        let [slope, _] = self.slopes(turned, growth);
         turned.cross(&self.slope) + self.direction.cross(&slope)
     }
 }
@@ -205,23 +212,29 @@ struct CondensedLine {
     index: usize,
     /// Residual of the ends at rest [N].
     residual: [Vector3<f64>; 2],
-    ends: Ends,
+    /// Slopes of these with the places of the ends [N/m].
+    stiffness: [[Matrix3<f64>; 2]; 2],
     /// Clamps on the vessel.
     clamps: Vec<Clamp>,
 }
 
 impl CondensedLine {
-    /// Condensed equations with the effect of the turned clamps on the right.
-    fn with_turned_clamps(&self, motion: &Motion, work: &mut Workspace) -> Option<Ends> {
+    /// Change of the residual of the ends by displacements of these [m].
+    fn change(&self, moved: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
+        self.stiffness.map(|[a, b]| a * moved[0] + b * moved[1])
+    }
+
+    /// Change of the residual of the ends by the turned clamps [N].
+    fn pushed(&self, motion: &Motion, work: &mut Workspace) -> [Vector3<f64>; 2] {
         if self.clamps.is_empty() {
-            return Some(self.ends);
+            return [Vector3::zeros(); 2];
         }
         let line = &mut work.lines[self.index];
         line.residual.fill(Vector3::zeros());
         for clamp in &self.clamps {
             clamp.add_push(&motion.spin, &mut line.residual);
         }
-        line.eliminate(true, Pivots::Positive)
+        line.eliminate_right()
     }
 }
 
@@ -236,15 +249,11 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Ends of the network's lines on the vessel.
-    fn ends(&self) -> impl Iterator<Item = (usize, End)> + '_ {
+    /// Returns true where a line of the network ends on the vessel.
+    fn meets_vessel(&self) -> bool {
         let lines = self.network.lines.iter();
-        let both = lines.flat_map(|&line| [(line, End::A), (line, End::B)]);
-        both.filter(|&(line, end)| self.rides(self.point(line, end)))
-    }
-
-    fn point(&self, line: usize, end: End) -> usize {
-        self.model.lines[line].ends[usize::from(end == End::B)]
+        let mut ends = lines.flat_map(|&line| self.model.lines[line].ends);
+        ends.any(|point| self.rides(point))
     }
 
     fn rides(&self, point: usize) -> bool {
@@ -257,67 +266,32 @@ impl Problem<'_> {
 
     /// Displacement of a point with the vessel [m]; zero where it is not on it.
     fn moved(&self, point: usize, motion: &Motion) -> Vector3<f64> {
-        if self.rides(point) {
-            motion.shift + motion.spin.cross(&self.arm(point))
-        } else {
-            Vector3::zeros()
+        match self.rides(point) {
+            true => motion.of(self.arm(point)),
+            false => Vector3::zeros(),
         }
     }
 
-    /// −δ of force and moment of one end, from its residual R and the change of that [N].
-    fn at_origin(
-        &self,
-        point: usize,
-        motion: &Motion,
-        residual: Vector3<f64>,
-        change: Vector3<f64>,
-    ) -> Vector6<f64> {
-        let arm = self.arm(point);
-        let moment = arm.cross(&change) + motion.spin.cross(&arm).cross(&residual);
-        joined(change, moment)
-    }
-
-    fn of_catenaries(&self, work: &mut Workspace) -> Option<Matrix6<f64>> {
-        let (model, number) = (self.model, self.number);
-        let hung = catenary_network::hung(model, number, self.state, work)?;
-        let mut stiffness = Matrix6::zeros();
-        for axis in 0..6 {
-            let motion = Motion::along(axis);
-            let held = |point: usize| self.moved(point, &motion);
-            let column: Vector6<f64> = match hung.respond(model, number, held, work) {
-                Some(moved) => self.catenary_column(&hung, &motion, &moved),
-                None => return None,
-            };
-            stiffness.set_column(axis, &column);
+    /// The lines on their catenaries, with the system of the free points solved.
+    fn of_catenaries(&self, work: &mut Workspace) -> Option<Vec<CondensedLine>> {
+        if !catenary_network::linearise(self.model, self.number, self.state, work) {
+            return None;
         }
-        Some(stiffness)
+        let condensed = |&index: &usize| {
+            let closed_form = self.state.lines[index].closed_form.as_ref()?;
+            Some(CondensedLine {
+                index,
+                residual: closed_form.end_force.map(|force| -force),
+                stiffness: work.stiffness[index],
+                clamps: Vec::new(),
+            })
+        };
+        self.network.lines.iter().map(condensed).collect()
     }
 
-    fn catenary_column(
-        &self,
-        hung: &HungNetwork,
-        motion: &Motion,
-        moved: &[[Vector3<f64>; 2]],
-    ) -> Vector6<f64> {
-        let lines = self.network.lines.iter().zip(&hung.lines).zip(moved);
-        let mut column = Vector6::zeros();
-        for ((&line, hung), moved) in lines {
-            for (end, (row, force)) in [End::A, End::B]
-                .into_iter()
-                .zip(hung.stiffness.iter().zip(&hung.end_force))
-            {
-                let point = self.point(line, end);
-                if self.rides(point) {
-                    let change = row[0] * moved[0] + row[1] * moved[1];
-                    column += self.at_origin(point, motion, -force, change);
-                }
-            }
-        }
-        column
-    }
-
-    /// From the elements, with springs of a `part` of their greatest axial stiffness [-] on every unknown.
-    fn of_elements(&self, part: f64, work: &mut Workspace) -> Option<Matrix6<f64>> {
+    /// The lines on their elements, with springs of a `part` of their greatest axial stiffness [-] on every unknown, and the system of the free
+    /// points solved.
+    fn of_elements(&self, part: f64, work: &mut Workspace) -> Option<Vec<CondensedLine>> {
         let lines = || self.network.lines.iter().map(|&line| &self.model.lines[line]);
         let springs = lines().flat_map(|line| {
             let segments = &line.segments;
@@ -334,117 +308,82 @@ impl Problem<'_> {
         for &point in &self.network.free_points {
             work.points[point].residual = Vector3::zeros();
         }
+        work.systems[self.number].clear();
         let lines = self.network.lines.iter();
-        let lines: Option<Vec<_>> = lines.map(|&line| self.condensed(line, work)).collect();
-        let lines = lines?;
-        let mut stiffness = Matrix6::zeros();
-        for axis in 0..6 {
-            stiffness.set_column(axis, &self.element_column(&Motion::along(axis), &lines, work)?);
-        }
-        Some(stiffness)
+        let lines = lines
+            .map(|&line| self.condensed(line, work))
+            .collect::<Option<_>>()?;
+        let solved = work.solve_points(self.model, self.number, Pivots::Positive);
+        solved.then_some(lines)
     }
 
-    /// A line condensed on its ends, after an assembly.
+    /// A line condensed on its ends, after an assembly, and added to the system of the free points.
     fn condensed(&self, index: usize, work: &mut Workspace) -> Option<CondensedLine> {
         let (line, line_work) = (&self.model.lines[index], &mut work.lines[index]);
         let residual = [End::A, End::B].map(|end| line_work.residual[line.end_node(end)]);
         line_work.residual.fill(Vector3::zeros());
+        let ends = line_work.eliminate(true, Pivots::Positive)?;
+        work.add_condensed(self.model, self.number, index, &ends);
+        let aboard = [End::A, End::B].into_iter().zip(line.ends);
+        let aboard = aboard.filter(|(_, point)| self.rides(*point));
+        let clamps = aboard.filter_map(|(end, _)| Clamp::new(line, self.state, index, end));
         Some(CondensedLine {
             index,
             residual,
-            ends: line_work.eliminate(true, Pivots::Positive)?,
-            clamps: self.clamps(index).collect(),
+            stiffness: [[ends.aa, ends.ab], [ends.ba, ends.bb]],
+            clamps: clamps.collect(),
         })
     }
 
-    fn element_column(
-        &self,
-        motion: &Motion,
-        lines: &[CondensedLine],
-        work: &mut Workspace,
-    ) -> Option<Vector6<f64>> {
-        work.systems[self.number].clear();
-        let mut moved = Vec::with_capacity(lines.len());
+    /// −δ of force and moment of the network for a motion of the vessel.
+    fn column(&self, lines: &[CondensedLine], motion: &Motion, work: &mut Workspace) -> Vector6<f64> {
+        work.systems[self.number].clear_right();
+        let mut pushes = Vec::with_capacity(lines.len());
         for line in lines {
-            let [a, b] = self.model.lines[line.index]
-                .ends
-                .map(|point| self.moved(point, motion));
-            let ends = line.with_turned_clamps(motion, work)?;
-            let ends = Ends {
-                a: ends.a + ends.aa * a + ends.ab * b,
-                b: ends.b + ends.ba * a + ends.bb * b,
-                ..ends
-            };
-            work.add_condensed(self.model, self.number, line.index, &ends);
-            moved.push((ends, [a, b]));
+            let ends = self.model.lines[line.index].ends;
+            let pushed = line.pushed(motion, work);
+            let change = line.change(ends.map(|point| self.moved(point, motion)));
+            for ((point, pushed), change) in ends.into_iter().zip(pushed).zip(change) {
+                if let Some(slot) = work.points[point].slot {
+                    work.systems[self.number].add_right(slot, pushed + change);
+                }
+            }
+            pushes.push(pushed);
         }
-        if !work.solve_points(self.model, self.number, Pivots::Positive) {
-            return None;
-        }
-        let lines = lines.iter().zip(moved);
-        Some(
-            lines
-                .map(|(line, moved)| self.of_line(line, motion, moved, work))
-                .sum(),
-        )
+        work.systems[self.number].solve_again();
+        work.take_solution(self.network, self.number);
+        let lines = lines.iter().zip(pushes);
+        lines
+            .map(|(line, pushed)| self.of_line(line, motion, pushed, work))
+            .sum()
     }
 
-    /// −δ of force and moment of one line, from its condensed equations with the motion of its ends [m] on the right.
+    /// −δ of force and moment of one line, from the solution at the free points and the change of its residual by turned clamps [N].
     fn of_line(
         &self,
         line: &CondensedLine,
         motion: &Motion,
-        (ends, moved): (Ends, [Vector3<f64>; 2]),
+        pushed: [Vector3<f64>; 2],
         work: &mut Workspace,
     ) -> Vector6<f64> {
-        let points = self.model.lines[line.index].ends;
-        let [a, b] = points.map(|point| work.solution_at(point));
-        let change = [
-            ends.a - ends.aa * a - ends.ab * b,
-            ends.b - ends.ba * a - ends.bb * b,
-        ];
+        let ends = self.model.lines[line.index].ends;
+        let moved = ends.map(|point| self.moved(point, motion) - work.solution_at(point));
+        let change = line.change(moved);
         let mut sum = Vector6::zeros();
-        for (side, point) in points
-            .into_iter()
-            .enumerate()
-            .filter(|(_, point)| self.rides(*point))
-        {
-            sum += self.at_origin(point, motion, line.residual[side], change[side]);
+        for (side, point) in ends.into_iter().enumerate() {
+            if self.rides(point) {
+                let change = pushed[side] + change[side];
+                sum += motion.at_origin(self.arm(point), line.residual[side], change);
+            }
         }
         if !line.clamps.is_empty() {
-            work.lines[line.index].substitute(a - moved[0], b - moved[1]);
+            work.lines[line.index].substitute(-moved[0], -moved[1]);
         }
-        let solution = work.lines[line.index].solution();
         for clamp in &line.clamps {
-            let from = match clamp.stands {
-                End::A => 0,
-                End::B => solution.len() - 2,
-            };
-            let moment = clamp.moment(&motion.spin, solution[from] - solution[from + 1]);
+            let moment = clamp.moment(&motion.spin, work.lines[line.index].solution());
             sum += joined(Vector3::zeros(), moment);
         }
         sum
-    }
-
-    /// Clamps of a line on the vessel.
-    fn clamps(&self, index: usize) -> impl Iterator<Item = Clamp> + '_ {
-        let aboard = move |&end: &End| self.rides(self.point(index, end));
-        let ends = [End::A, End::B].into_iter().filter(aboard);
-        let line = &self.model.lines[index];
-        ends.filter_map(move |end| Clamp::new(line, self.state, index, end))
-    }
-}
-
-impl Clamp {
-    /// Adds c of the clamp's turn to the change of a line's residual.
-    fn add_push(&self, spin: &Vector3<f64>, change: &mut [Vector3<f64>]) {
-        let (push, last) = (self.push(spin), change.len() - 1);
-        let (lower, upper) = match self.stands {
-            End::A => (0, 1),
-            End::B => (last - 1, last),
-        };
-        change[lower] -= push;
-        change[upper] += push;
     }
 }
 

@@ -11,11 +11,11 @@ pub use text::{assert_answers, assert_says};
 
 use moorline::dynamics::energy_balance::Flow;
 use moorline::elements::Workspace;
-use moorline::model::{Model, PointState, State};
+use moorline::model::{Kinematics, Model, PointState, State};
 use moorline::scene::{InitialShape, Integrator, Scene};
 use moorline::simulation::{Simulation, Snapshot};
-use moorline::statics::equilibrium;
 use moorline::statics::modes::Modes;
+use moorline::statics::{StaticsError, equilibrium};
 use nalgebra::Vector3;
 
 /// Density of sea water [kg/m³].
@@ -72,6 +72,23 @@ pub fn resting(places: &[Vector3<f64>]) -> Vec<PointState> {
 pub fn statics(model: &Model) -> State {
     let points = resting(&at_reference(model));
     equilibrium::solve(model, &points, 0.0, &mut Workspace::new(model)).unwrap()
+}
+
+/// Moves the prescribed points of the first network to places [m] and finds the equilibrium at time `t` [s] closest to a state.
+pub fn continue_from(
+    model: &Model,
+    state: &mut State,
+    places: &[Vector3<f64>],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<(), StaticsError> {
+    let held = |point: usize| Kinematics {
+        position: places[point],
+        ..Kinematics::default()
+    };
+    equilibrium::continue_network(model, 0, state, held, t, work)?;
+    state.time = t;
+    Ok(())
 }
 
 /// A scene of the folder `scenes`.

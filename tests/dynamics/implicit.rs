@@ -2,12 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::common::{agm, assert_order, at_reference, draft, gap, greatest, statics};
+use crate::common::{agm, assert_order, at_reference, continue_from, draft, gap, greatest, statics};
 use moorline::dynamics::implicit::{self, SPECTRAL_RADIUS, Scheme, Span};
 use moorline::dynamics::quasi_static;
 use moorline::elements::{Counters, Workspace};
 use moorline::model::{Kinematics, Model, State};
-use moorline::statics::equilibrium::continue_from;
 use nalgebra::Vector3;
 
 /// All held points stay where the scene puts them.
@@ -217,7 +216,7 @@ fn fall(model: &Model, scheme: Scheme, steps: usize) -> Fall {
     let mut state = statics(model);
     let lowest = energy(model, &state);
     state.lines[0].position = model.lines[0]
-        .given_shape(Vector3::zeros(), Vector3::new(9.5, 0.0, 0.0))
+        .given_shape([Vector3::zeros(), Vector3::new(9.5, 0.0, 0.0)])
         .unwrap();
     let first = energy(model, &state);
     let mut work = Workspace::new(model);
@@ -294,7 +293,7 @@ fn released_from_a_straight_line_a_damped_cable_tends_to_its_equilibrium() {
     .model();
     let mut state = statics(&model);
     let end = Vector3::new(14.1421, 0.0, 0.0);
-    state.lines[0].position = model.lines[0].given_shape(Vector3::zeros(), end).unwrap();
+    state.lines[0].position = model.lines[0].given_shape([Vector3::zeros(), end]).unwrap();
     let held = at_rest(&model);
     let (state, counters) = run(&model, state, &held, [40.0, 0.02], Scheme::generalised_alpha(0.5));
     let sag = -state.lines[0].position[11].z;

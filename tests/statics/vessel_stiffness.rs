@@ -291,6 +291,27 @@ fn a_slack_line_holds_a_vessel_by_the_weight_that_heave_lifts() {
     assert!(elements.norm().is_finite());
 }
 
+#[test]
+fn a_buoy_at_the_surface_stiffens_closed_forms_as_it_stiffens_elements() {
+    let points = draft(
+        "water = { density = 1025.0 }
+        vessels = [{ name = 'barge', position = [0.0, 0.0, 0.0] }]
+        line_types.chain = { mass = 20.0, diameter = 0.05, axial_stiffness = 5e7 }",
+    )
+    .fixed("anchor", [100.0, 0.0, -60.0])
+    .free("buoy", [40.0, 0.0, -0.6])
+    .with("mass = 9000.0, volume = 14.0");
+    let scene = on(points, "barge", "fairlead", [0.0, 0.0, -2.0])
+        .line("lower", ["anchor", "buoy"], "chain", 88.0, 60)
+        .line("upper", ["buoy", "fairlead"], "chain", 41.0, 60)
+        .scene();
+    let simulation = start(&scene);
+    let closed = simulation.on_catenaries().vessel_stiffness(0);
+    let [closed, solved] = [closed, simulation.vessel_stiffness(0)].map(|k| matrix(k.unwrap()));
+    let error = difference(&closed, &solved);
+    assert!(error < 2e-3, "{error:e}: {closed} {solved}");
+}
+
 /// Diagonal of the stiffness of the closed forms, and the vertical force [N/m, N m/rad, N].
 fn published(deck: &Deck) -> ([f64; 6], f64) {
     let hung = start(&deck.scene(20, "")).on_catenaries();

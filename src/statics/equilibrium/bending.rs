@@ -97,11 +97,6 @@ impl Problem<'_> {
         Err(self.not_converged(state, work, start))
     }
 
-    fn remember_shape(&self, state: &State, work: &mut Workspace) {
-        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
-        self.remember_tensions(work);
-    }
-
     /// Returns true where an equilibrium is stable and within the limits of its strain measures, or another one was found from it after a small wave.
     fn settle(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
@@ -125,13 +120,7 @@ impl Problem<'_> {
             let springs = relaxation * self.force / self.length;
             case.anchoring = springs + self.rounding_stiffness(&case);
             work.assemble_static(self.model, self.network, state, &case);
-            let (residual, _) = work.greatest_residual(self.network);
-            let tolerance = self.tolerance(state, work, case.stiffness_max);
-            balanced = if residual <= tolerance && self.no_push(work, tolerance) {
-                balanced + 1
-            } else {
-                0
-            };
+            balanced = self.count_balanced(balanced, state, work, &case);
             if balanced >= 3 {
                 return true;
             }

@@ -50,7 +50,8 @@ impl Problem<'_> {
         state: &mut State,
         work: &mut Workspace,
     ) -> Result<(), StaticsError> {
-        let guess = state.clone();
+        let mut guess = std::mem::take(&mut work.hung);
+        copy_network(self.model, self.network, state, &mut guess);
         let mut result = Ok(());
         for parts in PARTS {
             copy_network(self.model, self.network, &guess, state);
@@ -65,6 +66,7 @@ impl Problem<'_> {
                 break;
             }
         }
+        work.hung = guess;
         result
     }
 

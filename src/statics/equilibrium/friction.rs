@@ -22,7 +22,7 @@
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
 use super::{Problem, StaticCase};
-use crate::elements::{Workspace, copy_network, for_free_points, friction};
+use crate::elements::{Workspace, copy_network, for_free_points};
 use crate::model::{LineState, State};
 use crate::physics::catenary::is_laid_from_b;
 use crate::statics::StaticsError;
@@ -39,11 +39,6 @@ impl Problem<'_> {
     pub(super) fn has_friction(&self) -> bool {
         let mut lines = self.network.lines.iter();
         lines.any(|&line| self.model.lines[line].friction().is_some())
-    }
-
-    /// Removes friction before the equilibrium without it is sought.
-    pub(super) fn remove_friction(&self, state: &mut State) {
-        friction::remove_anchors(self.model, self.network, state);
     }
 
     /// From the equilibrium without friction to that with it.

@@ -112,9 +112,13 @@ impl Problem<'_> {
     fn pull_straight(&self, state: &mut State, work: &mut Workspace) {
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
-            let [a, b] = line.ends.map(|point| state.points[point].position);
-            for (r, arc) in state.lines[index].position.iter_mut().zip(&line.nodes.arc) {
-                *r = a + arc / line.unstretched_length() * (b - a);
+            let ends = line.ends.map(|point| state.points[point].position);
+            for (r, straight) in state.lines[index]
+                .position
+                .iter_mut()
+                .zip(line.parabola(ends, 0.0))
+            {
+                *r = straight;
             }
             work.lines[index].tension.fill(self.force);
         }
