@@ -25,8 +25,8 @@ use crate::physics::section::{
     split, strain_between,
 };
 
-/// Constraints and loads of an end of a beam.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Constraints and loads of an end of a beam; none by default.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BeamEnd {
     /// Prescribed unknowns: x, y, z and the turns about them.
     pub held: [bool; 6],
@@ -34,42 +34,12 @@ pub struct BeamEnd {
     pub load: Sextuple,
 }
 
-impl BeamEnd {
-    /// End without constraints and loads.
-    pub fn free() -> BeamEnd {
-        BeamEnd {
-            held: [false; 6],
-            load: Sextuple::zeros(),
-        }
-    }
-
-    /// End fixed in place, free to turn.
-    pub fn pinned() -> BeamEnd {
-        BeamEnd {
-            held: [true, true, true, false, false, false],
-            ..BeamEnd::free()
-        }
-    }
-
-    /// End fixed in place and attitude.
-    pub fn clamped() -> BeamEnd {
-        BeamEnd {
-            held: [true; 6],
-            ..BeamEnd::free()
-        }
-    }
-}
-
 /// Constraints of an end at a point: the axes on which the point is not free, and the clamp.
 pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
-    let axes = point.free().map_or([false; 3], |free| free.axes);
-    let mut held = [clamped; 6];
-    for (held, free) in held.iter_mut().zip(axes) {
-        *held = !free;
-    }
+    let [x, y, z] = point.free().map_or([false; 3], |free| free.axes);
     BeamEnd {
-        held,
-        ..BeamEnd::free()
+        held: [!x, !y, !z, clamped, clamped, clamped],
+        load: Sextuple::zeros(),
     }
 }
 

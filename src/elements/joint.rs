@@ -283,22 +283,6 @@ pub fn joint_damping_power(
     damping.iter().enumerate().map(power).sum()
 }
 
-/// Force [N] of the joints at and next to an end of a line, and of the moments [N m] on its ends, on the point there: the shear. Without
-/// velocities nothing damps.
-pub fn end_shear(
-    line: &Line,
-    nodes: [&[Vector3<f64>]; 2],
-    end: End,
-    point: &PointState,
-    moments: [Vector3<f64>; 2],
-) -> Vector3<f64> {
-    let segment = match end {
-        End::A => 0,
-        End::B => line.segment_count() - 1,
-    };
-    shear(line, nodes, segment, (end, point), moments)
-}
-
 /// Shear [N] of segment `i` of a line: the force of the joints at both of its nodes, and of the moments [N m] on the line's ends, on the
 /// node towards `end`, where the line may be clamped as the `point` is turned; the other end is taken as pinned. Without velocities nothing
 /// damps.

@@ -9,7 +9,7 @@ use super::segment::StepEnd;
 use super::viscoelastic::ViscoelasticWork;
 use super::{BendingWork, StaticCase, Stretch, Weights, surface};
 use crate::math::block_banded::Chain;
-use crate::model::{Dry, Line, LineState, Model, WaterAlong};
+use crate::model::{Dry, Line, LineState, Model, State, WaterAlong};
 use crate::physics::bending::Direction;
 use crate::physics::morison::{drag, drag_slope};
 use crate::physics::slender::Slender;
@@ -163,22 +163,17 @@ impl LineWork {
     }
 
     /// Residual and tangent of a line at rest.
-    pub(super) fn assemble_static(
-        &mut self,
-        line: &Line,
-        state: &LineState,
-        clamps: [Option<Vector3<f64>>; 2],
-        case: &StaticCase,
-    ) {
-        let position = &state.position;
+    pub(super) fn assemble_static(&mut self, model: &Model, state: &State, index: usize, case: &StaticCase) {
+        let (line, shape) = (&model.lines[index], &state.lines[index]);
+        let position = &shape.position;
         self.clear(true);
         self.set_push(line, case.bends);
         for i in 0..line.segment_count() {
             self.add_static_segment(line, position, case, i);
         }
         if let (Some(bending), true) = (&line.bending, case.bends) {
-            let parts = Parts::AT_REST;
-            self.add_bending(bending, clamps, &[], &parts);
+            let clamps = line.clamps(&state.points);
+            self.add_bending(bending, clamps, &[], &Parts::AT_REST);
         }
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
@@ -196,7 +191,15 @@ impl LineWork {
                 self.diagonal[i][(axis, axis)] += case.anchoring;
             }
         }
-        self.add_contact_at_rest(line, state, case);
+        self.add_contact_at_rest(line, shape, case);
+        if case.bends {
+            let parts = Parts {
+                force: case.load,
+                position: case.load,
+                ..Parts::AT_REST
+            };
+            self.add_end_moments(position, model.end_moments(line, case.time), &parts);
+        }
     }
 
     #[inline(always)]
@@ -250,46 +253,43 @@ impl LineWork {
     /// Residual and, if TANGENT, tangent of a moving line.
     pub(super) fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
-        line: &Line,
-        state: &LineState,
-        clamps: [Option<Vector3<f64>>; 2],
-        water: WaterAlong,
+        model: &Model,
+        state: &State,
+        index: usize,
+        t: f64,
         weights: &Weights,
-        negative_tension: bool,
     ) {
+        let (line, shape) = (&model.lines[index], &state.lines[index]);
+        let (water, parts) = (
+            model.water_along(state, index, t),
+            Parts::of_step(weights, TANGENT),
+        );
         self.clear(TANGENT);
         self.set_push(line, true);
         for (i, tangent) in self.tangent.iter_mut().enumerate() {
-            *tangent = node_tangent(&state.position, i);
+            *tangent = node_tangent(&shape.position, i);
         }
         for i in 0..line.segment_count() {
-            self.add_dynamic_segment::<TANGENT>(line, state, weights, negative_tension, i);
+            self.add_dynamic_segment::<TANGENT>(line, shape, weights, model.solver.negative_tension, i);
         }
         if let Some(bending) = &line.bending {
-            let parts = Parts::of_step(weights, TANGENT);
-            self.add_bending(bending, clamps, &state.velocity, &parts);
+            self.add_bending(bending, line.clamps(&state.points), &shape.velocity, &parts);
         }
-        self.add_surface(
-            line,
-            &state.position,
-            water,
-            [weights.force, weights.position],
-            0.0,
-        );
-        self.add_weight_and_inertia::<TANGENT>(line, state, weights);
-        if line.nodes.drag.is_some() {
-            self.add_drag::<TANGENT>(line, state, water, weights);
-        }
+        let surface = [weights.force, weights.position];
+        self.add_surface(line, &shape.position, water, surface, 0.0);
+        self.add_weight_and_inertia::<TANGENT>(line, shape, weights);
+        self.add_drag::<TANGENT>(line, shape, water, weights);
         self.add_froude_krylov(line, water, weights);
-        self.add_contact::<TANGENT>(line, state, weights);
+        self.add_contact::<TANGENT>(line, shape, weights);
         if let Some(damping) = &line.nodes.mass_damping {
             for (i, damping) in damping.iter().enumerate() {
-                self.residual[i] += weights.force * damping * state.velocity[i];
+                self.residual[i] += weights.force * damping * shape.velocity[i];
                 if TANGENT {
                     self.diagonal[i] += Matrix3::from_diagonal_element(weights.velocity * damping);
                 }
             }
         }
+        self.add_end_moments(&shape.position, model.end_moments(line, t), &parts);
     }
 
     #[inline(always)]

@@ -40,9 +40,8 @@ use crate::model::{End, Model, Network, PointState, State};
 use crate::physics::catenary::Catenary;
 use crate::physics::fading_damper::damper_reach;
 
-use joint::Parts;
 pub(crate) use joint::{BendingWork, rates};
-pub use joint::{end_moment, end_moment_power, end_shear, joint_damping_power, shear};
+pub use joint::{end_moment, end_moment_power, joint_damping_power, shear};
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};
@@ -102,7 +101,7 @@ impl Workspace {
 
     /// Scratch for `model`; lines have theirs only in networks whose number `serves` accepts.
     pub(crate) fn serving(model: &Model, serves: impl Fn(usize) -> bool) -> Workspace {
-        let mut points = vec![PointWork::new(); model.points.len()];
+        let mut points = vec![PointWork::default(); model.points.len()];
         for network in &model.networks {
             for (slot, &index) in network.free_points.iter().enumerate() {
                 points[index].slot = Some(slot);
@@ -244,17 +243,7 @@ impl Workspace {
         case: &StaticCase,
     ) {
         for &index in &network.lines {
-            let (line, shape) = (&model.lines[index], &state.lines[index]);
-            self.lines[index].assemble_static(line, shape, line.clamps(&state.points), case);
-            if line.bending.is_some() && case.bends {
-                let moments = model.end_moments(line, case.time);
-                let parts = Parts {
-                    force: case.load,
-                    position: case.load,
-                    ..Parts::AT_REST
-                };
-                self.lines[index].add_end_moments(&shape.position, moments, &parts);
-            }
+            self.lines[index].assemble_static(model, state, index, case);
         }
         let stream = model.stream(case.time);
         for_free_points(model, network, |index, free| {
@@ -278,23 +267,9 @@ impl Workspace {
         t: f64,
         weights: &Weights,
     ) {
-        let negative_tension = model.solver.negative_tension;
         let stream = model.stream(t);
         for &index in &network.lines {
-            let (line, line_state) = (&model.lines[index], &state.lines[index]);
-            self.lines[index].assemble_dynamic::<TANGENT>(
-                line,
-                line_state,
-                line.clamps(&state.points),
-                model.water_along(state, index, t),
-                weights,
-                negative_tension,
-            );
-            if line.bending.is_some() {
-                let parts = Parts::of_step(weights, TANGENT);
-                let moments = model.end_moments(line, t);
-                self.lines[index].add_end_moments(&line_state.position, moments, &parts);
-            }
+            self.lines[index].assemble_dynamic::<TANGENT>(model, state, index, t, weights);
         }
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
@@ -591,30 +566,10 @@ impl Workspace {
         greatest
     }
 }
-/// Force [N] that a line applies to the point at one of its ends, inertia and drag of its end node included.
+/// Force [N] that a line at rest applies to the point at one of its ends.
 pub fn end_force(model: &Model, state: &State, line: usize, end: End, work: &mut Workspace) -> Vector3<f64> {
-    let weights = Weights {
-        force: 1.0,
-        friction: 1.0,
-        inertia: 1.0,
-        position: 0.0,
-        velocity: 0.0,
-        acceleration: 0.0,
-        stretch: Stretch::Now,
-        convex: false,
-    };
-    let negative_tension = model.solver.negative_tension;
-    let clamps = model.lines[line].clamps(&state.points);
-    let (line_model, line_state, line_work) = (&model.lines[line], &state.lines[line], &mut work.lines[line]);
-    line_work.fade_dampers(line_model, line_state, 0.0);
-    let water = model.water_along(state, line, state.time);
-    line_work.assemble_dynamic::<false>(line_model, line_state, clamps, water, &weights, negative_tension);
-    if line_model.bending.is_some() {
-        let moments = model.end_moments(line_model, state.time);
-        let parts = Parts::of_step(&weights, false);
-        line_work.add_end_moments(&line_state.position, moments, &parts);
-    }
-    -line_work.residual[line_model.end_node(end)]
+    work.lines[line].assemble_static(model, state, line, &StaticCase::whole(state.time));
+    -work.lines[line].residual[model.lines[line].end_node(end)]
 }
 
 #[cfg(test)]

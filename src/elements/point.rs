@@ -8,8 +8,8 @@ use crate::physics::airy::Orbit;
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::flow::Stream;
 
-/// Scratch of a point.
-#[derive(Debug, Clone)]
+/// Scratch of a point, prescribed until it gets a slot.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct PointWork {
     /// Index among the free points of its network.
     pub slot: Option<usize>,
@@ -31,21 +31,6 @@ pub(crate) struct PointWork {
     pub pressed: f64,
 }
 impl PointWork {
-    /// Workspace of a prescribed point, until it gets a slot.
-    pub(super) fn new() -> PointWork {
-        PointWork {
-            slot: None,
-            residual: Vector3::zeros(),
-            total: Vector3::zeros(),
-            diagonal: Matrix3::zeros(),
-            solution: Vector3::zeros(),
-            history: Vector3::zeros(),
-            reach: 0.0,
-            rubbed: Vector3::zeros(),
-            pressed: 0.0,
-        }
-    }
-
     /// Residual and tangent of a point at rest, without its lines.
     pub(super) fn assemble_static(
         &mut self,
@@ -195,7 +180,7 @@ mod tests {
         };
         for z in HEIGHTS {
             let residual = |state: &PointState| {
-                let mut work = PointWork::new();
+                let mut work = PointWork::default();
                 work.assemble_static(point, free, state, model.stream(0.0), &case);
                 (work.residual, work.diagonal)
             };
@@ -226,7 +211,7 @@ mod tests {
             };
             for z in HEIGHTS {
                 let residual = |state: &PointState| {
-                    let mut work = PointWork::new();
+                    let mut work = PointWork::default();
                     work.reach = 0.05;
                     let stream = model.stream(0.0);
                     work.assemble_dynamic::<true>(free, None, state, load, (stream, None), &weights);

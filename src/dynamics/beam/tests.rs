@@ -86,7 +86,7 @@ impl Flight {
 
     fn step(&mut self, dt: f64) -> Flow {
         let loaded = ((2.5 - self.time) / dt).clamp(0.0, 1.0);
-        let mut ends = [BeamEnd::free(); 2];
+        let mut ends = [BeamEnd::default(); 2];
         ends[0].load = loaded * join(8.0 * Vector3::x(), self.moment);
         let at = |node: usize| Section {
             position: self.shape.position[node],
@@ -221,7 +221,13 @@ fn the_energy_balance_of_a_damped_beam_in_water_over_a_seabed_closes_to_rounding
         let case = BeamStep {
             beam: &flight.beam,
             nodes: &flight.nodes,
-            ends: [BeamEnd::clamped(), BeamEnd::free()],
+            ends: [
+                BeamEnd {
+                    held: [true; 6],
+                    ..BeamEnd::default()
+                },
+                BeamEnd::default(),
+            ],
             targets: [target(flight.time + 0.02); 2],
             bodies: [None; 2],
             length: 0.02,
@@ -278,7 +284,7 @@ fn the_energy_balance_of_a_beam_with_a_buoy_and_a_clump_in_a_current_closes_to_r
         let case = BeamStep {
             beam: &flight.beam,
             nodes: &flight.nodes,
-            ends: [BeamEnd::free(); 2],
+            ends: [BeamEnd::default(); 2],
             targets: [Section {
                 position: Vector3::zeros(),
                 frame: Matrix3::identity(),
@@ -308,9 +314,9 @@ fn a_turn_of_more_than_half_a_circle_in_a_step_is_refused_and_changes_nothing() 
         ends: [
             BeamEnd {
                 load: join(Vector3::zeros(), 1e7 * Vector3::z()),
-                ..BeamEnd::free()
+                ..BeamEnd::default()
             },
-            BeamEnd::free(),
+            BeamEnd::default(),
         ],
         targets: [Section {
             position: Vector3::zeros(),

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use super::Flow;
 use crate::dynamics::leapfrog::segment_tension;
 use crate::elements::friction::{resting_node, resting_point};
-use crate::elements::{end_moment, end_moment_power, end_shear};
+use crate::elements::{end_moment, end_moment_power, shear};
 use crate::model::{ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::statics::equilibrium::current::drag_at_rest;
 
@@ -172,7 +172,7 @@ fn force_of_line(
         force.z -= surface.node(line.end_node(end), &shape.position).weight;
     }
     if line.bending.is_some() {
-        force += end_shear(line, [&shape.position, &[]], end, point, moments);
+        force += shear(line, [&shape.position, &[]], segment, (end, point), moments);
     }
     force
 }

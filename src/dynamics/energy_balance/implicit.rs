@@ -23,7 +23,7 @@ use super::{Flow, dry_part, tangent};
 use crate::dynamics::reaction::tension;
 use crate::elements::friction::{resting_node, resting_point};
 use crate::elements::{
-    Workspace, end_moment, end_moment_power, end_shear, joint_damping_power, rates, stretch_step, stretched,
+    Workspace, end_moment, end_moment_power, joint_damping_power, rates, shear, stretch_step, stretched,
 };
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
 use crate::physics::fading_damper::FadingContact;
@@ -382,9 +382,11 @@ impl Side<'_> {
                 Some(_) => 0.0,
                 None => {
                     let motion = [&shape.position[..], &shape.velocity];
-                    let shear = end_shear(line, motion, end, at, moments);
+                    let node = line.end_node(end);
+                    let segment = node.min(line.segment_count() - 1);
+                    let shear = shear(line, motion, segment, (end, at), moments);
                     let moment = end_moment(line, &shape.position, end, at);
-                    let mean = self.passed.velocity_mean(index, line.end_node(end));
+                    let mean = self.passed.velocity_mean(index, node);
                     -shear.dot(&mean) - moment.dot(&self.passed.spin_mean(point))
                 }
             }

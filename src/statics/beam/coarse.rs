@@ -141,7 +141,7 @@ mod tests {
             rest: vec![straight(); elements],
             weight: (0..=elements).map(|i| 2.0 + i as f64).collect(),
             seabed: (0..elements).map(spring).collect(),
-            ends: [BeamEnd::free(); 2],
+            ends: [BeamEnd::default(); 2],
             bodies: [None; 2],
         };
         (case, (0..=elements).map(section).collect())
