@@ -461,7 +461,7 @@ impl Session {
         }
         let simulation = Simulation::at_rest(&scene).map_err(building_error)?;
         let mut bytes = Vec::new();
-        json::write(&collect::statics(&scene, &simulation), &mut bytes)
+        json::write(&collect::statics(&scene, simulation), &mut bytes)
             .map_err(|error| Failure::new(MOORLINE_INTERNAL_ERROR, error.to_string()))?;
         String::from_utf8(bytes).map_err(|error| Failure::new(MOORLINE_INTERNAL_ERROR, error.to_string()))
     }

@@ -26,13 +26,14 @@ pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
             remark_all(&loaded, vec![Note::new(at, text)]);
         }
     }
-    let statics = collect::statics(&loaded.scene, &simulation);
     if as_json {
+        let statics = collect::statics(&loaded.scene, simulation);
         let mut bytes = Vec::new();
         json::write(&statics, &mut bytes).expect("memory takes any text");
         return print(&String::from_utf8(bytes).expect("JSON is UTF-8"));
     }
     let record = collect::record(&loaded.scene, &simulation, Some(&simulation), (Vec::new(), 0));
+    let statics = collect::statics(&loaded.scene, simulation);
     let mut points = Table::new(&["force of the mooring [N]", "x", "y", "z"]);
     for point in &statics.points {
         points.row(&point.name, &point.force);

@@ -254,7 +254,7 @@ impl Scene {
         let scene = self.clone();
         let solved = aside(py, None, move |_| {
             let (loaded, simulation) = scene.at_rest(false)?;
-            let statics = collect::statics(&loaded.scene, &simulation);
+            let statics = collect::statics(&loaded.scene, simulation);
             Ok::<_, Failure>(serde_json::to_value(statics).expect("statics are numbers and names"))
         });
         result(py, "statics", &solved??)

@@ -6,6 +6,7 @@ mod resting;
 mod spacing;
 mod waves;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -51,7 +52,7 @@ impl Model {
     pub fn new(scene: &Scene) -> Result<Model, SceneError> {
         scene.check()?;
         let names = Names::of(scene);
-        let vessels: Vec<Vessel> = scene.vessels.iter().map(|v| vessel(scene, v)).collect();
+        let mut vessels: Vec<Vessel> = scene.vessels.iter().map(|v| vessel(scene, v)).collect();
         let mut points: Vec<Point> = scene
             .points
             .iter()
@@ -72,6 +73,7 @@ impl Model {
             lines.push(built);
         }
         let networks = networks(&points, &lines);
+        list_on_vessels(&mut vessels, &points, &lines, &networks);
         networks.iter().try_for_each(|network| {
             check_beam(&points, &lines, network)?;
             check_integrator(scene, &lines, network)
@@ -779,14 +781,40 @@ fn networks(points: &[Point], lines: &[Line]) -> Vec<Network> {
             }
         }
     }
-    (0..lines.len())
-        .filter(|&id| of_line.contains(&id))
-        .map(|id| Network {
-            lines: (0..lines.len()).filter(|&line| of_line[line] == id).collect(),
-            free_points: (0..points.len())
-                .filter(|&p| points[p].free().is_some())
-                .filter(|&p| points[p].attached.iter().any(|(line, _)| of_line[*line] == id))
-                .collect(),
-        })
-        .collect()
+    let mut networks = BTreeMap::<usize, Network>::new();
+    for (line, &id) in of_line.iter().enumerate() {
+        networks.entry(id).or_default().lines.push(line);
+    }
+    for (index, point) in points
+        .iter()
+        .enumerate()
+        .filter(|(_, point)| point.free().is_some())
+    {
+        if let Some((line, _)) = point.attached.first() {
+            networks
+                .entry(of_line[*line])
+                .or_default()
+                .free_points
+                .push(index);
+        }
+    }
+    networks.into_values().collect()
+}
+
+/// Lists the points that every vessel carries, and the networks that end there.
+fn list_on_vessels(vessels: &mut [Vessel], points: &[Point], lines: &[Line], networks: &[Network]) {
+    for (index, point) in points.iter().enumerate() {
+        if let Role::Carried { vessel, .. } = point.role {
+            vessels[vessel].points.push(index);
+        }
+    }
+    for (number, network) in networks.iter().enumerate() {
+        for point in network.lines.iter().flat_map(|&line| lines[line].ends) {
+            if let Role::Carried { vessel, .. } = points[point].role
+                && vessels[vessel].networks.last() != Some(&number)
+            {
+                vessels[vessel].networks.push(number);
+            }
+        }
+    }
 }

@@ -388,7 +388,7 @@ pub struct Contact {
 }
 
 /// Lines that share free points.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Network {
     /// Lines of the network.
     pub lines: Vec<usize>,

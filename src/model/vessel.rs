@@ -14,6 +14,10 @@ pub struct Vessel {
     pub position: Vector3<f64>,
     /// Reference roll, pitch and yaw [rad].
     pub attitude: Vector3<f64>,
+    /// Points that it carries.
+    pub points: Vec<usize>,
+    /// Networks with a line that ends at one of these.
+    pub networks: Vec<usize>,
     /// Motion of the scene for it.
     motion: Option<Motion>,
     /// Order of the angles of that motion.
@@ -44,6 +48,8 @@ impl Vessel {
             name,
             position,
             attitude,
+            points: Vec::new(),
+            networks: Vec::new(),
             motion,
             order: order.unwrap_or_default(),
             reference_rotation: Order::Zyx.rotation(attitude),

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::json;
 use super::record::{Catenary, Column, Flight, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
-use crate::model::{End, Line, Role, Vessel};
+use crate::model::{End, Line, Role};
 use crate::scene::{PointKind, Scene};
 use crate::simulation::{NodeBending, Simulation};
 
@@ -133,11 +133,11 @@ pub fn flight(simulation: &Simulation, time: f64) -> Option<Flight> {
 }
 
 /// Static equilibrium of a simulation.
-pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
+pub fn statics(scene: &Scene, simulation: Simulation) -> json::Statics {
     json::Statics {
         title: scene.title.clone(),
         lines: (0..simulation.model().lines.len())
-            .map(|line| static_line(simulation, line))
+            .map(|line| static_line(&simulation, line))
             .collect(),
         points: (0..simulation.model().points.len())
             .map(|point| json::Point {
@@ -151,8 +151,7 @@ pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
     }
 }
 
-fn static_vessels(simulation: &Simulation) -> Vec<json::Vessel> {
-    let vessels = &simulation.model().vessels;
+fn static_vessels(simulation: Simulation) -> Vec<json::Vessel> {
     let holds = |simulation: &Simulation| {
         let stiffnesses = simulation.vessel_stiffnesses().into_iter().enumerate();
         let hold = |(vessel, stiffness)| json::Hold {
@@ -161,16 +160,15 @@ fn static_vessels(simulation: &Simulation) -> Vec<json::Vessel> {
         };
         stiffnesses.map(hold).collect::<Vec<_>>()
     };
-    let hung = match vessels[..] {
-        [] => Vec::new(),
-        _ => holds(&simulation.on_catenaries()),
-    };
-    let vessels = vessels.iter().zip(hung).zip(holds(simulation));
-    let vessel = |((vessel, hold), elements): ((&Vessel, _), _)| json::Vessel {
-        name: vessel.name.clone(),
-        hold,
-        elements,
-    };
+    let vessels = simulation.model().vessels.iter();
+    let names: Vec<String> = vessels.map(|vessel| vessel.name.clone()).collect();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let elements = holds(&simulation);
+    let hung = holds(&simulation.on_catenaries());
+    let vessels = names.into_iter().zip(hung).zip(elements);
+    let vessel = |((name, hold), elements)| json::Vessel { name, hold, elements };
     vessels.map(vessel).collect()
 }
 

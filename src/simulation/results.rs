@@ -14,9 +14,7 @@ use crate::dynamics::energy_balance::{Energy, EnergyBalance};
 use crate::dynamics::reaction;
 use crate::elements;
 use crate::math::attitude::angle_rates;
-use crate::model::{
-    Body, ClosedForm, End, Line, LineState, Model, Network, Point, PointState, Role, WaterAlong, joint,
-};
+use crate::model::{ClosedForm, End, Line, LineState, Model, PointState, WaterAlong, joint};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
@@ -114,10 +112,7 @@ impl Simulation {
         let model = &*self.model;
         let origin = self.vessel_origin(vessel);
         let mut sum = Vector6::zeros();
-        for (index, point) in model.points.iter().enumerate() {
-            if !matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel) {
-                continue;
-            }
+        for &index in &model.vessels[vessel].points {
             let force = Vector3::from(of_point(index));
             let arm = self.snapshot.state.points[index].position - origin;
             let moment = arm.cross(&force) + self.end_moment(index);
@@ -161,26 +156,20 @@ impl Simulation {
     /// Returns whether a current acts on anything that hangs together with a vessel.
     fn drifts(&self, vessel: usize) -> bool {
         let model = &*self.model;
-        let holds = |network: &&Network| {
-            let mut lines = network.lines.iter();
-            lines.any(|&line| {
-                let ends = model.lines[line].ends.iter();
-                ends.clone()
-                    .any(|&point| model.moves_with(point, Body::Vessel(vessel)))
-            })
-        };
-        let dragged = |network: &Network| {
+        let carrier = &model.vessels[vessel];
+        let has_drag = |&number: &usize| {
+            let network = &model.networks[number];
             let points = network.free_points.iter();
             let mut free = points.filter_map(|&point| model.points[point].free());
             let mut lines = network.lines.iter();
             lines.any(|&line| model.lines[line].drifts(model))
                 || model.current.is_some() && free.any(|free| free.sphere.is_some())
         };
-        let rides =
-            |point: &Point| matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel);
-        let wet = |point: &Point| point.own.as_ref().is_some_and(|own| own.sphere.is_some());
-        model.networks.iter().filter(holds).any(dragged)
-            || model.current.is_some() && model.points.iter().any(|point| rides(point) && wet(point))
+        let is_wet = |&point: &usize| {
+            let own = model.points[point].own.as_ref();
+            own.is_some_and(|own| own.sphere.is_some())
+        };
+        carrier.networks.iter().any(has_drag) || model.current.is_some() && carrier.points.iter().any(is_wet)
     }
 
     fn stiffness_in_current(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
@@ -216,17 +205,15 @@ impl Simulation {
 
     /// This mooring at rest as it is now, without waves, with every network that has one on its closed-form catenaries and the others on
     /// their elements. The closed form has seabed friction and no error of a mesh.
-    pub fn on_catenaries(&self) -> Simulation {
-        let mut hung = self.clone();
-        hung.snapshot.state.waves = None;
-        hung.reactions.clear();
-        let (model, time) = (&*self.model, self.snapshot.state.time);
+    pub fn on_catenaries(mut self) -> Simulation {
+        self.snapshot.state.waves = None;
+        self.reactions.clear();
+        let (model, state) = (&*self.model, &mut self.snapshot.state);
         let mut work = elements::Workspace::serving(model, |_| false);
         for number in 0..model.networks.len() {
-            let state = &mut hung.snapshot.state;
-            catenary_network::solve_network(model, number, state, time, &mut work);
+            catenary_network::solve_network(model, number, state, state.time, &mut work);
         }
-        hung
+        self
     }
 
     /// Present place of the origin of a vessel [m].

@@ -30,7 +30,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use super::catenary_network;
 use crate::elements::{StaticCase, Workspace, friction};
 use crate::math::block_banded::Pivots;
-use crate::model::{Body, End, Line, Model, Network, Role, State};
+use crate::model::{Body, End, Line, Model, Network, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
 
 /// Springs on every unknown, over the greatest axial stiffness of a segment [-]; each is tried where the one before did not do.
@@ -47,7 +47,7 @@ pub fn of_vessel(
     work: &mut Workspace,
 ) -> Option<Matrix6<f64>> {
     let mut sum = of_own_weights(model, state, vessel, origin);
-    for number in 0..model.networks.len() {
+    for &number in &model.vessels[vessel].networks {
         let problem = Problem {
             model,
             number,
@@ -56,9 +56,6 @@ pub fn of_vessel(
             vessel,
             origin,
         };
-        if !problem.meets_vessel() {
-            continue;
-        }
         let released = |&line: &usize| state.lines[line].released != [false; 2];
         if model.beam_of(number).is_some() || problem.network.lines.iter().any(released) {
             return None;
@@ -78,11 +75,8 @@ pub fn of_vessel(
 /// The same of the points themselves that ride on it: their loads, and their weight less buoyancy.
 fn of_own_weights(model: &Model, state: &State, vessel: usize, origin: Vector3<f64>) -> Matrix6<f64> {
     let mut sum = Matrix6::zeros();
-    let rides = |role: &Role| matches!(role, Role::Carried { vessel: carrier, .. } if *carrier == vessel);
-    for (point, at) in model.points.iter().zip(&state.points) {
-        if !rides(&point.role) {
-            continue;
-        }
+    for &index in &model.vessels[vessel].points {
+        let (point, at) = (&model.points[index], &state.points[index]);
         let own = point.own.as_ref().map(|own| own.at(at.position.z));
         let [weight, slope] = own.map_or([0.0; 2], |own| [own.weight, own.weight_slope]);
         let force = point.load_at(state.time) - weight * Vector3::z();
@@ -249,13 +243,6 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Returns true where a line of the network ends on the vessel.
-    fn meets_vessel(&self) -> bool {
-        let lines = self.network.lines.iter();
-        let mut ends = lines.flat_map(|&line| self.model.lines[line].ends);
-        ends.any(|point| self.rides(point))
-    }
-
     fn rides(&self, point: usize) -> bool {
         self.model.moves_with(point, Body::Vessel(self.vessel))
     }

@@ -284,7 +284,7 @@ fn a_slack_line_holds_a_vessel_by_the_weight_that_heave_lifts() {
         ..OC3
     };
     let simulation = start(&slack.scene(20, ""));
-    let closed = simulation.on_catenaries().vessel_stiffness(0).unwrap();
+    let closed = simulation.clone().on_catenaries().vessel_stiffness(0).unwrap();
     assert_close(closed[2][2], 3.0 * slack.chain[1], 1e-3);
     assert!(closed[0][0].abs() < 1e-3 * closed[2][2]);
     let elements = matrix(simulation.vessel_stiffness(0).unwrap());
@@ -306,7 +306,7 @@ fn a_buoy_at_the_surface_stiffens_closed_forms_as_it_stiffens_elements() {
         .line("upper", ["buoy", "fairlead"], "chain", 41.0, 60)
         .scene();
     let simulation = start(&scene);
-    let closed = simulation.on_catenaries().vessel_stiffness(0);
+    let closed = simulation.clone().on_catenaries().vessel_stiffness(0);
     let [closed, solved] = [closed, simulation.vessel_stiffness(0)].map(|k| matrix(k.unwrap()));
     let error = difference(&closed, &solved);
     assert!(error < 2e-3, "{error:e}: {closed} {solved}");
@@ -352,7 +352,7 @@ fn elements_converge_to_the_stiffness_of_the_closed_form() {
     let frictionless = Deck { friction: 0.0, ..OC3 };
     let errors = [20, 160, 640].map(|elements| {
         let simulation = start(&frictionless.scene(elements, ""));
-        let closed = simulation.on_catenaries().vessel_stiffness(0);
+        let closed = simulation.clone().on_catenaries().vessel_stiffness(0);
         let [closed, solved] = [closed, simulation.vessel_stiffness(0)].map(|k| matrix(k.unwrap()));
         difference(&solved, &closed)
     });
