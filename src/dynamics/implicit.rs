@@ -35,7 +35,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::energy_balance::implicit::Passed;
 use super::{StepError, StepFailure, reaction};
-use crate::elements::{Counters, Stretch, Weights, Workspace, copy_network, for_free_points, place_ends};
+use crate::elements::{Counters, Stretch, Weights, Workspace, copy_network, free_points, place_ends};
 use crate::math::block_banded::Pivots;
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::scene::{Integrator, Solver};
@@ -164,7 +164,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
             *a = acceleration(line.diagonal[i], line.residual[i]);
         }
     }
-    for_free_points(model, network, |index, free| {
+    for (index, free) in free_points(model, network) {
         let mut mass = work.points[index].diagonal;
         for &(line, end) in &model.points[index].attached {
             mass += work.lines[line].diagonal[model.lines[line].end_node(end)];
@@ -175,7 +175,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
             mass[(axis, axis)] = 1.0;
         }
         state.points[index].acceleration = acceleration(mass, work.points[index].total);
-    });
+    }
     place_ends(model, network, state);
 }
 
@@ -445,21 +445,21 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
     fn solve(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         work.assemble_dynamic::<true>(self.model, self.network, state, t, weights);
         work.add_remembered(self.model, self.network);
-        work.solve(self.model, self.network, self.number) || self.solve_indefinite(state, t, weights, work)
+        work.solve(self.model, self.number) || self.solve_indefinite(state, t, weights, work)
     }
 
     /// Solves with the last tangent.
     fn solve_again(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         work.assemble_dynamic::<false>(self.model, self.network, state, t, weights);
         work.add_remembered(self.model, self.network);
-        work.solve_again(self.model, self.network, self.number)
+        work.solve_again(self.model, self.number)
     }
 
     /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments
     /// that turn within the step make it unsymmetric, and with positive semi-definite joints of lines that bend.
     fn solve_indefinite(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
-        let bends = |&line: &usize| self.model.lines[line].bending.is_some();
-        if self.network.lines.iter().any(bends) {
+        let mut lines = self.model.lines_of(self.network);
+        if lines.any(|line| line.bending.is_some()) {
             let convex = Weights {
                 convex: true,
                 ..*weights
@@ -467,16 +467,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             work.assemble_dynamic::<true>(self.model, self.network, state, t, &convex);
             work.add_remembered(self.model, self.network);
         }
-        work.solve_with(self.model, self.network, self.number, Pivots::Any)
+        work.solve_with(self.model, self.number, Pivots::Any)
     }
 
     fn shortest_segment(&self) -> f64 {
-        let lines = self
-            .network
-            .lines
-            .iter()
-            .flat_map(|&line| &self.model.lines[line].segments.length);
-        lines.copied().fold(f64::INFINITY, f64::min)
+        let lines = self.model.lines_of(self.network);
+        let lengths = lines.flat_map(|line| &line.segments.length);
+        lengths.copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Predicts the state at constant acceleration.

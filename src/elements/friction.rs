@@ -387,13 +387,13 @@ pub(super) fn move_anchors(model: &Model, network: &Network, state: &mut State, 
             *anchor = shape.position[i] + stretch(work.rubbed[i], contact.stick[i]);
         }
     }
-    super::for_free_points(model, network, |index, free| {
+    for (index, free) in super::free_points(model, network) {
         let point = &mut state.points[index];
         if point.anchor.is_some() {
             let held = stretch(work.points[index].rubbed, point_stick(free));
             point.anchor = Some(point.position + held);
         }
-    });
+    }
 }
 
 /// Moves the anchors of a network at rest at time `t` [s] to places at which every node in motion is within its
@@ -440,11 +440,13 @@ pub fn drop_anchors(model: &Model, state: &mut State) {
 }
 
 /// Removes the anchors of a network, and with them its friction.
-pub(crate) fn remove_anchors(model: &Model, network: &Network, state: &mut State) {
+pub(crate) fn remove_anchors(network: &Network, state: &mut State) {
     for &index in &network.lines {
         state.lines[index].anchor.clear();
     }
-    super::for_free_points(model, network, |index, _| state.points[index].anchor = None);
+    for &index in &network.free_points {
+        state.points[index].anchor = None;
+    }
 }
 
 #[cfg(test)]

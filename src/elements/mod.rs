@@ -45,7 +45,7 @@ pub use joint::{end_moment, end_moment_power, joint_damping_power, shear};
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};
-pub(crate) use point::{PointWork, for_free_points};
+pub(crate) use point::{PointWork, free_points};
 pub(crate) use segment::{stretch_step, stretched};
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
@@ -246,7 +246,7 @@ impl Workspace {
             self.lines[index].assemble_static(model, state, index, case);
         }
         let stream = model.stream(case.time);
-        for_free_points(model, network, |index, free| {
+        for (index, free) in free_points(model, network) {
             let point = &mut self.points[index];
             let (data, state) = (&model.points[index], &state.points[index]);
             point.assemble_static(data, free, state, stream, case);
@@ -254,7 +254,7 @@ impl Workspace {
                 Some(seabed) => point.add_static_seabed(free, seabed, state, case),
                 None => point.add_seabed_at_rest(free, state.position.z),
             }
-        });
+        }
         self.gather(model, network);
     }
 
@@ -271,19 +271,19 @@ impl Workspace {
         for &index in &network.lines {
             self.lines[index].assemble_dynamic::<TANGENT>(model, state, index, t, weights);
         }
-        for_free_points(model, network, |index, free| {
+        for (index, free) in free_points(model, network) {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
             let (seabed, state_of) = (model.seabed.as_deref(), &state.points[index]);
             let water = (stream, state.waves_at_point(index, t));
             point.assemble_dynamic::<TANGENT>(free, seabed, state_of, load, water, weights);
-        });
+        }
         self.gather(model, network);
     }
 
     /// Adds the contributions of lines to the residual of the free points.
     pub(crate) fn gather(&mut self, model: &Model, network: &Network) {
-        for_free_points(model, network, |index, free| {
+        for (index, free) in free_points(model, network) {
             let mut total = self.points[index].residual;
             for &(line, end) in &model.points[index].attached {
                 if self.lines[line].released[usize::from(end == End::B)] {
@@ -297,23 +297,18 @@ impl Workspace {
                 }
             }
             self.points[index].total = total;
-        });
+        }
     }
 
     /// Solves J x = R for the nodes of all lines, ends included, and the free points; false if J is not positive definite.
     /// The correction of the positions is −x.
-    pub(crate) fn solve(&mut self, model: &Model, network: &Network, number: usize) -> bool {
-        self.solve_with(model, network, number, Pivots::Positive)
+    pub(crate) fn solve(&mut self, model: &Model, number: usize) -> bool {
+        self.solve_with(model, number, Pivots::Positive)
     }
 
     /// The same where J need not be positive definite: false if one of the `pivots` cannot be taken.
-    pub(crate) fn solve_with(
-        &mut self,
-        model: &Model,
-        network: &Network,
-        number: usize,
-        pivots: Pivots,
-    ) -> bool {
+    pub(crate) fn solve_with(&mut self, model: &Model, number: usize, pivots: Pivots) -> bool {
+        let network = &model.networks[number];
         self.counters.solves += 1;
         self.systems[number].clear();
         for &index in &network.lines {
@@ -341,7 +336,8 @@ impl Workspace {
     }
 
     /// Solves J x = R for the present residual with the tangent of the last solution; false where ends are released.
-    pub(crate) fn solve_again(&mut self, model: &Model, network: &Network, number: usize) -> bool {
+    pub(crate) fn solve_again(&mut self, model: &Model, number: usize) -> bool {
+        let network = &model.networks[number];
         self.systems[number].clear_right();
         for &index in &network.lines {
             let slots = self.end_slots(model, index);
@@ -395,15 +391,13 @@ impl Workspace {
     /// Solves for the free points of a network whose lines were all added to their system; false if one of the `pivots` cannot be taken.
     pub(crate) fn solve_points(&mut self, model: &Model, number: usize, pivots: Pivots) -> bool {
         let (network, system) = (&model.networks[number], &mut self.systems[number]);
-        for (slot, &index) in network.free_points.iter().enumerate() {
+        for (slot, (index, free)) in free_points(model, network).enumerate() {
             system.add_block(slot, slot, &self.points[index].diagonal);
             system.add_right(slot, self.points[index].residual);
-        }
-        for_free_points(model, network, |index, free| {
             for axis in (0..3).filter(|&axis| !free.axes[axis]) {
-                system.hold(self.points[index].slot.unwrap_or(0), axis);
+                system.hold(slot, axis);
             }
-        });
+        }
         let solved = system.solve(pivots);
         self.take_solution(network, number);
         solved
@@ -448,7 +442,7 @@ impl Workspace {
                 viscoelastic.begin(&model.lines[index], &state.lines[index], dt);
             }
         }
-        for_free_points(model, network, |index, free| {
+        for (index, free) in free_points(model, network) {
             if let Some(contact) = &free.contact {
                 let resting = damper_reach(contact.coefficients.stiffness, free.weight);
                 let PointState {
@@ -461,17 +455,7 @@ impl Workspace {
                 let moved = rise.abs() * dt;
                 self.points[index].reach = resting.max(moved);
             }
-        });
-    }
-
-    /// Half the range of penetrations over which the seabed's damper under a node of a line fades in [m].
-    pub(crate) fn reach(&self, line: usize) -> &[f64] {
-        &self.lines[line].reach
-    }
-
-    /// The same of a free point.
-    pub(crate) fn point_reach(&self, point: usize) -> f64 {
-        self.points[point].reach
+        }
     }
 
     /// Moves the anchors of nodes that slid along the seabed, after an assembly of the state.

@@ -106,13 +106,13 @@ impl PointWork {
         }
     }
 }
-/// Visits the free points of a network.
-pub(crate) fn for_free_points(model: &Model, network: &Network, mut visit: impl FnMut(usize, &FreePoint)) {
-    for &index in &network.free_points {
-        if let Some(free) = model.points[index].free() {
-            visit(index, free);
-        }
-    }
+/// The free points of a network, with their indices, in the order of its system.
+pub(crate) fn free_points<'a>(
+    model: &'a Model,
+    network: &'a Network,
+) -> impl Iterator<Item = (usize, &'a FreePoint)> {
+    let points = network.free_points.iter();
+    points.filter_map(|&index| Some((index, model.points[index].free()?)))
 }
 
 #[cfg(test)]

@@ -243,7 +243,7 @@ fn the_convex_tangent_of_a_bent_line_has_positive_pivots() {
     };
     let network = &model.networks[0];
     work.assemble_dynamic::<true>(&model, network, &state, 0.0, &weights);
-    assert!(work.solve(&model, network, 0));
+    assert!(work.solve(&model, 0));
     let line = &work.lines[0];
     let x = line.solution().iter().take(5).enumerate();
     let sum: Vector3<f64> = x.map(|(j, x)| block(line, 2, j) * x).sum();
@@ -384,7 +384,7 @@ fn the_linear_solution_satisfies_the_system_of_both_lines_and_the_point() {
     };
     let network = &model.networks[0];
     work.assemble_dynamic::<true>(&model, network, &state, 0.0, &weights);
-    assert!(work.solve(&model, network, 0));
+    assert!(work.solve(&model, 0));
     let mut joint = work.points[1].diagonal * work.points[1].solution - work.points[1].residual;
     for line in &work.lines {
         let x = line.solution();

@@ -717,10 +717,15 @@ impl Model {
         self.lines[line].beam.is_some().then_some(line)
     }
 
+    /// The lines of a network.
+    pub fn lines_of<'a>(&'a self, network: &'a Network) -> impl Iterator<Item = &'a Line> + Clone {
+        network.lines.iter().map(|&line| &self.lines[line])
+    }
+
     /// Returns whether a network starts in static equilibrium, which holds where any of its lines does.
     pub fn starts_at_rest(&self, network: usize) -> bool {
-        let mut lines = self.networks[network].lines.iter();
-        lines.any(|&line| self.lines[line].initial == InitialShape::Static)
+        let mut lines = self.lines_of(&self.networks[network]);
+        lines.any(|line| line.initial == InitialShape::Static)
     }
 
     /// Index of the line called `name`.

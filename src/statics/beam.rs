@@ -100,11 +100,13 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         ends: [end(0), end(1)],
         bodies: line.ends.map(|point| model.points[point].free()),
     };
-    let found = BeamStatics::default().solve_from_coarser(&case, &sections);
-    let sections = found.map_err(|failure| {
-        let spins = |torque| Failure::Spins { torque };
-        let failure = BeamStatics::torque(&case, &sections).map_or(failure, spins);
-        refusal(&line.name, &case, failure)
+    let found = BeamStatics::of(&line.name).solve_from_coarser(&case, &sections);
+    let sections = found.map_err(|error| match BeamStatics::torque(&case, &sections) {
+        Some(torque) => StaticsError::BeamSpins {
+            line: line.name.clone(),
+            torque,
+        },
+        None => error,
     })?;
     let line_state = &mut state.lines[index];
     for (i, section) in sections.iter().enumerate() {
@@ -119,51 +121,6 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         }
     }
     Ok(())
-}
-
-fn refusal(line: &str, case: &BeamCase, failure: Failure) -> StaticsError {
-    let line = line.to_string();
-    let flies = case.ends.iter().all(|end| end.held == [false; 6]);
-    match failure {
-        Failure::Imbalance { residual, .. } if flies => StaticsError::BeamFlies { line, residual },
-        Failure::Imbalance {
-            node,
-            residual,
-            solves,
-        } => StaticsError::BeamNotConverged {
-            line,
-            node,
-            residual,
-            iterations: solves,
-        },
-        Failure::Spins { torque } => StaticsError::BeamSpins { line, torque },
-        Failure::Folded { node } => StaticsError::BeamFolded { line, node },
-    }
-}
-
-/// Why no equilibrium was found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Failure {
-    /// The search ended without one.
-    Imbalance {
-        /// Node where the forces and moments are farthest from balance.
-        node: usize,
-        /// Force out of balance there, moments over the element length included [N].
-        residual: f64,
-        /// Linear solves spent [-].
-        solves: usize,
-    },
-    /// The moments on the ends, none of which is clamped, have a part along the beam: at rest without them it has no torsion to hold it, since the
-    /// torsion of a beam of round section is the same all along, and nothing at ends that turn freely.
-    Spins {
-        /// Part of the moments along the beam [N m].
-        torque: f64,
-    },
-    /// The equilibrium has an element bent or twisted beyond the resolution of two sections.
-    Folded {
-        /// Node at the lower end of the element.
-        node: usize,
-    },
 }
 
 /// Axial and shear stiffness that the search begins with [N].
@@ -217,6 +174,8 @@ fn unstressed(case: &BeamCase, start: &[Section]) -> Option<Vec<Section>> {
 /// Search for an equilibrium: its workspace and the effort so far.
 #[derive(Debug, Clone, Default)]
 struct BeamStatics {
+    /// Name of the line.
+    line: String,
     chain: PivotedChain,
     four: Vec<FourElements>,
     trial: Vec<Section>,
@@ -227,8 +186,19 @@ struct BeamStatics {
 }
 
 impl BeamStatics {
+    fn of(line: &str) -> BeamStatics {
+        BeamStatics {
+            line: line.to_string(),
+            ..BeamStatics::default()
+        }
+    }
+
     /// Returns the sections in equilibrium, found from the equilibrium on half as many elements, else from the sections `start`.
-    fn solve_from_coarser(&mut self, case: &BeamCase, start: &[Section]) -> Result<Vec<Section>, Failure> {
+    fn solve_from_coarser(
+        &mut self,
+        case: &BeamCase,
+        start: &[Section],
+    ) -> Result<Vec<Section>, StaticsError> {
         let elements = case.elements.len();
         if elements > COARSE_ELEMENTS_MAX {
             let kept = coarse::kept(elements).into_iter().map(|node| start[node]);
@@ -244,6 +214,7 @@ impl BeamStatics {
     }
 
     /// Part of the moments on the ends along the beam where it rests without them [N m], where no end is clamped and it is more than rounding.
+    /// Nothing holds it: the torsion of a beam of round section is the same all along, and nothing at ends that turn freely.
     fn torque(case: &BeamCase, start: &[Section]) -> Option<f64> {
         let moments = case.ends.each_ref().map(|end| split(&end.load).1);
         let greatest = moments[0].norm().max(moments[1].norm());
@@ -268,7 +239,7 @@ impl BeamStatics {
     }
 
     /// Finds the equilibrium with the clamped ends along their neighbours, then turns them step by step to their prescribed attitudes.
-    fn turn_clamps_in(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), Failure> {
+    fn turn_clamps_in(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), StaticsError> {
         let last = sections.len() - 1;
         let clamps = [(0, 1), (last, last - 1)].map(|(node, next)| {
             let target = sections[node].frame;
@@ -302,7 +273,7 @@ impl BeamStatics {
     ///
     /// # Errors
     /// None was found; the sections are then where they were.
-    fn solve(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), Failure> {
+    fn solve(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), StaticsError> {
         self.search(case, sections, |search, case, sections| {
             let start = sections.to_vec();
             search.assemble(case, sections, UNLOADED, 0.0);
@@ -342,29 +313,31 @@ impl BeamStatics {
         case: &BeamCase,
         sections: &mut [Section],
         method: impl Fn(&mut Self, &BeamCase, &mut [Section]) -> bool,
-    ) -> Result<(), Failure> {
-        self.resize(sections.len());
+    ) -> Result<(), StaticsError> {
+        if self.chain.right.len() != sections.len() {
+            self.chain = PivotedChain::new(sections.len());
+        }
         let start = sections.to_vec();
         let found = method(self, case, sections);
         self.assemble(case, sections, LoadShare::WHOLE, 0.0);
         let (node, residual) = self.imbalance(case);
-        let failure = match (found, folded(sections)) {
+        let (line, flies) = (
+            self.line.clone(),
+            case.ends.iter().all(|end| end.held == [false; 6]),
+        );
+        let error = match (found, folded(sections)) {
             (true, None) => return Ok(()),
-            (true, Some(node)) => Failure::Folded { node },
-            (false, _) => Failure::Imbalance {
+            (true, Some(node)) => StaticsError::BeamFolded { line, node },
+            _ if flies => StaticsError::BeamFlies { line, residual },
+            _ => StaticsError::BeamNotConverged {
+                line,
                 node,
                 residual,
-                solves: self.solves,
+                iterations: self.solves,
             },
         };
         sections.copy_from_slice(&start);
-        Err(failure)
-    }
-
-    fn resize(&mut self, nodes: usize) {
-        if self.chain.right.len() != nodes {
-            self.chain = PivotedChain::new(nodes);
-        }
+        Err(error)
     }
 
     /// From close to the equilibrium: Newton's method, else down in energy.

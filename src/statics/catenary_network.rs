@@ -22,7 +22,7 @@ use nalgebra::{Matrix2, Matrix3, Vector3};
 use super::catenary::{self, Catenary};
 use super::guess::{self, Plane};
 use super::{StaticsError, equilibrium};
-use crate::elements::{Workspace, for_free_points, place_ends};
+use crate::elements::{Workspace, free_points, place_ends};
 use crate::math::block_banded::Pivots;
 use crate::model::{ClosedForm, FreePoint, Line, Model, Network, PointState, State};
 
@@ -43,7 +43,7 @@ const DIFFERENCE: f64 = 1e-9;
 
 /// Returns true where every line of a network has a closed form and no part of the network has drag in a current.
 pub fn serves(model: &Model, network: &Network) -> bool {
-    let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
+    let mut lines = model.lines_of(network);
     let points = network.free_points.iter();
     let mut spheres = points.filter_map(|&point| model.points[point].free()?.sphere.as_ref());
     if model.current.is_some() && spheres.any(|sphere| sphere.drag > 0.0) {
@@ -195,22 +195,20 @@ struct Problem<'a> {
 impl<'a> Problem<'a> {
     fn new(model: &'a Model, number: usize, time: f64) -> Problem<'a> {
         let network = &model.networks[number];
-        let lines = || network.lines.iter().map(|&line| &model.lines[line]);
-        let weights = lines()
-            .flat_map(|line| &line.sections)
-            .map(|section| (section.weight * section.length).abs());
+        let lines = model.lines_of(network);
+        let sections = lines.clone().flat_map(|line| &line.sections);
+        let weights = sections.map(|section| (section.weight * section.length).abs());
         let mut force: f64 = weights.sum();
-        for_free_points(model, network, |index, free| {
+        for (index, free) in free_points(model, network) {
             force += free.weight_max() + model.points[index].load_at(time).norm();
-        });
-        let length = lines().map(Line::unstretched_length).fold(0.0, f64::max);
+        }
         Problem {
             model,
             network,
             number,
             time,
             force: if force > 0.0 { force } else { 1.0 },
-            length,
+            length: lines.map(Line::unstretched_length).fold(0.0, f64::max),
         }
     }
 
@@ -247,11 +245,11 @@ impl<'a> Problem<'a> {
 
     /// Catenaries of all lines and residuals at all points; false where a line has none.
     fn evaluate(&self, state: &State, work: &mut Workspace) -> bool {
-        for_free_points(self.model, self.network, |index, free| {
+        for (index, free) in free_points(self.model, self.network) {
             let weight = free.at(state.points[index].position.z).weight;
             let own = self.model.points[index].load_at(self.time) - weight * Vector3::z();
             work.points[index].residual = own;
-        });
+        }
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
             let plane = Plane::new(line.ends.map(|point| state.points[point].position));
@@ -266,12 +264,12 @@ impl<'a> Problem<'a> {
             }
             work.catenaries[index] = Some(solved);
         }
-        for_free_points(self.model, self.network, |index, free| {
+        for (index, free) in free_points(self.model, self.network) {
             let held = self.held(state, work, index, free);
             let point = &mut work.points[index];
             let moved = |axis: usize, _| if held[axis] { 0.0 } else { point.residual[axis] };
             point.total = Vector3::from_fn(moved);
-        });
+        }
         true
     }
 
@@ -315,10 +313,7 @@ impl<'a> Problem<'a> {
             }
         }
         let anchoring = Matrix3::from_diagonal_element(anchoring + 8.0 * f64::EPSILON * stiffest);
-        for (slot, &index) in self.network.free_points.iter().enumerate() {
-            let Some(free) = self.model.points[index].free() else {
-                continue;
-            };
+        for (slot, (index, free)) in free_points(self.model, self.network).enumerate() {
             let heave = free.at(state.points[index].position.z).weight_slope;
             let heave = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, heave));
             let held = self.held(state, work, index, free);
@@ -424,30 +419,22 @@ impl<'a> Problem<'a> {
     }
 
     fn greatest_residual(&self, work: &Workspace) -> f64 {
-        let points = self
-            .network
-            .free_points
-            .iter()
-            .map(|&index| work.points[index].total.norm());
-        points.fold(0.0, f64::max)
+        let points = self.network.free_points.iter();
+        let residuals = points.map(|&index| work.points[index].total.norm());
+        residuals.fold(0.0, f64::max)
     }
 
     /// Greatest tension, weight or load [N].
     fn greatest_force(&self, work: &Workspace) -> f64 {
-        let lines = self
-            .network
-            .lines
-            .iter()
-            .filter_map(|&index| work.catenaries[index].as_ref());
-        let tension = lines
-            .map(|line| line.tension_a().max(line.tension_b()))
-            .fold(0.0, f64::max);
-        let mut force = tension;
-        for_free_points(self.model, self.network, |index, free| {
+        let lines = self.network.lines.iter();
+        let solved = lines.filter_map(|&index| work.catenaries[index].as_ref());
+        let tensions = solved.map(|line| line.tension_a().max(line.tension_b()));
+        let mut force = tensions.fold(0.0, f64::max);
+        for (index, free) in free_points(self.model, self.network) {
             force = force
                 .max(free.weight_max())
                 .max(self.model.points[index].load_at(self.time).norm());
-        });
+        }
         force
     }
 }

@@ -35,7 +35,7 @@ use nalgebra::Vector3;
 use super::StaticsError;
 use super::guess;
 use crate::elements::friction::{point_stick, remove_anchors};
-use crate::elements::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
+use crate::elements::{StaticCase, Workspace, copy_network, free_points, place_ends};
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 use crate::physics::friction::Friction;
 
@@ -162,9 +162,9 @@ pub fn continue_network(
         }
         shift(state, &before, model, index);
     }
-    for_free_points(model, network, |index, _| {
+    for &index in &network.free_points {
         state.points[index] = PointState::at_rest(state.points[index].position);
-    });
+    }
     place_ends(model, network, state);
     let result = problem.solve(state, work);
     if result.is_err() {
@@ -227,15 +227,15 @@ struct Problem<'a> {
 impl<'a> Problem<'a> {
     fn new(model: &'a Model, number: usize, time: f64, work: &Workspace) -> Problem<'a> {
         let network = &model.networks[number];
-        let lines = network.lines.iter().map(|&line| &model.lines[line]);
+        let lines = model.lines_of(network);
         let mut force: f64 = lines
             .clone()
             .flat_map(|line| &line.nodes.weight)
             .map(|w| w.abs())
             .sum();
-        for_free_points(model, network, |index, free| {
+        for (index, free) in free_points(model, network) {
             force += free.weight_max() + model.points[index].load_at(time).norm();
-        });
+        }
         for line in lines.clone().filter(|line| line.bending.is_some()) {
             let moments = model.end_moments(line, time);
             force += moments.map(|moment| moment.norm()).iter().sum::<f64>() / line.unstretched_length();
@@ -253,10 +253,9 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The full problem with at most this EA [N].
-    fn case(&self, stiffness_max: f64) -> StaticCase {
+    /// The full problem.
+    fn full_case(&self) -> StaticCase {
         StaticCase {
-            stiffness_max,
             bends: self.bends,
             ..StaticCase::whole(self.time)
         }
@@ -269,9 +268,9 @@ impl<'a> Problem<'a> {
 
     fn solve(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         place_ends(self.model, self.network, state);
-        let mut lines = self.network.lines.iter();
+        let mut lines = self.model.lines_of(self.network);
         match self.model.stream(self.time) {
-            Some(stream) if lines.any(|&line| self.model.lines[line].drifts(self.model)) => {
+            Some(stream) if lines.any(|line| line.drifts(self.model)) => {
                 self.solve_in_current(stream, state, work)
             }
             _ => self.solve_loaded(state, work),
@@ -282,7 +281,7 @@ impl<'a> Problem<'a> {
     fn solve_loaded(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let has_friction = self.has_friction();
         if has_friction {
-            remove_anchors(self.model, self.network, state);
+            remove_anchors(self.network, state);
         }
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
@@ -303,8 +302,7 @@ impl<'a> Problem<'a> {
     fn solve_from(&self, guess: &State, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         let softens = self.softens();
-        if self.newton(state, work, self.case(f64::INFINITY))
-            && (!softens || self.strain_over_limit(state).0 <= 1.0)
+        if self.newton(state, work, self.full_case()) && (!softens || self.strain_over_limit(state).0 <= 1.0)
         {
             return Ok(());
         }
@@ -323,7 +321,7 @@ impl<'a> Problem<'a> {
             let found = if slackens {
                 self.slacken(state, work)
             } else {
-                self.stiffen_gradually(state, work, self.case(f64::INFINITY))
+                self.stiffen_gradually(state, work, self.full_case())
             };
             if found && self.strain_over_limit(state).0 <= 1.0 {
                 return Ok(());
@@ -344,12 +342,12 @@ impl<'a> Problem<'a> {
 
     /// Takes the tensions of a shape for the predicted ones.
     fn remember_shape(&self, state: &State, work: &mut Workspace) {
-        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
+        work.assemble_static(self.model, self.network, state, &self.full_case());
         self.remember_tensions(work);
     }
 
     fn not_converged(&self, state: &State, work: &mut Workspace, start: usize) -> StaticsError {
-        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
+        work.assemble_static(self.model, self.network, state, &self.full_case());
         let (residual, place) = work.greatest_residual(self.network);
         StaticsError::NotConverged {
             place: place.name(self.model),
@@ -395,7 +393,7 @@ impl<'a> Problem<'a> {
             if self.is_spent(work) {
                 return false;
             }
-            if !work.solve(self.model, self.network, self.number) {
+            if !work.solve(self.model, self.number) {
                 relaxation = (10.0 * relaxation).min(1.0);
                 refused += 1;
                 if self.bends && refused > bending::REFUSALS_MAX {
@@ -441,7 +439,7 @@ impl<'a> Problem<'a> {
 
     /// Returns true where the forces of a shape are in balance by themselves, without predicted tensions.
     fn is_balanced(&self, state: &State, work: &mut Workspace) -> bool {
-        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
+        work.assemble_static(self.model, self.network, state, &self.full_case());
         let (residual, _) = work.greatest_residual(self.network);
         residual <= self.tolerance(state, work, f64::INFINITY)
     }
@@ -455,30 +453,24 @@ impl<'a> Problem<'a> {
 
     /// Anchoring that lifts pivots above the rounding of the stiffest spring [N/m].
     fn rounding_stiffness(&self, case: &StaticCase) -> f64 {
-        let lines = self.network.lines.iter().map(|&line| &self.model.lines[line]);
         let spring = |line: &Line| {
             let spring = self.stiffest_spring(line, case.stiffness_max);
             spring.max(stiffest_stick(line))
         };
-        8.0 * f64::EPSILON * lines.map(spring).fold(0.0, f64::max)
+        let springs = self.model.lines_of(self.network).map(spring);
+        8.0 * f64::EPSILON * springs.fold(0.0, f64::max)
     }
 
     /// Greatest stiffness of a segment of at most this EA [N], of the seabed under a node, or of a joint [N/m].
     fn stiffest_spring(&self, line: &Line, stiffness_max: f64) -> f64 {
         let segments = line.segments.axial_stiffness.iter().zip(&line.segments.length);
-        let seabed = line
-            .nodes
-            .contact
-            .iter()
-            .flat_map(|contact| &contact.stiffness)
-            .copied();
-        let spring = seabed
-            .chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
-            .fold(0.0, f64::max);
-        if self.bends {
-            spring.max(bending::stiffest_joint(line))
-        } else {
-            spring
+        let axial = segments.map(|(ea, length)| ea.min(stiffness_max) / length);
+        let contact = line.nodes.contact.iter();
+        let seabed = contact.flat_map(|contact| &contact.stiffness).copied();
+        let spring = seabed.chain(axial).fold(0.0, f64::max);
+        match self.bends {
+            true => spring.max(bending::stiffest_joint(line)),
+            false => spring,
         }
     }
 
@@ -487,11 +479,8 @@ impl<'a> Problem<'a> {
         let (mut force, mut rounding, mut stuck) = (0.0_f64, 0.0_f64, 0.0_f64);
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
-            let far = state.lines[index]
-                .position
-                .iter()
-                .map(|r| r.amax())
-                .fold(0.0, f64::max);
+            let nodes = state.lines[index].position.iter();
+            let far = nodes.map(|r| r.amax()).fold(0.0, f64::max);
             for i in 0..line.segment_count() {
                 force = force
                     .max(work.lines[index].elastic[i])
@@ -508,14 +497,14 @@ impl<'a> Problem<'a> {
             rounding = rounding.max(far * self.stiffest_spring(line, stiffness_max));
             stuck = stuck.max(far * stiffest_stick(line));
         }
-        for_free_points(self.model, self.network, |index, free| {
+        for (index, free) in free_points(self.model, self.network) {
             let load = self.model.points[index].load_at(self.time).norm();
             force = force.max(load).max(free.weight_max());
             if let Some(contact) = &free.contact {
                 rounding = rounding.max(contact.seabed_level.abs() * contact.coefficients.stiffness);
                 stuck = stuck.max(state.points[index].position.amax() * point_stick(free));
             }
-        });
+        }
         let friction = self.model.friction().map_or(0.0, Friction::greatest);
         let rounding = 4.0 * f64::EPSILON * rounding;
         let stuck = (4.0 * f64::EPSILON * stuck).min(friction * force);
@@ -551,15 +540,9 @@ impl<'a> Problem<'a> {
     /// From a soft network, whose energy is minimised, to that of the `full` case.
     fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace, full: StaticCase) -> bool {
         let mut stiffness = SOFT_STIFFNESS * self.force;
-        let lines = self
-            .network
-            .lines
-            .iter()
-            .map(|&line| &self.model.lines[line].segments);
-        let stiffest = lines
-            .flat_map(|segments| &segments.axial_stiffness)
-            .copied()
-            .fold(0.0, f64::max);
+        let lines = self.model.lines_of(self.network);
+        let stiffnesses = lines.flat_map(|line| &line.segments.axial_stiffness);
+        let stiffest = stiffnesses.copied().fold(0.0, f64::max);
         loop {
             let soft = StaticCase {
                 stiffness_max: stiffness,
@@ -630,7 +613,7 @@ impl<'a> Problem<'a> {
             if work.greatest_residual(self.network).0 <= accepted || self.is_spent(work) {
                 return;
             }
-            if !work.solve(self.model, self.network, self.number) {
+            if !work.solve(self.model, self.number) {
                 relaxation *= 10.0;
                 continue;
             }
@@ -684,20 +667,16 @@ impl<'a> Problem<'a> {
     }
 
     fn softens(&self) -> bool {
-        let laws = self
-            .network
-            .lines
-            .iter()
-            .flat_map(|&line| &self.model.lines[line].segments.law);
-        laws.into_iter().any(|law| law.limit_strain().is_some())
+        let lines = self.model.lines_of(self.network);
+        let mut laws = lines.flat_map(|line| &line.segments.law);
+        laws.any(|law| law.limit_strain().is_some())
     }
 
     /// Returns true where the tangent of a converged state is positive definite.
     fn stable(&self, state: &State, work: &mut Workspace, case: StaticCase) -> bool {
-        let least = if self.bends {
-            bending::INSTABILITY
-        } else {
-            INSTABILITY
+        let least = match self.bends {
+            true => bending::INSTABILITY,
+            false => INSTABILITY,
         };
         let anchoring = self.rounding_stiffness(&case) + least * self.force / self.length;
         let case = StaticCase {
@@ -706,7 +685,7 @@ impl<'a> Problem<'a> {
             ..case
         };
         work.assemble_static(self.model, self.network, state, &case);
-        work.solve(self.model, self.network, self.number)
+        work.solve(self.model, self.number)
     }
 
     /// Greatest strain over the limit of its measure [-], with line, segment and strain [-]; below the limits of all measures the
@@ -735,7 +714,7 @@ impl<'a> Problem<'a> {
         let mut increment: f64 = 0.25;
         let mut case = StaticCase {
             load: 0.0,
-            ..self.case(f64::INFINITY)
+            ..self.full_case()
         };
         let mut reached = std::mem::take(&mut work.trial);
         copy_network(self.model, self.network, state, &mut reached);

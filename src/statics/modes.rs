@@ -9,6 +9,8 @@
 //! Valid for motion small enough that no segment slackens and no node lands or lifts off. A slack segment has no stiffness and
 //! leaves modes of frequency 0. Beams have no tangent here.
 
+use std::iter::once;
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::elements::{StaticCase, Workspace, node_tangent};
@@ -71,19 +73,6 @@ struct Nodes {
 }
 
 impl Modes {
-    /// All modes of a network about `state`.
-    ///
-    /// # Errors
-    /// A beam, or a node that moves without mass.
-    pub fn new(
-        model: &Model,
-        network: usize,
-        state: &State,
-        work: &mut Workspace,
-    ) -> Result<Modes, ModesError> {
-        Modes::lowest(model, network, state, usize::MAX, work)
-    }
-
     /// The `count` lowest modes of a network about `state`, or all where there are fewer.
     ///
     /// # Errors
@@ -151,26 +140,18 @@ impl Nodes {
             let inner = mass.len()..mass.len() + line.segment_count() - 1;
             mass.resize(inner.end, Matrix3::zeros());
             axes.resize(inner.end, [true; 3]);
-            let own: Vec<Option<usize>> = [slots[0]]
-                .into_iter()
-                .chain(inner.map(Some))
-                .chain([slots[1]])
-                .collect();
-            for (node, place) in own
-                .iter()
-                .enumerate()
-                .filter_map(|(node, place)| Some((node, (*place)?)))
-            {
-                mass[place] += node_mass(line, &state.lines[index].position, node);
+            let inner = inner.map(Some);
+            let own: Vec<_> = once(slots[0]).chain(inner).chain(once(slots[1])).collect();
+            for (node, place) in own.iter().enumerate() {
+                if let Some(place) = *place {
+                    mass[place] += node_mass(line, &state.lines[index].position, node);
+                }
             }
             places.push(own);
         }
-        let factors = mass
-            .iter()
-            .zip(&axes)
-            .map(|(mass, axes)| inverse_factor(mass, *axes));
         let mut scale = Vec::with_capacity(mass.len());
-        for (place, factor) in factors.enumerate() {
+        for (place, (mass, axes)) in mass.iter().zip(&axes).enumerate() {
+            let factor = inverse_factor(mass, *axes);
             scale.push(factor.ok_or_else(|| without_mass(model, network, &places, place))?);
         }
         let mut count = 0;
@@ -298,7 +279,7 @@ mod tests {
             lines,
             waves: None,
         };
-        Modes::new(model, 0, &state, &mut Workspace::new(model))
+        Modes::lowest(model, 0, &state, usize::MAX, &mut Workspace::new(model))
     }
 
     #[test]

@@ -279,15 +279,15 @@ impl Problem<'_> {
     /// The lines on their elements, with springs of a `part` of their greatest axial stiffness [-] on every unknown, and the system of the free
     /// points solved.
     fn of_elements(&self, part: f64, work: &mut Workspace) -> Option<Vec<CondensedLine>> {
-        let lines = || self.network.lines.iter().map(|&line| &self.model.lines[line]);
-        let springs = lines().flat_map(|line| {
+        let mut lines = self.model.lines_of(self.network);
+        let springs = lines.clone().flat_map(|line| {
             let segments = &line.segments;
             let axial = segments.axial_stiffness.iter().zip(&segments.length);
             axial.map(|(ea, length)| ea / length)
         });
         let case = StaticCase {
             anchoring: part * springs.fold(0.0, f64::max),
-            bends: lines().any(|line| line.bending.is_some()),
+            bends: lines.any(|line| line.bending.is_some()),
             limit: friction::SLIDING,
             ..StaticCase::whole(self.state.time)
         };

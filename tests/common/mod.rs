@@ -270,7 +270,8 @@ pub fn in_words(scene: &Scene) -> String {
 /// Modes of the first network about the present state.
 pub fn modes(simulation: &Simulation) -> Modes {
     let model: &Model = simulation.model();
-    Modes::new(model, 0, simulation.state(), &mut Workspace::new(model)).unwrap()
+    let mut work = Workspace::new(model);
+    Modes::lowest(model, 0, simulation.state(), usize::MAX, &mut work).unwrap()
 }
 
 /// Record of the first line, sampled at every communication point.

@@ -341,7 +341,7 @@ impl Side<'_> {
         if let Some(damping) = &nodes.mass_damping {
             flow.dissipation += damping[i] * velocity.dot(&mean);
         }
-        let reach = self.passed.work.reach(index);
+        let reach = &self.passed.work.lines[index].reach[..];
         if let Some(node) = resting_node(line, shape, i, Some(reach)) {
             let push = node.push();
             let force = push.force + (self.friction - 1.0) * push.friction;
@@ -422,7 +422,7 @@ impl Side<'_> {
         let drag = free.drag(at.wetted, velocity - water);
         flow.external_work += drag.dot(&water);
         flow.dissipation -= drag.dot(&(mean - water));
-        let reach = self.passed.work.point_reach(point);
+        let reach = self.passed.work.points[point].reach;
         if let Some(seabed) = model.seabed.as_deref() {
             let push = resting_point(free, seabed, state, Some(reach));
             let push = push.map(|point| point.push());

@@ -239,6 +239,9 @@ fn an_equilibrium_that_folds_its_elements_is_refused() {
     let start = sections.clone();
     let case = bench.case([clamped(), clamped()]);
     let refused = BeamStatics::default().solve(&case, &mut sections);
-    assert!(matches!(refused, Err(Failure::Folded { .. })), "{refused:?}");
+    assert!(
+        matches!(refused, Err(StaticsError::BeamFolded { .. })),
+        "{refused:?}"
+    );
     assert_eq!(sections, start);
 }

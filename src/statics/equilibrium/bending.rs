@@ -71,7 +71,7 @@ impl Problem<'_> {
         work: &mut Workspace,
     ) -> Result<(), StaticsError> {
         let start = work.counters.solves;
-        if self.newton(state, work, self.case(f64::INFINITY)) && self.settle(state, work) {
+        if self.newton(state, work, self.full_case()) && self.settle(state, work) {
             return Ok(());
         }
         let flexible = Problem {
@@ -83,7 +83,7 @@ impl Problem<'_> {
         if let Err(limit @ StaticsError::LimitLoad { .. }) = hangs {
             return Err(limit);
         }
-        if hangs.is_ok() && self.newton(state, work, self.case(f64::INFINITY)) && self.settle(state, work) {
+        if hangs.is_ok() && self.newton(state, work, self.full_case()) && self.settle(state, work) {
             return Ok(());
         }
         self.restart(guess, state, work);
@@ -99,7 +99,7 @@ impl Problem<'_> {
 
     /// Returns true where an equilibrium is stable and within the limits of its strain measures, or another one was found from it after a small wave.
     fn settle(&self, state: &mut State, work: &mut Workspace) -> bool {
-        let full = self.case(f64::INFINITY);
+        let full = self.full_case();
         let found =
             self.stable(state, work, full) || (self.relax(state, work) && self.stable(state, work, full));
         found && self.strain_over_limit(state).0 <= 1.0
@@ -113,7 +113,7 @@ impl Problem<'_> {
         self.remember_shape(state, work);
         let mut case = StaticCase {
             predicted: true,
-            ..self.case(f64::INFINITY)
+            ..self.full_case()
         };
         let (mut relaxation, mut balanced) = (1.0_f64, 0);
         for _ in 0..RELAX_SOLVES_MAX {
@@ -127,7 +127,7 @@ impl Problem<'_> {
             if self.is_spent(work) {
                 return false;
             }
-            if !work.solve(self.model, self.network, self.number) {
+            if !work.solve(self.model, self.number) {
                 relaxation *= 3.0;
                 continue;
             }

@@ -22,7 +22,7 @@
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
 use super::{Problem, StaticCase};
-use crate::elements::{Workspace, copy_network, for_free_points};
+use crate::elements::{Workspace, copy_network, free_points};
 use crate::model::{LineState, State};
 use crate::physics::catenary::is_laid_from_b;
 use crate::statics::StaticsError;
@@ -37,8 +37,8 @@ const ROUNDS_MAX: usize = 20;
 impl Problem<'_> {
     /// Returns true where the seabed may resist by friction.
     pub(super) fn has_friction(&self) -> bool {
-        let mut lines = self.network.lines.iter();
-        lines.any(|&line| self.model.lines[line].friction().is_some())
+        let mut lines = self.model.lines_of(self.network);
+        lines.any(|line| line.friction().is_some())
     }
 
     /// From the equilibrium without friction to that with it.
@@ -47,7 +47,7 @@ impl Problem<'_> {
         self.lay(state);
         let case = |stick| StaticCase {
             stick,
-            ..self.case(f64::INFINITY)
+            ..self.full_case()
         };
         let raised = self.raise(state, work, [SOFTEST, GROWTH], case);
         if !raised && !self.settle_pressure(state, work) {
@@ -59,7 +59,7 @@ impl Problem<'_> {
     /// Minimises the potential energy of the network under constant normal forces and updates them from the result,
     /// until Newton's method finds the equilibrium from there; returns true where it did.
     fn settle_pressure(&self, state: &mut State, work: &mut Workspace) -> bool {
-        let full = self.case(f64::INFINITY);
+        let full = self.full_case();
         let kept = |stick| StaticCase {
             keeps_pressure: true,
             stick,
@@ -111,9 +111,9 @@ impl Problem<'_> {
                 anchor[to] = anchor[from] + step * part.min(1.0);
             }
         }
-        for_free_points(self.model, self.network, |index, free| {
+        for (index, free) in free_points(self.model, self.network) {
             let point = &mut state.points[index];
             point.anchor = free.contact.map(|_| point.position);
-        });
+        }
     }
 }

@@ -41,8 +41,8 @@ const BREADTH: f64 = 0.1;
 impl Problem<'_> {
     /// Returns true where any line may pierce the water's surface.
     pub(super) fn meets_surface(&self) -> bool {
-        let mut lines = self.network.lines.iter();
-        lines.any(|&line| self.model.lines[line].surface.is_some())
+        let mut lines = self.model.lines_of(self.network);
+        lines.any(|line| line.surface.is_some())
     }
 
     /// Follows the equilibrium from taut straight lines between their points to the slack ones they are; returns true where it converged.
@@ -70,7 +70,7 @@ impl Problem<'_> {
             work.assemble_static(self.model, self.network, state, &self.taut(reached));
             self.remember_tensions(work);
         }
-        if balanced && !self.newton(state, work, self.case(f64::INFINITY)) {
+        if balanced && !self.newton(state, work, self.full_case()) {
             self.restart(&found, state, work);
         }
         work.trial = found;
@@ -81,17 +81,16 @@ impl Problem<'_> {
     /// returns true where it converged. Where the end of a floating line is free and weighs next to nothing, no m
     /// gives its last segment a direction, and this method finds the equilibrium.
     pub(super) fn thin_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
-        let lines = self.network.lines.iter();
-        let surfaces = lines.filter_map(|&line| self.model.lines[line].surface.as_ref());
-        let radii = surfaces.flat_map(|surface| surface.radius.iter().copied());
-        let thinnest = radii.fold(f64::INFINITY, f64::min);
+        let lines = self.model.lines_of(self.network);
+        let radii = lines.filter_map(|line| Some(&line.surface.as_ref()?.radius));
+        let thinnest = radii.flatten().copied().fold(f64::INFINITY, f64::min);
         if !thinnest.is_finite() {
             return false;
         }
         let first = (thinnest / (BREADTH * self.length)).min(1.0);
         let case = |part: f64| StaticCase {
             breadth: thinnest / part,
-            ..self.case(f64::INFINITY)
+            ..self.full_case()
         };
         let wide = StaticCase {
             cautious: true,
@@ -105,7 +104,7 @@ impl Problem<'_> {
         StaticCase {
             slack: part * self.force,
             breadth: BREADTH * self.length * part.sqrt(),
-            ..self.case(f64::INFINITY)
+            ..self.full_case()
         }
     }
 
@@ -140,7 +139,7 @@ impl Problem<'_> {
             if self.is_spent(work) {
                 return false;
             }
-            if !work.solve(self.model, self.network, self.number) {
+            if !work.solve(self.model, self.number) {
                 case.anchoring *= 10.0;
                 continue;
             }
