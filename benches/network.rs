@@ -83,7 +83,8 @@ fn main() {
             equilibrium::solve(&model, &places, 0.0, &mut work).expect("an equilibrium");
         });
         let catenary = least(|| {
-            let mut state = equilibrium::hang(&model, &places, 0.0, &mut work).expect("places");
+            let mut state = equilibrium::place(&model, &places, 0.0).expect("finite places");
+            equilibrium::hang(&model, 0, &mut state, &mut work);
             catenary_network::rest(&model, 0, &mut state, &mut work).expect("an equilibrium");
         });
         let mut simulation = Simulation::new(&scene).expect("an equilibrium");

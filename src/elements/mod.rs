@@ -43,7 +43,7 @@ use crate::physics::fading_damper::damper_reach;
 pub(crate) use joint::{BendingWork, rates};
 pub use joint::{end_moment, end_moment_power, joint_damping_power, shear};
 pub(crate) use line::{LineWork, node_tangent};
-use places::{Place, blank_state};
+use places::Place;
 pub(crate) use places::{copy_network, place_ends};
 pub(crate) use point::{PointWork, free_points};
 pub(crate) use segment::{stretch_step, stretched};
@@ -108,34 +108,40 @@ impl Workspace {
             }
         }
         let system = |network: &Network| {
-            let ends = network.lines.iter().map(|&line| model.lines[line].ends);
+            let ends = model.lines_of(network).map(|line| line.ends);
             let pairs = ends.filter_map(|[a, b]| Some((points[a].slot?, points[b].slot?)));
             PointSystem::new(network.free_points.len(), &pairs.collect::<Vec<_>>())
         };
-        let systems = model.networks.iter().map(system).collect();
-        let mut lines = vec![LineWork::default(); model.lines.len()];
-        for (_, network) in model
-            .networks
-            .iter()
-            .enumerate()
-            .filter(|(number, _)| serves(*number))
-        {
-            for &line in &network.lines {
-                lines[line] = LineWork::new(model, &model.lines[line]);
-            }
-        }
-        Workspace {
-            lines,
+        let count = model.lines.len();
+        let mut work = Workspace {
+            systems: model.networks.iter().map(system).collect(),
+            lines: vec![LineWork::default(); count],
             points,
-            systems,
-            catenaries: vec![None; model.lines.len()],
-            stiffness: vec![[[Matrix3::zeros(); 2]; 2]; model.lines.len()],
-            start: blank_state(model),
-            before: blank_state(model),
-            hung: blank_state(model),
-            saved: blank_state(model),
-            trial: blank_state(model),
+            catenaries: vec![None; count],
+            stiffness: vec![[[Matrix3::zeros(); 2]; 2]; count],
+            start: State::default(),
+            before: State::default(),
+            hung: State::default(),
+            saved: State::default(),
+            trial: State::default(),
             counters: Counters::default(),
+        };
+        let served = (0..model.networks.len()).filter(|&number| serves(number));
+        served.for_each(|number| work.serve(model, number));
+        work
+    }
+
+    /// Gives the lines of a network their scratch.
+    pub(crate) fn serve(&mut self, model: &Model, number: usize) {
+        for &line in &model.networks[number].lines {
+            self.lines[line] = LineWork::new(model, &model.lines[line]);
+        }
+    }
+
+    /// Drops the scratch of the lines of a network, whose memory then serves another one.
+    pub(crate) fn release(&mut self, model: &Model, number: usize) {
+        for &line in &model.networks[number].lines {
+            self.lines[line] = LineWork::default();
         }
     }
 

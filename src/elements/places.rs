@@ -1,6 +1,6 @@
 //! Places in a network: names for messages, copies of states.
 
-use crate::model::{LineState, Model, Network, Point, PointState, State};
+use crate::model::{LineState, Model, Network, PointState, State};
 
 /// A node between the ends of a line, or a free point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +55,11 @@ pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
 
 /// Copies a network's points and nodes from one state to another, which allocates room for them the first time only.
 pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &mut State) {
+    if to.lines.len() != from.lines.len() {
+        to.lines
+            .resize_with(from.lines.len(), || LineState::at_rest(Vec::new()));
+        to.points.resize(from.points.len(), PointState::default());
+    }
     for &index in &network.lines {
         let (from_line, to_line) = (&from.lines[index], &mut to.lines[index]);
         to_line.position.clone_from(&from_line.position);
@@ -68,20 +73,5 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
         }
-    }
-}
-
-/// A state of `model` without nodes, for [`copy_network`] to fill.
-pub(super) fn blank_state(model: &Model) -> State {
-    let point = |point: &Point| PointState::at_rest(point.reference);
-    State {
-        time: 0.0,
-        points: model.points.iter().map(point).collect(),
-        lines: model
-            .lines
-            .iter()
-            .map(|_| LineState::at_rest(Vec::new()))
-            .collect(),
-        waves: None,
     }
 }

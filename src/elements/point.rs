@@ -21,6 +21,10 @@ pub(crate) struct PointWork {
     pub diagonal: Matrix3<f64>,
     /// Solution of the linear system.
     pub solution: Vector3<f64>,
+    /// State before a search for the equilibrium on catenaries.
+    pub before: PointState,
+    /// Position from where a step of that search begins [m].
+    pub start: Vector3<f64>,
     /// Terms that the time integrator carries over from the last step [N].
     pub history: Vector3<f64>,
     /// Half the range of penetrations over which the point's seabed damper fades in [m].

@@ -47,7 +47,16 @@ fn network(surroundings: &str, line_type: &str) -> Model {
 
 /// Both lines bent, stretched by about a tenth, and moving.
 fn random_state(model: &Model, size: f64) -> State {
-    let mut state = blank_state(model);
+    let points = model.points.iter();
+    let mut state = State {
+        points: points.map(|point| PointState::at_rest(point.reference)).collect(),
+        lines: model
+            .lines
+            .iter()
+            .map(|_| LineState::at_rest(Vec::new()))
+            .collect(),
+        ..State::default()
+    };
     let mut seed = 3;
     for (line, nodes) in model.lines.iter().zip(&mut state.lines) {
         let [a, b] = line.ends.map(|point| model.points[point].reference);

@@ -27,7 +27,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::block_banded::{Lu3, Pivots};
 
 /// Order of elimination, and where the factors have blocks.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Order {
     /// Place of every point in the order.
     place: Vec<usize>,
@@ -42,6 +42,9 @@ struct Order {
 impl Order {
     /// Order for `points` points, of which `pairs` are coupled.
     fn new(points: usize, pairs: &[(usize, usize)]) -> Order {
+        if points == 0 {
+            return Order::default();
+        }
         let pairs = pairs.iter().filter(|(a, b)| a != b);
         let upper = pairs.map(|&(a, b)| faer::sparse::Pair::new(a.min(b), a.max(b)));
         let entries: Vec<_> = upper.collect();

@@ -19,7 +19,7 @@ pub struct State {
 }
 
 /// State of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointState {
     /// Position [m].
     pub position: Vector3<f64>,
@@ -135,15 +135,9 @@ impl HalfStep {
 impl PointState {
     /// Point at rest at a position [m].
     pub fn at_rest(position: Vector3<f64>) -> PointState {
-        let zero = Vector3::zeros();
         PointState {
             position,
-            velocity: zero,
-            acceleration: zero,
-            orientation: UnitQuaternion::identity(),
-            spin: zero,
-            half_step: [zero; 2],
-            anchor: None,
+            ..PointState::default()
         }
     }
 

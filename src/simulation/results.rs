@@ -127,20 +127,21 @@ impl Simulation {
     /// [`statics::stiffness`]. Where a current drags lines, its force changes with them: the stiffness is then that of equilibria on both sides
     /// of the pose that is set.
     pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
-        self.stiffness_with(vessel, &mut self.stiffness_scratch())
+        self.stiffness_with(vessel, &mut self.bare_scratch())
     }
 
     /// [`Simulation::vessel_stiffness`] of every vessel.
     pub fn vessel_stiffnesses(&self) -> Vec<Option<[[f64; 6]; 6]>> {
-        let mut work = self.stiffness_scratch();
+        let mut work = self.bare_scratch();
         let vessels = 0..self.model.vessels.len();
         vessels
             .map(|vessel| self.stiffness_with(vessel, &mut work))
             .collect()
     }
 
-    fn stiffness_scratch(&self) -> elements::Workspace {
-        statics::stiffness::scratch(&self.model, &self.snapshot.state)
+    /// Scratch without room for the nodes of lines.
+    fn bare_scratch(&self) -> elements::Workspace {
+        elements::Workspace::serving(&self.model, |_| false)
     }
 
     fn stiffness_with(&self, vessel: usize, work: &mut elements::Workspace) -> Option<[[f64; 6]; 6]> {

@@ -88,21 +88,21 @@ pub(super) fn begin(
 /// Every network in static equilibrium or, where all its lines have shapes of their own, on these, with its free points where the scene puts
 /// them. Quasi-static lines start on their catenaries; those that will move start where their elements are at rest.
 fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> Result<State, StaticsError> {
-    let mut work = elements::Workspace::new(model);
-    let mut state = equilibrium::hang(model, places, time, &mut work)?;
+    let mut work = elements::Workspace::serving(model, |_| false);
+    let mut state = equilibrium::place(model, places, time)?;
     for number in 0..model.networks.len() {
-        if shapes == Shapes::AsGiven && !model.starts_at_rest(number) {
-            continue;
-        }
-        match model.solver.integrator {
-            Integrator::QuasiStatic => {
-                catenary_network::rest(model, number, &mut state, &mut work)?;
+        work.serve(model, number);
+        equilibrium::hang(model, number, &mut state, &mut work);
+        if shapes == Shapes::Equilibrium || model.starts_at_rest(number) {
+            match model.solver.integrator {
+                Integrator::QuasiStatic => catenary_network::rest(model, number, &mut state, &mut work)?,
+                _ => equilibrium::rest(model, number, &mut state, &mut work)?,
             }
-            _ => equilibrium::rest(model, number, &mut state, &mut work)?,
+            if shapes == Shapes::AsGiven {
+                take_shapes(model, number, &mut state);
+            }
         }
-        if shapes == Shapes::AsGiven {
-            take_shapes(model, number, &mut state);
-        }
+        work.release(model, number);
     }
     Ok(state)
 }

@@ -80,12 +80,12 @@ pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, wo
         return false;
     }
     for &index in &network.free_points {
-        work.saved.points[index] = state.points[index];
+        work.points[index].before = state.points[index];
     }
     let problem = Problem::new(model, number, t);
     if !problem.newton(state, work) || problem.is_pierced(state, work) {
         for &index in &network.free_points {
-            state.points[index] = work.saved.points[index];
+            state.points[index] = work.points[index].before;
         }
         return false;
     }
@@ -386,7 +386,7 @@ impl<'a> Problem<'a> {
             point.solution = work.systems[self.number].solution(slot);
             longest = longest.max(point.solution.norm());
             before += point.solution.dot(&point.total);
-            work.trial.points[index] = state.points[index];
+            point.start = state.points[index].position;
         }
         if !(longest.is_finite() && before > 0.0) {
             return false;
@@ -412,7 +412,7 @@ impl<'a> Problem<'a> {
     /// Puts the free points a `part` of the solution away from where the step began.
     fn place(&self, state: &mut State, work: &Workspace, part: f64) {
         for &index in &self.network.free_points {
-            let mut moved = work.trial.points[index].position + part * work.points[index].solution;
+            let mut moved = work.points[index].start + part * work.points[index].solution;
             moved.z = moved.z.max(self.seabed_under(index));
             state.points[index].position = moved;
         }

@@ -87,37 +87,38 @@ pub fn solve(
     t: f64,
     work: &mut Workspace,
 ) -> Result<State, StaticsError> {
-    let mut state = hang(model, points, t, work)?;
+    let mut state = place(model, points, t)?;
     for number in 0..model.networks.len() {
+        hang(model, number, &mut state, work);
         rest(model, number, &mut state, work)?;
     }
     Ok(state)
 }
 
-/// Puts all lines between their points on the shape the scene gives them, else on their catenary, at time `t` [s].
+/// Places all points at time `t` [s], without the nodes of lines.
 ///
 /// # Errors
 /// A place is not finite.
-pub fn hang(
-    model: &Model,
-    points: &[PointState],
-    t: f64,
-    work: &mut Workspace,
-) -> Result<State, StaticsError> {
+pub fn place(model: &Model, points: &[PointState], t: f64) -> Result<State, StaticsError> {
     check_finite(model, points)?;
-    let mut state = State {
+    let lines = model.lines.iter();
+    Ok(State {
         time: t,
         points: points.to_vec(),
-        lines: Vec::with_capacity(model.lines.len()),
+        lines: lines.map(|_| LineState::at_rest(Vec::new())).collect(),
         waves: None,
-    };
-    for (line, work) in model.lines.iter().zip(&mut work.lines) {
-        let ends = line.ends.map(|point| points[point].position);
-        let hung = guess::hang(model, line, ends, &mut work.tension);
+    })
+}
+
+/// Puts the lines of a network between their points on the shape the scene gives them, else on their catenary.
+pub fn hang(model: &Model, number: usize, state: &mut State, work: &mut Workspace) {
+    for &index in &model.networks[number].lines {
+        let line = &model.lines[index];
+        let ends = line.ends.map(|point| state.points[point].position);
+        let hung = guess::hang(model, line, ends, &mut work.lines[index].tension);
         let start = guess::start_shape(model, line, ends).unwrap_or(hung);
-        state.lines.push(LineState::at_rest(start));
+        state.lines[index] = LineState::at_rest(start);
     }
-    Ok(state)
 }
 
 /// Brings one network to rest from how [`hang`] leaves it. Beams have an equilibrium of their own.

@@ -60,14 +60,14 @@ pub fn of_vessel(
         if model.beam_of(number).is_some() || problem.network.lines.iter().any(released) {
             return None;
         }
-        let lines = if lies_on_catenaries(problem.network, state) {
-            problem.of_catenaries(work)?
-        } else {
-            let mut parts = ANCHORING.into_iter();
-            parts.find_map(|part| problem.of_elements(part, work))?
-        };
+        work.serve(model, number);
+        let lines = match lies_on_catenaries(problem.network, state) {
+            true => problem.of_catenaries(work),
+            false => ANCHORING.iter().find_map(|&part| problem.of_elements(part, work)),
+        }?;
         let columns = Motion::ALL.map(|axis| problem.column(&lines, &Motion::along(axis), work));
         sum += Matrix6::from_columns(&columns);
+        work.release(model, number);
     }
     Some(sum)
 }
@@ -88,13 +88,6 @@ fn of_own_weights(model: &Model, state: &State, vessel: usize, origin: Vector3<f
         }));
     }
     sum
-}
-
-/// Scratch for the stiffness on any vessel, at a state.
-pub(crate) fn scratch(model: &Model, state: &State) -> Workspace {
-    Workspace::serving(model, |number| {
-        !lies_on_catenaries(&model.networks[number], state)
-    })
 }
 
 /// Returns whether all lines of a network lie on closed-form catenaries.
