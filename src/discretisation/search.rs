@@ -2,8 +2,8 @@
 
 use super::history::History;
 use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial};
-use crate::dynamics::AXIAL_IMPLICIT_COST;
-use crate::model::{Model, Role};
+use crate::dynamics::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
+use crate::model::{Line, Model, Role};
 use crate::scene::{Integrator, MotionPath, Scene};
 use crate::simulation::{Error, Simulation};
 
@@ -13,6 +13,8 @@ const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 32
 const AIM_UNTRIED: f64 = 0.7;
 /// Explicit steps of an element that all trials may take [-].
 const WORK_MAX: f64 = 1e8;
+/// The same where steps are fully implicit [-].
+const IMPLICIT_WORK_MAX: f64 = 4e8;
 /// Part of the tolerance for the error of the steps of the ladder [-].
 const FINER: f64 = 0.25;
 /// Elements of a line alone on which the step of the ladder is sought [-].
@@ -39,7 +41,9 @@ pub(super) struct Search<'a> {
     from: usize,
     /// Results of every network.
     ladders: Vec<Ladder>,
-    /// Axial-implicit step whose error is small [s]; none where steps follow from the scene's integrator.
+    /// True if a line needs fully implicit steps, as one that bends does: all networks then take the integrators of the rules.
+    implicit: bool,
+    /// Axial-implicit or fully implicit step whose error is small [s]; none where steps follow from the scene's integrator.
     step: Option<f64>,
     /// Explicit steps of an element so far [-].
     work: f64,
@@ -51,6 +55,10 @@ struct Ladder {
     lines: Vec<usize>,
     runs: Vec<Run>,
     trials: Vec<Trial>,
+    /// True if a mesh that passes is compared with one more level.
+    confirms: bool,
+    /// True if the error of the last trial is small enough, which a run on the next level may yet refute.
+    passed: bool,
     /// Elements whose error is small enough, once there are such [-].
     found: Option<usize>,
 }
@@ -59,12 +67,16 @@ struct Ladder {
 #[derive(Debug, Clone)]
 struct Run {
     elements: usize,
+    /// Lengths of the elements of every line [m].
+    lengths: Vec<Vec<f64>>,
     /// History of every line after the start.
     histories: Vec<History>,
 }
 
 /// Result of one run for all lines.
 struct Record {
+    /// Lengths of the elements of every line [m].
+    lengths: Vec<Vec<f64>>,
     /// History of every line after the start.
     histories: Vec<History>,
     /// Cost in explicit steps of an element [-].
@@ -72,27 +84,37 @@ struct Record {
 }
 
 impl Ladder {
-    fn new(lines: &[usize]) -> Ladder {
+    fn new(lines: &[usize], confirms: bool) -> Ladder {
         Ladder {
             lines: lines.to_vec(),
             runs: Vec::new(),
             trials: Vec::new(),
+            confirms,
+            passed: false,
             found: None,
         }
     }
 
     /// Part of a run that belongs to this network.
     fn part(&self, elements: usize, record: &Record) -> Run {
-        let lines = self.lines.iter();
+        let lines = || self.lines.iter();
         Run {
             elements,
-            histories: lines.map(|&line| record.histories[line].clone()).collect(),
+            lengths: lines().map(|&line| record.lengths[line].clone()).collect(),
+            histories: lines().map(|&line| record.histories[line].clone()).collect(),
         }
     }
 
-    /// Adds a finer run, and assesses the mesh of half its elements.
+    /// Adds a finer run, and confirms the mesh that passed before it, or assesses the mesh of half its elements. A run on the mesh of the one before says
+    /// nothing: short elements at clamps, touchdowns and borders of sections may leave no room for fewer.
     fn climb(&mut self, run: Run, aim: f64) {
+        if self.runs.last().is_some_and(|last| last.lengths == run.lengths) {
+            return;
+        }
         self.runs.push(run);
+        if self.is_confirmed(aim) {
+            return self.settle();
+        }
         let [.., coarse, middle, fine] = &self.runs[..] else {
             return;
         };
@@ -100,10 +122,29 @@ impl Ladder {
             elements: coarse.elements,
             error: estimated(coarse, middle, fine),
         };
-        if trial.error <= aim {
-            self.found = Some(trial.elements);
-        }
+        self.passed = trial.error <= aim;
         self.trials.push(trial);
+        if !self.confirms {
+            self.settle();
+        }
+    }
+
+    /// Compares the mesh that passed with the last run; returns whether its error is still small enough.
+    fn is_confirmed(&mut self, aim: f64) -> bool {
+        let ([.., passed, _, _, fine], Some(trial)) = (&self.runs[..], self.trials.last_mut()) else {
+            return false;
+        };
+        if !self.passed || passed.elements != trial.elements {
+            return false;
+        }
+        trial.error = trial.error.max(distance(passed, fine));
+        trial.error <= aim
+    }
+
+    /// Takes the mesh of the last trial if that passed.
+    fn settle(&mut self) {
+        let last = self.trials.last().filter(|_| self.passed);
+        self.found = self.found.or(last.map(|trial| trial.elements));
     }
 
     /// Error of a run [-], of the order of the last three runs, 1 where it is unknown.
@@ -153,7 +194,7 @@ impl Ladder {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(scene: &Scene, networks: &'a Networks) -> Option<Search<'a>> {
+    pub(super) fn new(scene: &Scene, model: &Model, networks: &'a Networks) -> Option<Search<'a>> {
         let leapfrog = matches!(
             scene.solver.integrator,
             Integrator::Auto | Integrator::Leapfrog | Integrator::AxialImplicit
@@ -162,6 +203,7 @@ impl<'a> Search<'a> {
             return None;
         }
         let times = MotionTimes::of(scene)?;
+        let implicit = needs_implicit_steps(model);
         let output = &scene.output;
         let mut scene = scene.clone();
         scene.output.duration = output.duration.min(times.duration);
@@ -170,11 +212,21 @@ impl<'a> Search<'a> {
         Some(Search {
             from: (start / scene.output.interval) as usize,
             scene,
-            ladders: networks.lines.iter().map(|lines| Ladder::new(lines)).collect(),
+            ladders: ladders(networks, implicit),
+            implicit,
             networks,
             step: None,
             work: 0.0,
         })
+    }
+
+    /// Explicit steps of an element that all trials may take [-].
+    fn work_max(&self) -> f64 {
+        if self.implicit {
+            IMPLICIT_WORK_MAX
+        } else {
+            WORK_MAX
+        }
     }
 
     /// Scene with the duration and the samples of the trials.
@@ -187,10 +239,12 @@ impl<'a> Search<'a> {
         self.networks.with_elements(&self.scene, elements)
     }
 
-    /// The same with axial-implicit steps [s].
+    /// The same with axial-implicit steps [s], or fully implicit ones where these are needed.
     fn with_step(&self, elements: &[usize], step: f64) -> Scene {
         let mut scene = self.with(elements);
-        scene.solver.integrator = Integrator::AxialImplicit;
+        if !self.implicit {
+            scene.solver.integrator = Integrator::AxialImplicit;
+        }
         scene.solver.time_step_max = step;
         scene
     }
@@ -199,6 +253,9 @@ impl<'a> Search<'a> {
     fn at_level(&self, elements: &[usize]) -> Scene {
         let mut scene = self.with(elements);
         if let Some(step) = self.step {
+            if self.implicit {
+                return self.with_step(elements, step);
+            }
             let explicit = self.explicit_work(&scene);
             if explicit.is_some_and(|explicit| explicit.axial_implicit_work(step) < explicit.work) {
                 return self.with_step(elements, step);
@@ -215,11 +272,10 @@ impl<'a> Search<'a> {
         let mut spent = self.climb(AIM * tolerance);
         while let Some(step) = self.step
             && !self.is_accurate(step)
-            && self.work + 2.0 * spent <= WORK_MAX
+            && self.work + 2.0 * spent <= self.work_max()
         {
             self.step = Some(0.5 * step);
-            let lines = self.networks.lines.iter();
-            self.ladders = lines.map(|lines| Ladder::new(lines)).collect();
+            self.ladders = ladders(self.networks, self.implicit);
             spent = self.climb(AIM * tolerance);
         }
         let between = self.between(AIM * tolerance);
@@ -229,10 +285,14 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// Longest axial-implicit step whose error on a coarse mesh is small [s]; none where explicit steps cost less.
+    /// Longest axial-implicit step whose error on a coarse mesh is small [s], none where explicit steps cost less; the longest step allowed where steps
+    /// are fully implicit.
     fn coarse_step(&mut self) -> Option<f64> {
         if self.scene.solver.integrator != Integrator::Auto {
             return None;
+        }
+        if self.implicit {
+            return Some(self.longest_step());
         }
         let elements = vec![COARSE; self.ladders.len()];
         let explicit = self.explicit_work(&self.with(&elements))?;
@@ -255,7 +315,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Returns whether the error of an axial-implicit step [s] is small on the meshes found, or else on the last ones assessed.
+    /// Returns whether the error of an implicit step [s] is small on the meshes found, or else on the last ones assessed.
     fn is_accurate(&mut self, step: f64) -> bool {
         let assessed = |ladder: &Ladder| ladder.trials.last().map(|trial| trial.elements);
         let elements = self
@@ -264,7 +324,7 @@ impl<'a> Search<'a> {
             .map(|ladder| assessed(ladder).unwrap_or(LADDER[0]));
         let elements: Vec<usize> = elements.collect();
         let mut scene = self.at_level(&elements);
-        if scene.solver.integrator != Integrator::AxialImplicit {
+        if !self.implicit && scene.solver.integrator != Integrator::AxialImplicit {
             return true;
         }
         scene.solver.time_step_max = 0.5 * step;
@@ -289,7 +349,7 @@ impl<'a> Search<'a> {
         let mut last = 0.0;
         for level in LADDER {
             let open = self.ladders.iter().any(|ladder| ladder.found.is_none());
-            if !open || self.work + 2.0 * last > WORK_MAX {
+            if !open || self.work + 2.0 * last > self.work_max() {
                 break;
             }
             let elements = self.ladders.iter().map(|ladder| ladder.found.unwrap_or(level));
@@ -307,6 +367,7 @@ impl<'a> Search<'a> {
                 }
             }
         }
+        self.ladders.iter_mut().for_each(Ladder::settle);
         self.work - before
     }
 
@@ -332,10 +393,18 @@ impl<'a> Search<'a> {
         trials.collect()
     }
 
-    /// The scene with the tried number of elements in every network, and the cheapest leapfrog that keeps the error with them.
-    pub(super) fn with_integrator(&mut self, elements: &[usize]) -> Scene {
+    /// The scene with a number of elements in every network, and the cheapest integrator and step that keep the error with them, where these elements were
+    /// `tried`.
+    pub(super) fn settled(&mut self, elements: &[usize], tried: bool) -> Scene {
         let mut scene = self.with(elements);
         if scene.solver.integrator != Integrator::Auto {
+            return scene;
+        }
+        if self.implicit {
+            let step = self.step.unwrap_or(scene.solver.time_step_max);
+            return self.with_step(elements, step);
+        }
+        if !tried {
             return scene;
         }
         if let Some(step) = self.axial_implicit_step(elements) {
@@ -387,7 +456,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Runs a scene; none where its lines need another integrator than a leapfrog.
+    /// Runs a scene; none where its lines need an integrator that is not tried.
     fn run(&mut self, scene: &Scene) -> Result<Option<Record>, Error> {
         let mut simulation = Simulation::new(scene)?;
         simulation.follow_scene()?;
@@ -396,12 +465,15 @@ impl<'a> Search<'a> {
             weight = weight.max(match choice.integrator {
                 Integrator::Leapfrog => 1.0,
                 Integrator::AxialImplicit => AXIAL_IMPLICIT_COST,
+                Integrator::GeneralisedAlpha if self.implicit => IMPLICIT_COST,
                 _ => return Ok(None),
             });
         }
         let model = simulation.model();
         let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();
+        let lengths = |line: &Line| line.segments.length.clone();
         let mut record = Record {
+            lengths: model.lines.iter().map(lengths).collect(),
             histories: (0..model.lines.len())
                 .map(|line| History::of(scene, model, line))
                 .collect(),
@@ -410,7 +482,7 @@ impl<'a> Search<'a> {
         let output = &scene.output;
         for sample in 0..(output.duration / output.interval).round() as usize {
             let broken = simulation.advance(output.interval).is_err();
-            if broken || self.work + record.work > 2.0 * WORK_MAX {
+            if broken || self.work + record.work > 2.0 * self.work_max() {
                 return Ok(None);
             }
             record.work += weight * (simulation.substeps() * segments) as f64;
@@ -478,6 +550,18 @@ impl MotionTimes {
             duration: ramp + duration,
         })
     }
+}
+
+/// Ladders of all networks before their first run.
+fn ladders(networks: &Networks, confirms: bool) -> Vec<Ladder> {
+    let lines = networks.lines.iter();
+    lines.map(|lines| Ladder::new(lines, confirms)).collect()
+}
+
+/// Returns whether a line cannot take the steps of a leapfrog, though no beam.
+fn needs_implicit_steps(model: &Model) -> bool {
+    let mut lines = model.lines.iter();
+    lines.any(|line| line.beam.is_none() && !line.serves_leapfrog())
 }
 
 /// End of a line that is moved, 0 for A; B where both or none are.

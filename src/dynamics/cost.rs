@@ -24,7 +24,7 @@ const CATENARY: f64 = 100.0;
 /// Cost of an axial-implicit step over that of an explicit one [-].
 pub const AXIAL_IMPLICIT_COST: f64 = AXIAL_IMPLICIT / EXPLICIT;
 /// Cost of a step of generalised-α over that of an explicit one [-].
-pub(super) const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
+pub const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
 /// Time to sum a wave component at a node [ns].
 pub(super) const COMPONENT: f64 = 5.0;
 
