@@ -270,10 +270,15 @@ impl<'a> Search<'a> {
         let tolerance = self.scene.solver.tolerance;
         self.step = self.coarse_step();
         let mut spent = self.climb(AIM * tolerance);
-        while let Some(step) = self.step
-            && !self.is_accurate(step)
-            && self.work + 2.0 * spent <= self.work_max()
-        {
+        while let Some(step) = self.step {
+            let excess = self.excess(step);
+            if excess <= 1.0 {
+                break;
+            }
+            if self.work + 2.0 * spent > self.work_max() {
+                self.step = Some(step / excess.sqrt()); // the integrators are of second order
+                break;
+            }
             self.step = Some(0.5 * step);
             self.ladders = ladders(self.networks, self.implicit);
             spent = self.climb(AIM * tolerance);
@@ -315,8 +320,9 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Returns whether the error of an implicit step [s] is small on the meshes found, or else on the last ones assessed.
-    fn is_accurate(&mut self, step: f64) -> bool {
+    /// Error of an implicit step [s] over the part of the tolerance that it may have, on the meshes found, or else on the last ones assessed [-]; 0 where
+    /// it cannot be determined.
+    fn excess(&mut self, step: f64) -> f64 {
         let assessed = |ladder: &Ladder| ladder.trials.last().map(|trial| trial.elements);
         let elements = self
             .ladders
@@ -325,17 +331,22 @@ impl<'a> Search<'a> {
         let elements: Vec<usize> = elements.collect();
         let mut scene = self.at_level(&elements);
         if !self.implicit && scene.solver.integrator != Integrator::AxialImplicit {
-            return true;
+            return 0.0;
         }
         scene.solver.time_step_max = 0.5 * step;
         let Ok(Some(record)) = self.run(&scene) else {
-            return true;
+            return 0.0;
         };
         let most = FINER * self.scene.solver.tolerance;
-        self.ladders.iter().zip(elements).all(|(ladder, elements)| {
-            let same = ladder.runs.iter().find(|run| run.elements == elements);
-            same.is_none_or(|run| step_error(run, &ladder.part(elements, &record)) <= most)
-        })
+        let errors = self
+            .ladders
+            .iter()
+            .zip(elements)
+            .filter_map(|(ladder, elements)| {
+                let same = ladder.runs.iter().find(|run| run.elements == elements)?;
+                Some(step_error(same, &ladder.part(elements, &record)))
+            });
+        errors.fold(0.0, f64::max) / most
     }
 
     /// Longest step of the trials [s].

@@ -371,15 +371,13 @@ fn every_line_of_a_system_keeps_the_stated_error_in_waves_and_with_free_points()
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn cables_that_bend_keep_the_stated_error() {
-    // not 0.5 % on the umbilical: the work of the trials is spent before a step that keeps it is found
-    let all = [0.05, 0.02, 0.005];
-    for (name, scene, tolerances) in [
-        ("umbilical", umbilical(), &all[..2]),
-        ("tank cable", tank_cable(), &all),
-        ("cable between floats", cable_between_floats(), &all),
-        ("power_cable", open(shipped("power_cable")), &all),
+    for (name, scene) in [
+        ("umbilical", umbilical()),
+        ("tank cable", tank_cable()),
+        ("cable between floats", cable_between_floats()),
+        ("power_cable", open(shipped("power_cable"))),
     ] {
-        for &tolerance in tolerances {
+        for tolerance in [0.05, 0.02, 0.005] {
             let errors = errors_of_lines(name, &scene, tolerance);
             assert!(errors[0] <= tolerance, "{name}, {tolerance}: {errors:?}");
         }
