@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use super::LineWork;
 use crate::model::{Contact, Line, LineState};
 use crate::physics::fading_damper::{FadingContact, damper_reach};
-use crate::physics::seabed::{ContactCoefficients, PARTS};
+use crate::physics::seabed::{ContactCoefficients, Part};
 
 /// Seabed under the segments next to a node.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,7 +58,8 @@ impl Bearing {
         let mut sum = Bearing::default();
         for (segment, _) in contact.adjacent(node) {
             let ends = [stand(segment), stand(segment + 1)];
-            if let Some(both) = Bearing::of_segment(contact.coefficients(segment), ends, reach(segment)) {
+            let (k, parts) = (contact.coefficients(segment), contact.parts());
+            if let Some(both) = Bearing::of_segment(k, parts, ends, reach(segment)) {
                 sum.add(&both[node - segment]);
             }
         }
@@ -67,13 +68,18 @@ impl Bearing {
 
     /// Bearing of both nodes of a segment whose damper fades in over ± `reach` [m]; `None` where the seabed does not act.
     #[inline(always)]
-    fn of_segment(k: ContactCoefficients, [low, high]: [Stand; 2], reach: f64) -> Option<[Bearing; 2]> {
+    fn of_segment(
+        k: ContactCoefficients,
+        parts: &[Part],
+        [low, high]: [Stand; 2],
+        reach: f64,
+    ) -> Option<[Bearing; 2]> {
         let ([low, low_rise], [high, high_rise]) = (low.depth, high.depth);
         if low.max(high) <= -reach {
             return None;
         }
         let mut ends = [Bearing::default(); 2];
-        for part in PARTS {
+        for part in parts {
             let [penetration, rise] = [part.between(low, high), part.between(low_rise, high_rise)];
             let Some(seabed) = FadingContact::new(k, penetration, rise, reach) else {
                 continue;
@@ -111,7 +117,8 @@ impl LineWork {
         for i in 0..self.reach.len() {
             let reach = if moves { self.reach[i] } else { 0.0 };
             let ends = [self.stand[i], self.stand[i + 1]];
-            if let Some([low, high]) = Bearing::of_segment(contact.coefficients(i), ends, reach) {
+            let (k, parts) = (contact.coefficients(i), contact.parts());
+            if let Some([low, high]) = Bearing::of_segment(k, parts, ends, reach) {
                 self.bearing[i].add(&low);
                 self.bearing[i + 1].add(&high);
             }

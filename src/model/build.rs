@@ -459,6 +459,9 @@ fn build_line(
     if let (Some(winch), Some(segments)) = (&line.winch, at_winch) {
         return on_winch(index, built, segments, winch);
     }
+    if let (Some(_), Some(contact)) = (&built.beam, &mut built.nodes.contact) {
+        contact.at_nodes = false; // beams have contact along their elements
+    }
     built.bending = line_bending(index, line, &parts, &built)?;
     if scene.meets_surface_between(line, names.ends(line)) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
@@ -722,6 +725,7 @@ fn contact(scene: &Scene, parts: &[SegmentPart]) -> Contact {
         damping,
         weight,
         mass,
+        at_nodes: seabed.contact == ContactLaw::AtNodes,
         seabed: None,
         stick: Vec::new(),
     }

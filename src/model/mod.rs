@@ -381,6 +381,8 @@ pub struct Contact {
     pub weight: Vec<f64>,
     /// Mass across the line with the added mass, per segment [kg].
     pub mass: Vec<f64>,
+    /// True if contact acts at the nodes alone.
+    pub at_nodes: bool,
     /// Properties of the seabed other than a level plane without friction.
     pub seabed: Option<Arc<Seabed>>,
     /// Stiffness along the seabed of a node that sticks [N/m]; empty without friction.

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Contact, Line, Model, PointContact};
 use crate::physics::friction::Friction;
 use crate::physics::ground::{Ground, Touch};
-use crate::physics::seabed::{self, ContactCoefficients, PARTS};
+use crate::physics::seabed::{self, ContactCoefficients, ENDS, PARTS, Part};
 
 /// Shape and friction of a seabed.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +46,14 @@ impl Contact {
         ContactCoefficients {
             stiffness: self.stiffness[segment],
             damping: self.damping[segment],
+        }
+    }
+
+    /// Parts of a segment at which contact acts.
+    pub fn parts(&self) -> &'static [Part] {
+        match self.at_nodes {
+            true => &ENDS,
+            false => &PARTS,
         }
     }
 
@@ -101,7 +109,7 @@ impl Contact {
         let mut force = 0.0;
         for (segment, other) in self.adjacent(node) {
             let (k, (far, far_rise, _)) = (self.coefficients(segment), depth(other));
-            for part in PARTS {
+            for part in self.parts() {
                 let at = [part.between(near, far), part.between(rise, far_rise)];
                 force += part.shares[0] * seabed::normal_force(k, at[0], at[1]);
             }
@@ -116,8 +124,9 @@ impl Contact {
             return 0.0;
         }
         let [near, far] = [segment, segment + 1].map(|node| self.stand(node, place[node]).0);
-        let carried = PARTS.map(|part| (stiffness * part.between(near, far) / weight).clamp(0.0, 1.0));
-        carried.iter().sum::<f64>() / PARTS.len() as f64
+        let parts = self.parts();
+        let carried = |part: &Part| (stiffness * part.between(near, far) / weight).clamp(0.0, 1.0);
+        parts.iter().map(carried).sum::<f64>() / parts.len() as f64
     }
 
     /// z of the seabed under a place [m].

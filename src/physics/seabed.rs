@@ -17,6 +17,8 @@
 //! critical damping, 2√(k m) of a mass on a spring, unless the damping of the scene is less. Both tend to the values of the scene as the mesh
 //! is refined, and reach them where the spring does.
 //!
+//! Contact at the nodes alone is the trapezoidal rule in place of the four parts: MoorDyn's law, for comparison with it.
+//!
 //! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper pulls on a rising node);
 //! work-equivalent loads as in any finite element. Parts, δ and ζ were chosen on three chains in storms, `docs/hard-cases.md`: one or two parts are worse
 //! and erratic, eight no better; δ = 0.05 is better in shallow water and worse in deep; a curved segment gains nothing.
@@ -40,12 +42,20 @@ pub struct Part {
 }
 
 /// Parts of a segment at which the contact is evaluated.
-pub const PARTS: [Part; 4] = [part(0.125), part(0.375), part(0.625), part(0.875)];
+pub const PARTS: [Part; 4] = [
+    part(0.125, 0.25),
+    part(0.375, 0.25),
+    part(0.625, 0.25),
+    part(0.875, 0.25),
+];
+/// The nodes of a segment, at which contact acts alone in other codes; each has half of the segment.
+pub const ENDS: [Part; 2] = [part(0.0, 0.5), part(1.0, 0.5)];
 
-const fn part(at: f64) -> Part {
+/// Part of a segment with this share of its length [-].
+const fn part(at: f64, share: f64) -> Part {
     Part {
         at,
-        shares: [0.25 * (1.0 - at), 0.25 * at],
+        shares: [share * (1.0 - at), share * at],
     }
 }
 
@@ -130,6 +140,15 @@ mod tests {
     fn the_seabed_never_pulls() {
         assert_eq!(normal_force(GIVEN, 1e-3, 1.0), 0.0);
         assert_eq!(normal_force(GIVEN, -1e-3, -1.0), 0.0);
+    }
+
+    #[test]
+    fn parts_and_ends_carry_a_uniform_load_alike() {
+        let nodes =
+            |parts: &[Part]| [0, 1].map(|side| parts.iter().map(|part| part.shares[side]).sum::<f64>());
+        assert_eq!(nodes(&PARTS), [0.5, 0.5]);
+        assert_eq!(nodes(&ENDS), [0.5, 0.5]);
+        assert_eq!(ENDS.map(|part| part.between(2.0, 3.0)), [2.0, 3.0]);
     }
 
     #[test]

@@ -62,6 +62,8 @@ choice! {
         Regularised = "regularised",
         /// Exactly the given coefficients.
         AsGiven = "as_given",
+        /// Exactly the given coefficients at the nodes alone, not along the segments between them, as in MoorDyn. Beams have them along their elements.
+        AtNodes = "at_nodes",
     }
 }
 

@@ -23,7 +23,7 @@
 use super::layout::{ContactArrays, Layout, SeabedArrays};
 use super::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
-use crate::physics::seabed::PARTS;
+use crate::physics::seabed::{ENDS, PARTS, Part};
 
 /// Contact of nodes with the seabed in a step.
 #[derive(Debug, Clone, Copy)]
@@ -107,9 +107,9 @@ impl ContactRule {
         }
     }
 
-    /// Forces on the nodes of segments between two depths.
+    /// Forces on the nodes of segments between two depths, contact being at `PLACES` parts of a segment.
     #[inline(always)]
-    fn press(&self, [low, high]: [Depth; 2]) -> Pressed {
+    fn press<const PLACES: usize>(&self, parts: &[Part; PLACES], [low, high]: [Depth; 2]) -> Pressed {
         let zero = Lanes::splat(0.0);
         let after = low.penetration - self.ahead * low.rise;
         let before = low.penetration + self.behind * low.rise;
@@ -118,7 +118,7 @@ impl ContactRule {
         let stiff = self.slope * self.ahead;
         let (mut force, mut force_high) = (zero, zero);
         let (mut resistance, mut resistance_high) = (zero, zero);
-        for part in &PARTS {
+        for part in parts {
             let at = Lanes::splat(part.at);
             let after = after + at * after_change;
             let before = before + at * before_change;
@@ -129,7 +129,7 @@ impl ContactRule {
             resistance = resistance + stiff;
             resistance_high = resistance_high + at * stiff;
         }
-        let share = Lanes::splat(0.25);
+        let share = Lanes::splat(1.0 / PLACES as f64);
         Pressed {
             force: [share * (force - force_high), share * force_high],
             resistance: [share * (resistance - resistance_high), share * resistance_high],
@@ -154,15 +154,16 @@ impl Layout {
             step,
         };
         let found = [contact.spring.rows_mut(last), contact.resistance.rows_mut(last)];
+        let at_nodes = contact.at_nodes;
         match &mut contact.seabed {
-            None => segments.press(found, |at| Depth {
+            None => segments.press(at_nodes, found, |at| Depth {
                 penetration: level[at] - position[at].z,
                 rise: velocity[at].z,
             }),
             Some(seabed) => {
                 seabed.find_depths(level, [position, velocity], step);
                 let (penetration, rise) = (seabed.penetration.rows(last), seabed.rise.rows(last));
-                segments.press(found, |at| Depth {
+                segments.press(at_nodes, found, |at| Depth {
                     penetration: penetration[at],
                     rise: rise[at],
                 });
@@ -180,17 +181,31 @@ struct SegmentRows<'a> {
 }
 
 impl SegmentRows<'_> {
-    /// Writes spring and resistance of all rows of nodes, from the depths of rows.
+    /// Writes spring and resistance of all rows of nodes, from the depths of rows; contact is along the segments, or at the nodes alone.
     #[inline(always)]
-    fn press(&self, [spring, resistance]: [&mut [Lanes]; 2], depth: impl Fn(usize) -> Depth) {
+    fn press(&self, at_nodes: bool, found: [&mut [Lanes]; 2], depth: impl Fn(usize) -> Depth) {
+        match at_nodes {
+            true => self.press_at(&ENDS, found, depth),
+            false => self.press_at(&PARTS, found, depth),
+        }
+    }
+
+    /// The same with contact at parts of a segment.
+    #[inline(always)]
+    fn press_at<const PLACES: usize>(
+        &self,
+        parts: &[Part; PLACES],
+        [spring, resistance]: [&mut [Lanes]; 2],
+        depth: impl Fn(usize) -> Depth,
+    ) {
         let (zero, last) = (Lanes::splat(0.0), spring.len() - 2);
-        let before = self.press_row(last, [depth(last), depth(last + 1)]);
+        let before = self.press_row(parts, last, [depth(last), depth(last + 1)]);
         let [mut force_before, mut resistance_before] =
             [before.force[1], before.resistance[1]].map(|of| of.moved_up_after(zero));
         let mut low = depth(1);
         for at in 1..=last {
             let high = depth(at + 1);
-            let pressed = self.press_row(at, [low, high]);
+            let pressed = self.press_row(parts, at, [low, high]);
             let total = pressed.resistance[0] + resistance_before;
             spring[at] = pressed.force[0] + force_before + total * low.rise;
             resistance[at] = total;
@@ -201,7 +216,12 @@ impl SegmentRows<'_> {
 
     /// Forces on the nodes of a row of segments.
     #[inline(always)]
-    fn press_row(&self, at: usize, [low, high]: [Depth; 2]) -> Pressed {
+    fn press_row<const PLACES: usize>(
+        &self,
+        parts: &[Part; PLACES],
+        at: usize,
+        [low, high]: [Depth; 2],
+    ) -> Pressed {
         let lands = |depth: Depth| depth.penetration - Lanes::splat(self.step.drift) * depth.rise;
         let zero = Lanes::splat(0.0);
         if !lands(low).max(lands(high)).any_positive() {
@@ -211,7 +231,7 @@ impl SegmentRows<'_> {
             };
         }
         let law = [self.stiffness[at], self.damping[at]];
-        ContactRule::new(law, self.yields[at], self.step).press([low, high])
+        ContactRule::new(law, self.yields[at], self.step).press(parts, [low, high])
     }
 }
 
@@ -276,7 +296,23 @@ mod tests {
     /// Impulse [N s] on a level segment of 1 kg that left a seabed at `before` and leaves it at `after` [m/s].
     fn impulse(k: f64, c: f64, penetration: f64, [before, after]: [f64; 2]) -> f64 {
         let law = [k, c].map(Lanes::splat);
-        let pressed = ContactRule::new(law, Lanes::splat(1.0), STEP).press(depths(penetration, before));
+        let rule = ContactRule::new(law, Lanes::splat(1.0), STEP);
+        let [pressed, at_nodes] = [
+            rule.press(&PARTS, depths(penetration, before)),
+            rule.press(&ENDS, depths(penetration, before)),
+        ];
+        for end in 0..2 {
+            assert_relative_eq!(
+                at_nodes.force[end][0],
+                pressed.force[end][0],
+                max_relative = 1e-12
+            );
+            assert_relative_eq!(
+                at_nodes.resistance[end][0],
+                pressed.resistance[end][0],
+                max_relative = 1e-12
+            );
+        }
         let node = |end: usize| {
             let resistance = pressed.resistance[end][0];
             pressed.force[end][0] + resistance * (before - after)

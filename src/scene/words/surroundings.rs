@@ -213,6 +213,7 @@ fn seabed_in_words(seabed: &Seabed) -> String {
             "softened together to suit the mesh, with no less than 0.2 of critical damping where the seabed has it; a resting line lies on the seabed"
         }
         ContactLaw::AsGiven => "exactly as given",
+        ContactLaw::AtNodes => "exactly as given, at the nodes alone",
     };
     let chosen = if seabed.has_default_stiffness() {
         " (default)"

@@ -24,6 +24,8 @@ pub struct ContactArrays {
     pub spring: Column,
     /// Loss of that force with the velocity at which a node leaves the seabed [N s/m].
     pub resistance: Column,
+    /// True if contact acts at the nodes alone.
+    pub at_nodes: bool,
     /// The seabed where it has a slope, soundings or friction.
     pub seabed: Option<SeabedArrays>,
 }
@@ -65,6 +67,7 @@ impl ContactArrays {
             yields: keep(&contact.mass.iter().map(|mass| 1.0 / mass).collect::<Vec<_>>()),
             spring: Column::new(striping, 0.0),
             resistance: Column::new(striping, 0.0),
+            at_nodes: contact.at_nodes,
         }
     }
 }
