@@ -9,16 +9,20 @@
 //! whose slowest wave passes through them within one step of the longest allowed, such as a taut line almost without
 //! mass: they are at rest in every step, at any step size.
 //!
+//! Where axial waves are much faster than transverse ones the line stretches quasi-statically, and longer steps do. A host whose positions jump by
+//! ½aΔt² at communication points (`input_reconstruction = "jump"`) starts axial waves there, which the steps then resolve: else they are not over
+//! when the host reads the force, which on a cable of 30 elements in steps of 10 ms was off by 6 % on the mean.
+//!
 //! Lines that bend, mix strain measures or have nodes without mass are integrated fully implicitly at any cost. Beams
 //! have a separate integrator.
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
     ExplicitLimit, axial_accuracy_step, end_shares, explicit_limit, free_point_limit, heave_step,
-    point_accuracy_step, point_heave_step, transverse_period, transverse_step,
+    jump_accuracy_step, point_accuracy_step, point_heave_step, transverse_period, transverse_step,
 };
 use crate::model::{Line, Model, Network};
-use crate::scene::Integrator;
+use crate::scene::{Integrator, Reconstruction};
 
 /// Ratio to the transverse limit below which steps are not needed for accuracy: where axial waves are much faster
 /// than that, the line stretches quasi-statically [-].
@@ -103,9 +107,14 @@ impl Choice {
             true => least(&|line| axial_accuracy_step(line, tolerance)),
             false => least_of_points(&|point| point_accuracy_step(model, point, tolerance)),
         };
+        let of_jumps = match model.solver.input_reconstruction {
+            Reconstruction::Jump => least(&|line| jump_accuracy_step(line, tolerance)),
+            _ => f64::INFINITY,
+        };
         let accurate = accurate
             .max(AXIAL_RESOLUTION_MIN * transverse_limit)
-            .min(transverse_limit);
+            .min(transverse_limit)
+            .min(of_jumps);
         let longest = model.solver.time_step_max;
         let longest_axial = least(&heave_step)
             .min(least_of_points(&|point| point_heave_step(model, point)))

@@ -62,6 +62,12 @@ const DRAG_COURANT: f64 = 0.5;
 const DRAG_MARGIN: f64 = 0.8;
 /// Halvings of the interval in which the square of a frequency is sought [-].
 const HALVINGS: usize = 30;
+/// Axial Courant number at which a position that jumps by ½aΔt² at every communication point leaves an error of [`JUMP_ERROR`] in the tension at the
+/// next one [-]. Measured on a cable of 30 elements in communication steps of 10, 20 and 50 ms: 0.01, 0.00 and 0.2 % with 1.5, 0.3, 0.1 and 0.9 %
+/// with 2.2 to 3, and 2, 6 and 4 % with 4.4.
+const JUMP_COURANT: f64 = 1.5;
+/// Error of tension that [`JUMP_COURANT`] leaves [-].
+const JUMP_ERROR: f64 = 0.005;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
@@ -327,6 +333,13 @@ pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
     let segments = &line.segments;
     let travel = travel_time(line, &line.nodes.mass_tangent, |i| segments.in_motion(i).0);
     resolved(4.0 * travel, tolerance)
+}
+
+/// Step [s] over which a jump of a line's end leaves the segment there, for a target error of tension [-].
+pub fn jump_accuracy_step(line: &Line, tolerance: f64) -> f64 {
+    let segments = &line.segments;
+    let travel = travel_time(line, &line.nodes.mass_tangent, |i| segments.in_motion(i).0);
+    JUMP_COURANT * travel / line.segment_count() as f64 * (tolerance / JUMP_ERROR).sqrt()
 }
 
 /// Step [s] that resolves the elastic oscillation of a free point on its lines, each taken as one spring with half of its mass, for a target error of
