@@ -12,6 +12,9 @@ use crate::settings::Settings;
 /// Name that the reader gives to the one vessel of OpenFAST; the interface has coupled points in its place.
 const VESSEL: &str = "vessel";
 
+/// Lines at the top of a table of tension that MoorDyn skips.
+const HEADS: usize = 3;
+
 /// Object that the host moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Coupled {
@@ -63,10 +66,13 @@ impl Deck {
         }
         scene.vessels.retain(|vessel| vessel.name != VESSEL);
         settings.apply(&mut scene);
+        let mut remarks: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+        remarks.extend(other_laws(&scene).into_iter().map(String::from));
+        remarks.extend(rows_of_tables(&scene, path));
         Ok(Deck {
             coupled: coupled(&lists, &scene),
             stem: path.with_extension(""),
-            remarks: loaded.notes.iter().map(ToString::to_string).collect(),
+            remarks,
             lists,
             scene,
         })
@@ -137,6 +143,52 @@ fn coupled(lists: &Lists, scene: &Scene) -> Vec<Coupled> {
     };
     let points = points.map(|(index, _)| (Some(Body::Point(index)), 3));
     bodies.chain(points).map(place).collect()
+}
+
+/// Laws that differ from MoorDyn's with any settings, where a scene has them.
+fn other_laws(scene: &Scene) -> Vec<&'static str> {
+    let seabed = scene.seabed.as_ref();
+    let viscoelastic = scene
+        .line_types
+        .values()
+        .any(|kind| kind.dynamic_stiffness.is_some());
+    let laws = [
+        (
+            seabed.is_some_and(|seabed| seabed.friction.acts()),
+            "friction in a run: it holds a node until its limit; in MoorDyn it grows with the velocity up to the limit, so that a line creeps",
+        ),
+        (
+            seabed.is_some_and(|seabed| seabed.grid.is_some()),
+            "soundings: the seabed is a smooth surface through them; MoorDyn's has edges at them",
+        ),
+        (
+            viscoelastic,
+            "a viscoelastic line that would push carries nothing; in MoorDyn it pushes",
+        ),
+    ];
+    laws.into_iter().filter(|law| law.0).map(|law| law.1).collect()
+}
+
+/// Tables of tension that MoorDyn reads otherwise: it skips three rows, whatever is in them.
+fn rows_of_tables(scene: &Scene, deck: &Path) -> Vec<String> {
+    let tables = scene
+        .line_types
+        .values()
+        .filter_map(|kind| kind.tension_strain.as_ref());
+    let files = tables.filter_map(|table| table.file.as_deref());
+    let remark = |file: &str| {
+        let text = std::fs::read_to_string(deck.parent()?.join(file)).ok()?;
+        let is_row = |line: &str| {
+            line.split_whitespace()
+                .next()
+                .is_some_and(|word| word.parse::<f64>().is_ok())
+        };
+        let heads = text.lines().take_while(|line| !is_row(line)).count();
+        (heads != HEADS).then(|| {
+            format!("{file}: all of its rows are read; MoorDyn skips the first {HEADS} lines, and {heads} are above the first row here")
+        })
+    };
+    files.filter_map(remark).collect()
 }
 
 /// A deck that cannot be used, with all of its mistakes.

@@ -3,13 +3,17 @@
 //! | variable | words | default |
 //! |---|---|---|
 //! | `MOORLINE_FORCE` | `nodal`: force of the lumped end node without its inertia; `reaction`: the load on the support, with it | `nodal` |
-//! | `MOORLINE_LAWS` | `moordyn`: damping acts in compression, contact as given in the deck; `moorline`: neither | `moordyn` |
+//! | `MOORLINE_LAWS` | `moordyn`: damping acts in compression, contact as given in the deck at the nodes; `moorline`: neither | `moordyn` |
 //! | `MOORLINE_PATH` | `jump`: constant velocity from where the host is, as in MoorDyn, with a jump at the start of the step; `smooth`: a C1 path through the ends of the same steps; `predict`: the C1 path of moorline's own hosts | `jump` |
 //! | `MOORLINE_TOLERANCE` | target error of the fairlead tension by the time steps, 1e-12 to 0.5 | `0.005` |
 
-use moorline::scene::{ContactLaw, Reconstruction, Scene};
+use moorline::physics::tension_table::TensionTable;
+use moorline::scene::{ContactLaw, LineType, Reconstruction, Scene};
 
 use crate::failure::{Code, Failure, Outcome};
+
+/// Part of the shorter of two intervals next to a row of a tension table over which its slope changes [-].
+const CORNER: f64 = 1e-3;
 
 /// Meaning of the force on a coupled object.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -21,7 +25,7 @@ pub enum Force {
     Reaction,
 }
 
-/// Laws of slack lines and of contact.
+/// Laws of slack lines, of contact and of tension between the rows of a table.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Laws {
     /// Those of MoorDyn.
@@ -112,10 +116,43 @@ impl Settings {
         if self.laws == Laws::Moordyn {
             scene.solver.negative_tension = true;
             if let Some(seabed) = &mut scene.seabed {
-                seabed.contact = ContactLaw::AsGiven;
+                seabed.contact = ContactLaw::AtNodes;
             }
+            scene.line_types.values_mut().for_each(straighten);
         }
     }
+}
+
+/// Gives a line type MoorDyn's curve through its tension table, which is straight between rows, and MoorDyn's stiffness behind a damping ratio: the last
+/// tension over the last strain.
+fn straighten(line_type: &mut LineType) {
+    let Some(table) = &mut line_type.tension_strain else {
+        return;
+    };
+    let Some(&[strain, tension]) = table.rows.last().filter(|_| table.rows.len() > 1) else {
+        return; // refused when the simulation is built
+    };
+    table.rows = with_corners(&table.rows);
+    let (_, steepest) = TensionTable::through(&table.rows);
+    if let Some(ratio) = &mut line_type.damping_ratio {
+        *ratio *= (tension / strain / steepest).sqrt();
+    }
+}
+
+/// Rows of strain [-] and tension [N], with others so close to the inner ones that a smooth curve through all of them is straight but there.
+fn with_corners(rows: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut all = vec![rows[0]];
+    for three in rows.windows(3) {
+        let [before, row, after] = [three[0], three[1], three[2]];
+        let reach = CORNER * (row[0] - before[0]).min(after[0] - row[0]);
+        let towards = |other: [f64; 2]| {
+            let part = reach / (other[0] - row[0]).abs();
+            [0, 1].map(|column| row[column] + part * (other[column] - row[column]))
+        };
+        all.extend([towards(before), row, towards(after)]);
+    }
+    all.push(rows[rows.len() - 1]);
+    all
 }
 
 fn unknown(name: &str, text: &str, known: &str) -> Failure {
@@ -139,6 +176,39 @@ fn choice<T: Copy + Default>((name, given): (String, Option<String>), words: &[(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tension_is_straight_between_the_rows_of_a_table() {
+        let rows = [[0.0, 0.0], [0.01, 1e5], [0.05, 1.5e6], [0.08, 1.8e6]];
+        let (curve, scale) = TensionTable::through(&with_corners(&rows));
+        for pair in rows.windows(2) {
+            for part in [0.01, 0.3, 0.5, 0.99] {
+                let [strain, tension] =
+                    [0, 1].map(|column| pair[0][column] + part * (pair[1][column] - pair[0][column]));
+                let off = (scale * curve.at(strain).force / tension - 1.0).abs();
+                assert!(off < 1e-9, "{off} at {strain}");
+            }
+        }
+        let two = [[0.0, 0.0], [0.1, 2e6]];
+        assert_eq!(with_corners(&two), two);
+    }
+
+    #[test]
+    fn a_damping_ratio_refers_to_the_last_row_of_a_table() {
+        let mut rope = LineType {
+            mass: Some(18.0),
+            damping_ratio: Some(0.5),
+            ..LineType::default()
+        };
+        let mut table = moorline::scene::TensionStrain::from_file("rope.txt");
+        table.rows = vec![[0.0, 0.0], [0.05, 5e5], [0.1, 2.5e6]];
+        rope.tension_strain = Some(table);
+        straighten(&mut rope);
+        let rows = &rope.tension_strain.as_ref().expect("it has a table").rows;
+        let (_, steepest) = TensionTable::through(rows);
+        let of_last = rope.damping_ratio.expect("it has a ratio") * steepest.sqrt();
+        assert!((of_last / (0.5 * 2.5e7_f64.sqrt()) - 1.0).abs() < 1e-12);
+    }
 
     #[test]
     fn words_that_are_not_known_are_refused_with_those_that_are() {
