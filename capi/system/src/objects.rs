@@ -7,6 +7,7 @@ use moorline::simulation::Simulation;
 use moorline_decks::{BodyRow, Carrier, RodRow};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+use crate::deck::Coupled;
 use crate::failure::{Code, Failure, Outcome};
 use crate::system::System;
 
@@ -131,11 +132,17 @@ impl System {
     /// # Errors
     /// As [`System::body_force`].
     pub fn body_mass(&self, index: usize) -> Outcome<BodyMass> {
-        let place = self.body_state(index)?.place;
+        self.body(index)?;
+        match self.deck.coupled_body(index) {
+            Some(coupled) => self.carried_mass(coupled),
+            None => Err(Failure::missing("a fixed body has no mass matrix")),
+        }
+    }
+
+    /// Mass matrix of the end nodes that a coupled object carries, about its reference point; zero of a point.
+    pub(crate) fn carried_mass(&self, coupled: &Coupled) -> Outcome<BodyMass> {
         let simulation = self.simulation()?;
-        let Some(coupled) = self.deck.coupled_body(index) else {
-            return Err(Failure::missing("a fixed body has no mass matrix"));
-        };
+        let place = &self.place[0][coupled.first..];
         let mut sum = [[0.0; 6]; 6];
         let points = simulation.model().points.iter().enumerate();
         for (point, data) in points {

@@ -27,7 +27,7 @@ struct Body {
     version: String,
     scene: [u8; 32],
     start: Start,
-    place: [Vec<f64>; 2],
+    place: [Vec<f64>; 3],
     ahead: f64,
     snapshot: Snapshot,
 }
@@ -38,7 +38,7 @@ struct BodyView<'a> {
     version: &'a str,
     scene: [u8; 32],
     start: &'a Start,
-    place: &'a [Vec<f64>; 2],
+    place: &'a [Vec<f64>; 3],
     ahead: f64,
     snapshot: &'a Snapshot,
 }

@@ -22,6 +22,13 @@ const CLOCK_TOLERANCE: f64 = 1e-6;
 /// Words of remarks of the reader that do not hold behind this interface, which has MoorDyn's laws and files of single lines.
 const OVERRULED: [&str; 2] = ["negative_tension", "no files of single lines"];
 
+/// Keys of a scene in notes, and the variables of the environment in their place.
+const CHOICES: [(&str, &str); 3] = [
+    ("solver.tolerance", "MOORLINE_TOLERANCE"),
+    ("solver.input_reconstruction = \"interpolate\"", "MOORLINE_PATH=smooth"),
+    ("solver.input_reconstruction = \"smooth\"", "MOORLINE_PATH=smooth"),
+];
+
 /// All that determines the simulation before its first step, in addition to the scene of the deck.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Start {
@@ -53,8 +60,9 @@ pub struct System {
     pub(crate) start: Start,
     /// Check sum of the scene that was started.
     pub(crate) scene_sum: [u8; 32],
-    /// Coupled positions [m] and angles [rad] at the end of the last step, and their rates [m/s, rad/s].
-    pub(crate) place: [Vec<f64>; 2],
+    /// Coupled positions [m] and angles [rad] at the end of the last step, their rates [m/s, rad/s], and the accelerations with which these rates differ from
+    /// those of the step before [m/s², rad/s²].
+    pub(crate) place: [Vec<f64>; 3],
     /// Time of the host less that of the simulation [s].
     pub(crate) ahead: f64,
     files: Option<Files>,
@@ -87,7 +95,7 @@ impl System {
             simulation: None,
             start: Start::default(),
             scene_sum: [0; 32],
-            place: [Vec::new(), Vec::new()],
+            place: [Vec::new(), Vec::new(), Vec::new()],
             ahead: 0.0,
             files: None,
             watch: None,
@@ -116,7 +124,7 @@ impl System {
         };
         self.begin(start)?;
         self.scene_sum = check_sum(&self.deck.scene);
-        self.place = [x.to_vec(), xd.to_vec()];
+        self.place = [x.to_vec(), xd.to_vec(), vec![0.0; x.len()]];
         self.files = None;
         self.open_files()?;
         self.write_channels(0.0)?;
@@ -240,9 +248,11 @@ impl System {
             return Err(step_failure(&error));
         }
         self.has_stepped = true;
-        let [place, rate] = &mut self.place;
+        let [place, rate, acceleration] = &mut self.place;
         place.clear();
         place.extend(x.iter().zip(xd).map(|(x, v)| x + v * dt));
+        acceleration.clear();
+        acceleration.extend(xd.iter().zip(&*rate).map(|(v, before)| (v - before) / dt));
         rate.clear();
         rate.extend_from_slice(xd);
         self.log_watch();
@@ -251,15 +261,14 @@ impl System {
         Ok(Stepped { time })
     }
 
-    /// Logs notes on the present state, each once.
+    /// Logs notes on the present state, each once, with the names that choices have here.
     fn log_watch(&mut self) {
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             for note in watch.look(simulation) {
-                let hint = match note.at.starts_with("solver.") {
-                    true => "; MOORLINE_PATH and MOORLINE_TOLERANCE set these keys of the solver",
-                    false => "",
-                };
-                self.log.write(WARNING, &format!("{note}{hint}"));
+                let text = CHOICES
+                    .iter()
+                    .fold(note.to_string(), |text, (key, here)| text.replace(key, here));
+                self.log.write(WARNING, &text);
             }
         }
     }
@@ -331,7 +340,8 @@ impl System {
         }
     }
 
-    /// Writes the forces on the coupled objects [N, N m], in the order of the degrees of freedom.
+    /// Writes the forces on the coupled objects [N, N m], in the order of the degrees of freedom. As in MoorDyn, nodal forces on a body contain −M a of the
+    /// nodes that it carries, and those on a point do not.
     ///
     /// # Errors
     /// Room for another number of forces, a system that was not started, or a force that is not finite.
@@ -355,7 +365,15 @@ impl System {
             if force.iter().any(|value| !value.is_finite()) {
                 return Err(Failure::new(Code::NotFinite, "a force is not finite"));
             }
-            forces[coupled.first..coupled.first + coupled.size].copy_from_slice(force);
+            let on_coupled = &mut forces[coupled.first..coupled.first + coupled.size];
+            on_coupled.copy_from_slice(force);
+            if let (Some(Body::Vessel(_)), Force::Nodal) = (coupled.body, self.settings.force) {
+                let acceleration = &self.place[2][coupled.first..coupled.first + coupled.size];
+                let mass = self.carried_mass(coupled)?;
+                for (force, row) in on_coupled.iter_mut().zip(mass) {
+                    *force -= row.iter().zip(acceleration).map(|(m, a)| m * a).sum::<f64>();
+                }
+            }
         }
         Ok(())
     }

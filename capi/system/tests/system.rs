@@ -126,6 +126,34 @@ fn bodies_come_before_points_in_the_order_of_degrees_of_freedom() {
 }
 
 #[test]
+fn the_force_on_a_body_has_the_inertia_of_the_nodes_that_it_carries() {
+    let mut case = case(DECK);
+    let step = 0.02;
+    case.system.start(&PLACE, &[0.0; 9], false).unwrap();
+    let (mut place, mut rate) = (PLACE, [0.0; 9]);
+    for (k, faster) in [0.01, 0.03].into_iter().enumerate() {
+        rate = rate.map(|rate| rate + faster);
+        case.system.step(&place, &rate, k as f64 * step, step).unwrap();
+        place = std::array::from_fn(|axis| place[axis] + step * rate[axis]);
+    }
+    let system = &case.system;
+    let mut expected = nalgebra::Vector6::zeros();
+    for point in [2, 5] {
+        let force = nalgebra::Vector3::from(system.point_force(point).unwrap());
+        let arm = system.point_state(point).unwrap().position
+            - nalgebra::Vector3::new(place[0], place[1], place[2]);
+        let moment = arm.cross(&force);
+        expected += nalgebra::Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+    }
+    let mass = nalgebra::Matrix6::from_fn(|row, column| system.body_mass(1).unwrap()[row][column]);
+    let inertia = mass * nalgebra::Vector6::repeat(0.03 / step);
+    expected -= inertia;
+    let found = nalgebra::Vector6::from(system.body_force(1).unwrap());
+    assert!((found - expected).norm() < 1e-9 * expected.norm());
+    assert!(inertia.norm() > 1e-3 * expected.norm());
+}
+
+#[test]
 fn the_moment_on_a_body_is_that_of_its_points_forces_at_turned_arms() {
     let mut case = case(DECK);
     let mut place = PLACE;
@@ -412,7 +440,7 @@ fn samples_too_few_for_a_path_that_jumps_are_noted_with_the_variable_that_sets_t
     let log = std::fs::read_to_string(log).unwrap();
     for words in [
         "are too few for a path that jumps to each",
-        "MOORLINE_PATH and MOORLINE_TOLERANCE set these keys",
+        "MOORLINE_PATH=smooth would do",
     ] {
         assert_eq!(log.matches(words).count(), 1, "{log}");
     }
