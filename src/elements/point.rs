@@ -215,8 +215,10 @@ mod tests {
             };
             for z in HEIGHTS {
                 let residual = |state: &PointState| {
-                    let mut work = PointWork::default();
-                    work.reach = 0.05;
+                    let mut work = PointWork {
+                        reach: 0.05,
+                        ..PointWork::default()
+                    };
                     let stream = model.stream(0.0);
                     work.assemble_dynamic::<true>(free, None, state, load, (stream, None), &weights);
                     (work.residual, work.diagonal)

@@ -126,7 +126,7 @@ mod tests {
             std::slice::from_ref(&chain),
             &[section(12.0, 0.1, 1e4)],
             &[section(12.0, -30.0, 1e6)],
-            &[chain.clone(), section(5.0, -3.0, 1e5), section(4.0, 100.0, 1e7)],
+            &[chain, section(5.0, -3.0, 1e5), section(4.0, 100.0, 1e7)],
             &[section(12.0, 0.0, 1e4)],
         ];
         for sections in lines {
