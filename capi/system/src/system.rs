@@ -25,7 +25,10 @@ const OVERRULED: [&str; 2] = ["negative_tension", "no files of single lines"];
 /// Keys of a scene in notes, and the variables of the environment in their place.
 const CHOICES: [(&str, &str); 3] = [
     ("solver.tolerance", "MOORLINE_TOLERANCE"),
-    ("solver.input_reconstruction = \"interpolate\"", "MOORLINE_PATH=smooth"),
+    (
+        "solver.input_reconstruction = \"interpolate\"",
+        "MOORLINE_PATH=smooth",
+    ),
     ("solver.input_reconstruction = \"smooth\"", "MOORLINE_PATH=smooth"),
 ];
 
