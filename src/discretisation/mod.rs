@@ -25,7 +25,7 @@
 //! steps are explicit.
 //!
 //! A scene with a line that bends, or that needs fully implicit steps for another reason, keeps the integrators of the rules. Its ladder and the run that
-//! follows take steps of a length that is found in the same way, or extrapolated at second order from the last one tried. Short elements at clamps and touchdowns are common to all levels, which say less of the error then:
+//! follows take steps of a length that is found in the same way, or extrapolated at first order from the last one tried. Short elements at clamps and touchdowns are common to all levels, which say less of the error then:
 //! those with the same mesh count once, and a mesh whose e_j is small enough is compared with one more level, e_j being d(j, j+3) at least.
 //!
 //! All this is bounded, by a work of the order of a second, or of some seconds where steps are fully implicit, and the same on every machine. Beyond that the

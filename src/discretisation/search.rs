@@ -276,7 +276,7 @@ impl<'a> Search<'a> {
                 break;
             }
             if self.work + 2.0 * spent > self.work_max() {
-                self.step = Some(step / excess.sqrt()); // the integrators are of second order
+                self.step = Some(step / excess); // nodes that land leave the first order
                 break;
             }
             self.step = Some(0.5 * step);
