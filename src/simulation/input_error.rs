@@ -19,9 +19,9 @@
 //!
 //! With displacements only and 12 to 40 steps in a period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and `taut_polyester`,
 //! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities up to 26 times, where both are small. Interpolated displacements: 2.5
-//! to 17 times and 0.8 to 5 times. Jumps on other lines than cables: 1.1 to 4 times. It leaves out the resonance of a line with an axial mode at the frequency of the communication points, and the
-//! curvature of interpolated cubics with exact velocities, (ωh)²/12 of an acceleration of frequency ω: 2.3 % with 12 steps in a period, 0.2 % with 40.
-//! The error falls with h³ or faster, as m/h does.
+//! to 17 times and 0.8 to 5 times. Jumps on other lines than cables: 1.1 to 4 times. It leaves out the resonance of a line with an axial mode at the
+//! frequency of the communication points, and the curvature of interpolated cubics with exact velocities, (ωh)²/12 of an acceleration of frequency ω:
+//! 2.3 % with 12 steps in a period, 0.2 % with 40. The error falls with h³ or faster, as m/h does.
 //!
 //! Mean values decay with the time of ten periods, of the frequency √(⟨a²⟩/⟨v²⟩) with the acceleration a. The first
 //! samples, which do not determine a motion, are not counted. The fastest part of the motion dominates the measure,

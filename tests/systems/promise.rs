@@ -264,7 +264,7 @@ fn umbilical() -> Scene {
     .scene()
 }
 
-/// A lazy wave in a tank, at a scale of 1:40, whose motion is fast beside the longest step that is allowed.
+/// A lazy wave in a tank, at a scale of 1:40, whose motion is fast compared with the longest step that is allowed.
 fn tank_cable() -> Scene {
     draft(
         "water.density = 1000.0

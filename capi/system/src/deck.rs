@@ -169,7 +169,7 @@ fn other_laws(scene: &Scene) -> Vec<&'static str> {
     laws.into_iter().filter(|law| law.0).map(|law| law.1).collect()
 }
 
-/// Tables of tension that MoorDyn reads otherwise: it skips three rows, whatever is in them.
+/// Remarks on tables of tension that MoorDyn reads otherwise: it skips three lines without reading them.
 fn rows_of_tables(scene: &Scene, deck: &Path) -> Vec<String> {
     let tables = scene
         .line_types

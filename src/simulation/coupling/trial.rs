@@ -1,4 +1,4 @@
-//! Steps that are repeated, or made in advance, along a path whose end is moved moved.
+//! Steps that are repeated, or made in advance, along a path whose end is moved.
 
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
