@@ -53,6 +53,8 @@ const SAMPLES_MIN: usize = 8;
 const NEGLIGIBLE: f64 = 1e-7;
 /// Standard deviation of tension over its mean, below which it does not vary [-].
 const CONSTANT: f64 = 1e-6;
+/// Part of the tolerance that the inputs may take [-]: the mesh takes 0.8, and squares of the errors add.
+const PART: f64 = 0.6;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;
 
@@ -284,12 +286,12 @@ impl Simulation {
     /// Warning on a host's inputs where the path between them costs more than the tolerance allows.
     pub fn input_warning(&self) -> Option<String> {
         let record = &self.snapshot.input_record;
-        let (error, tolerance) = (self.input_error(), self.model.solver.tolerance);
-        if error <= tolerance || record.periods < PERIODS_MIN {
+        let (error, allowed) = (self.input_error(), PART * self.model.solver.tolerance);
+        if error <= allowed || record.periods < PERIODS_MIN {
             return None;
         }
         let points = TAU / (record.frequency() * record.step);
-        let step = record.step * (tolerance / error).powf(1.0 / ORDER);
+        let step = record.step * (allowed / error).powf(1.0 / ORDER);
         let (fault, cure) = match self.model.solver.input_reconstruction {
             Reconstruction::Jump => (
                 "a path that jumps to each",
@@ -307,9 +309,9 @@ impl Simulation {
         let time = self.time();
         Some(format!(
             "at t = {time:.6} s, about {points:.0} communication steps a period of the motion are too few for {fault}: tension is off \
-             by about {:.2} % of its variation, {:.2} % are allowed (solver.tolerance); communication steps of {} s or {cure} would do; said once",
+             by about {:.2} % of its variation, {:.2} % are allowed next to the error of the mesh (solver.tolerance); communication steps of {} s or {cure} would do; said once",
             100.0 * error,
-            100.0 * tolerance,
+            100.0 * allowed,
             rounded_down(step),
         ))
     }

@@ -127,6 +127,9 @@ fn hosted(model: &Simulation, period: f64, points: f64, velocities: bool) -> Hos
     }
 }
 
+/// Error of inputs above which there is a warning [-]: 0.6 of the tolerance of 2 %.
+const ALLOWED: f64 = 0.012;
+
 /// Scenes with the shortest period of their motion [s].
 const SAMPLED: [(&str, f64); 3] = [
     ("lindahl_fast", 1.25),
@@ -159,7 +162,7 @@ fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
                 ratio > 0.9 && ratio < 12.0,
                 "{what}: {error} estimated {estimate}"
             );
-            assert_eq!(warning.is_some(), estimate > 0.02, "{what}: {estimate}");
+            assert_eq!(warning.is_some(), estimate > ALLOWED, "{what}: {estimate}");
         }
     }
 }
@@ -172,7 +175,7 @@ fn a_host_that_samples_finely_or_gives_velocities_is_not_warned() {
             let Hosted {
                 estimate, warning, ..
             } = hosted(&model, period, points, velocities);
-            assert!(estimate < 0.02, "{name}, {points} points: {estimate}");
+            assert!(estimate < ALLOWED, "{name}, {points} points: {estimate}");
             assert_eq!(warning, None, "{name}");
         }
     }
@@ -189,7 +192,7 @@ fn the_estimated_error_of_interpolated_displacements_is_a_bound_of_that_of_tensi
             let (error, estimate) = (hosted.error, hosted.estimate);
             let what = format!("{name}, {points} points: {error} estimated {estimate}");
             assert!(estimate > 0.8 * error && estimate < 20.0 * error, "{what}");
-            assert_eq!(hosted.warning.is_some(), estimate > 0.02, "{what}");
+            assert_eq!(hosted.warning.is_some(), estimate > ALLOWED, "{what}");
             if let Some(text) = hosted.warning {
                 assert_says(&text, &["too few for the velocities derived from them"]);
                 assert!(!text.contains("input_reconstruction"), "{text}");
