@@ -70,7 +70,7 @@ impl Bearing {
     #[inline(always)]
     fn of_segment(
         k: ContactCoefficients,
-        parts: &[Part],
+        parts: &[Part; 4],
         [low, high]: [Stand; 2],
         reach: f64,
     ) -> Option<[Bearing; 2]> {

@@ -50,7 +50,7 @@ impl Contact {
     }
 
     /// Parts of a segment at which contact acts.
-    pub fn parts(&self) -> &'static [Part] {
+    pub fn parts(&self) -> &'static [Part; 4] {
         match self.at_nodes {
             true => &ENDS,
             false => &PARTS,
@@ -124,9 +124,8 @@ impl Contact {
             return 0.0;
         }
         let [near, far] = [segment, segment + 1].map(|node| self.stand(node, place[node]).0);
-        let parts = self.parts();
         let carried = |part: &Part| (stiffness * part.between(near, far) / weight).clamp(0.0, 1.0);
-        parts.iter().map(carried).sum::<f64>() / parts.len() as f64
+        0.25 * self.parts().iter().map(carried).sum::<f64>()
     }
 
     /// z of the seabed under a place [m].

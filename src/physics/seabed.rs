@@ -42,20 +42,14 @@ pub struct Part {
 }
 
 /// Parts of a segment at which the contact is evaluated.
-pub const PARTS: [Part; 4] = [
-    part(0.125, 0.25),
-    part(0.375, 0.25),
-    part(0.625, 0.25),
-    part(0.875, 0.25),
-];
-/// The nodes of a segment, at which contact acts alone in other codes; each has half of the segment.
-pub const ENDS: [Part; 2] = [part(0.0, 0.5), part(1.0, 0.5)];
+pub const PARTS: [Part; 4] = [part(0.125), part(0.375), part(0.625), part(0.875)];
+/// The nodes of a segment, at which contact acts alone in other codes: each twice, as the end of two parts.
+pub const ENDS: [Part; 4] = [part(0.0), part(0.0), part(1.0), part(1.0)];
 
-/// Part of a segment with this share of its length [-].
-const fn part(at: f64, share: f64) -> Part {
+const fn part(at: f64) -> Part {
     Part {
         at,
-        shares: [share * (1.0 - at), share * at],
+        shares: [0.25 * (1.0 - at), 0.25 * at],
     }
 }
 
@@ -148,7 +142,7 @@ mod tests {
             |parts: &[Part]| [0, 1].map(|side| parts.iter().map(|part| part.shares[side]).sum::<f64>());
         assert_eq!(nodes(&PARTS), [0.5, 0.5]);
         assert_eq!(nodes(&ENDS), [0.5, 0.5]);
-        assert_eq!(ENDS.map(|part| part.between(2.0, 3.0)), [2.0, 3.0]);
+        assert_eq!(ENDS.map(|part| part.between(2.0, 3.0)), [2.0, 2.0, 3.0, 3.0]);
     }
 
     #[test]

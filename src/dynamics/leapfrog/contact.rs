@@ -23,7 +23,7 @@
 use super::layout::{ContactArrays, Layout, SeabedArrays};
 use super::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
-use crate::physics::seabed::{ENDS, PARTS, Part};
+use crate::physics::seabed::Part;
 
 /// Contact of nodes with the seabed in a step.
 #[derive(Debug, Clone, Copy)]
@@ -107,9 +107,9 @@ impl ContactRule {
         }
     }
 
-    /// Forces on the nodes of segments between two depths, contact being at `PLACES` parts of a segment.
+    /// Forces on the nodes of segments between two depths, with contact at four parts of a segment.
     #[inline(always)]
-    fn press<const PLACES: usize>(&self, parts: &[Part; PLACES], [low, high]: [Depth; 2]) -> Pressed {
+    fn press(&self, parts: &[Part; 4], [low, high]: [Depth; 2]) -> Pressed {
         let zero = Lanes::splat(0.0);
         let after = low.penetration - self.ahead * low.rise;
         let before = low.penetration + self.behind * low.rise;
@@ -129,7 +129,7 @@ impl ContactRule {
             resistance = resistance + stiff;
             resistance_high = resistance_high + at * stiff;
         }
-        let share = Lanes::splat(1.0 / PLACES as f64);
+        let share = Lanes::splat(0.25);
         Pressed {
             force: [share * (force - force_high), share * force_high],
             resistance: [share * (resistance - resistance_high), share * resistance_high],
@@ -151,19 +151,19 @@ impl Layout {
             stiffness: contact.stiffness.rows(last),
             damping: contact.damping.rows(last),
             yields: contact.yields.rows(last),
+            parts: contact.parts,
             step,
         };
         let found = [contact.spring.rows_mut(last), contact.resistance.rows_mut(last)];
-        let at_nodes = contact.at_nodes;
         match &mut contact.seabed {
-            None => segments.press(at_nodes, found, |at| Depth {
+            None => segments.press(found, |at| Depth {
                 penetration: level[at] - position[at].z,
                 rise: velocity[at].z,
             }),
             Some(seabed) => {
                 seabed.find_depths(level, [position, velocity], step);
                 let (penetration, rise) = (seabed.penetration.rows(last), seabed.rise.rows(last));
-                segments.press(at_nodes, found, |at| Depth {
+                segments.press(found, |at| Depth {
                     penetration: penetration[at],
                     rise: rise[at],
                 });
@@ -177,35 +177,23 @@ struct SegmentRows<'a> {
     stiffness: &'a [Lanes],
     damping: &'a [Lanes],
     yields: &'a [Lanes],
+    /// Parts of a segment at which contact acts.
+    parts: &'static [Part; 4],
     step: Step,
 }
 
 impl SegmentRows<'_> {
-    /// Writes spring and resistance of all rows of nodes, from the depths of rows; contact is along the segments, or at the nodes alone.
+    /// Writes spring and resistance of all rows of nodes, from the depths of rows.
     #[inline(always)]
-    fn press(&self, at_nodes: bool, found: [&mut [Lanes]; 2], depth: impl Fn(usize) -> Depth) {
-        match at_nodes {
-            true => self.press_at(&ENDS, found, depth),
-            false => self.press_at(&PARTS, found, depth),
-        }
-    }
-
-    /// The same with contact at parts of a segment.
-    #[inline(always)]
-    fn press_at<const PLACES: usize>(
-        &self,
-        parts: &[Part; PLACES],
-        [spring, resistance]: [&mut [Lanes]; 2],
-        depth: impl Fn(usize) -> Depth,
-    ) {
+    fn press(&self, [spring, resistance]: [&mut [Lanes]; 2], depth: impl Fn(usize) -> Depth) {
         let (zero, last) = (Lanes::splat(0.0), spring.len() - 2);
-        let before = self.press_row(parts, last, [depth(last), depth(last + 1)]);
+        let before = self.press_row(last, [depth(last), depth(last + 1)]);
         let [mut force_before, mut resistance_before] =
             [before.force[1], before.resistance[1]].map(|of| of.moved_up_after(zero));
         let mut low = depth(1);
         for at in 1..=last {
             let high = depth(at + 1);
-            let pressed = self.press_row(parts, at, [low, high]);
+            let pressed = self.press_row(at, [low, high]);
             let total = pressed.resistance[0] + resistance_before;
             spring[at] = pressed.force[0] + force_before + total * low.rise;
             resistance[at] = total;
@@ -216,12 +204,7 @@ impl SegmentRows<'_> {
 
     /// Forces on the nodes of a row of segments.
     #[inline(always)]
-    fn press_row<const PLACES: usize>(
-        &self,
-        parts: &[Part; PLACES],
-        at: usize,
-        [low, high]: [Depth; 2],
-    ) -> Pressed {
+    fn press_row(&self, at: usize, [low, high]: [Depth; 2]) -> Pressed {
         let lands = |depth: Depth| depth.penetration - Lanes::splat(self.step.drift) * depth.rise;
         let zero = Lanes::splat(0.0);
         if !lands(low).max(lands(high)).any_positive() {
@@ -231,7 +214,7 @@ impl SegmentRows<'_> {
             };
         }
         let law = [self.stiffness[at], self.damping[at]];
-        ContactRule::new(law, self.yields[at], self.step).press(parts, [low, high])
+        ContactRule::new(law, self.yields[at], self.step).press(self.parts, [low, high])
     }
 }
 
@@ -276,6 +259,7 @@ impl SeabedArrays {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::seabed::{ENDS, PARTS};
     use approx::assert_relative_eq;
 
     const STEP: Step = Step {

@@ -8,6 +8,7 @@ use crate::math::striping::{Column, Field, Striping};
 use crate::model::{Contact, Seabed};
 use crate::physics::friction::Friction;
 use crate::physics::ground::Ground;
+use crate::physics::seabed::Part;
 
 /// Contact with the seabed.
 #[derive(Debug, Clone)]
@@ -24,8 +25,8 @@ pub struct ContactArrays {
     pub spring: Column,
     /// Loss of that force with the velocity at which a node leaves the seabed [N s/m].
     pub resistance: Column,
-    /// True if contact acts at the nodes alone.
-    pub at_nodes: bool,
+    /// Parts of a segment at which contact acts.
+    pub parts: &'static [Part; 4],
     /// The seabed where it has a slope, soundings or friction.
     pub seabed: Option<SeabedArrays>,
 }
@@ -67,7 +68,7 @@ impl ContactArrays {
             yields: keep(&contact.mass.iter().map(|mass| 1.0 / mass).collect::<Vec<_>>()),
             spring: Column::new(striping, 0.0),
             resistance: Column::new(striping, 0.0),
-            at_nodes: contact.at_nodes,
+            parts: contact.parts(),
         }
     }
 }
