@@ -24,14 +24,15 @@
 //! longest allowed down, as long as that is cheaper, and taken with the first step that keeps the error against the finest mesh; else
 //! steps are explicit.
 //!
-//! A scene with a line that bends, or that needs fully implicit steps for another reason, keeps the integrators of the rules. Its ladder and the run that
-//! follows take steps of a length that is found in the same way, or extrapolated at first order from the last one tried. Short elements at clamps and touchdowns are common to all levels, which say less of the error then:
-//! those with the same mesh count once, and a mesh whose e_j is small enough is compared with one more level, e_j being d(j, j+3) at least.
+//! Where a line bends, or needs fully implicit steps for another reason, all networks are run with the integrators that the rules choose. The step of
+//! the trials and of the run is found in the same way, or extrapolated at first order from the last one tried. Short elements at clamps and touchdowns
+//! are the same on several levels, whose runs then say little about the error: levels with the same mesh count once, and a mesh whose e_j is small enough
+//! is compared with one more level, with e_j at least d(j, j+3).
 //!
-//! All this is bounded, by a work of the order of a second, or of some seconds where steps are fully implicit, and the same on every machine. Beyond that the
-//! number of elements is extrapolated from the last one tried, with an error that falls as 1/n. A scene whose motion is not known, whose elements are given or
-//! that needs another integrator, such as one with beams, keeps the rule that elements follow from the tolerance alone. Beyond the elements required by
-//! motion or rule, elements are added until the tension at rest is within the tolerance of the closed-form catenary, where there is one to compare with.
+//! The trials are bounded by their work, about a second of processor time, or a few seconds where steps are fully implicit; the bound is the same on every
+//! machine. Beyond it, the number of elements is extrapolated from the last one tried, with an error that falls as 1/n. Where the motion is not known, the
+//! elements are given or another integrator is needed, as by beams, the elements follow from the tolerance alone. In addition, elements are added until the
+//! tension at rest is within the tolerance of the closed-form catenary, where there is one to compare with.
 
 mod expense;
 mod history;

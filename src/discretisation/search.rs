@@ -21,6 +21,8 @@ const FINER: f64 = 0.25;
 const COARSE: usize = 7;
 /// Part of the cost below which another step is adopted [-].
 const WORTH: f64 = 0.8;
+/// Greatest ratio of errors over which a step is extrapolated [-].
+const EXCESS_MAX: f64 = 100.0;
 /// Halvings of the longest axial-implicit step that are tried [-].
 const HALVINGS: u32 = 8;
 /// Periods of the slowest sine that are tried, after the ramp [-].
@@ -41,7 +43,7 @@ pub(super) struct Search<'a> {
     from: usize,
     /// Results of every network.
     ladders: Vec<Ladder>,
-    /// True if a line needs fully implicit steps, as one that bends does: all networks then take the integrators of the rules.
+    /// True if a line needs fully implicit steps, for example because it bends. All networks are then run with the integrators that the rules choose.
     implicit: bool,
     /// Axial-implicit or fully implicit step whose error is small [s]; none where steps follow from the scene's integrator.
     step: Option<f64>,
@@ -57,7 +59,7 @@ struct Ladder {
     trials: Vec<Trial>,
     /// True if a mesh that passes is compared with one more level.
     confirms: bool,
-    /// True if the error of the last trial is small enough, which a run on the next level may yet refute.
+    /// True if the error of the last trial is small enough. A run on the next level may still reject it.
     passed: bool,
     /// Elements whose error is small enough, once there are such [-].
     found: Option<usize>,
@@ -105,8 +107,8 @@ impl Ladder {
         }
     }
 
-    /// Adds a finer run, and confirms the mesh that passed before it, or assesses the mesh of half its elements. A run on the mesh of the one before says
-    /// nothing: short elements at clamps, touchdowns and borders of sections may leave no room for fewer.
+    /// Adds a finer run, and confirms the mesh that passed before it, or assesses the mesh of half its elements. A run on the same mesh as
+    /// the one before adds no information: short elements at clamps, touchdowns and ends of sections can make the meshes of several levels equal.
     fn climb(&mut self, run: Run, aim: f64) {
         if self.runs.last().is_some_and(|last| last.lengths == run.lengths) {
             return;
@@ -276,7 +278,8 @@ impl<'a> Search<'a> {
                 break;
             }
             if self.work + 2.0 * spent > self.work_max() {
-                self.step = Some(step / excess); // nodes that land leave the first order
+                let part = 1.0 / excess.min(EXCESS_MAX);
+                self.step = Some(part * step); // nodes that land leave the first order
                 break;
             }
             self.step = Some(0.5 * step);
@@ -320,8 +323,8 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Error of an implicit step [s] over the part of the tolerance that it may have, on the meshes found, or else on the last ones assessed [-]; 0 where
-    /// it cannot be determined.
+    /// Ratio of the error of an implicit step [s] to the part of the tolerance that it may take [-], on the meshes found, or else on the last ones assessed;
+    /// 0 where it cannot be determined.
     fn excess(&mut self, step: f64) -> f64 {
         let assessed = |ladder: &Ladder| ladder.trials.last().map(|trial| trial.elements);
         let elements = self

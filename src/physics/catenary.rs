@@ -91,6 +91,16 @@ pub struct Section {
     pub axial_stiffness: f64,
 }
 
+/// Section of a length [m], a weight [N/m] and a stiffness EA [N].
+#[cfg(test)]
+fn section(length: f64, weight: f64, axial_stiffness: f64) -> Section {
+    Section {
+        length,
+        weight,
+        axial_stiffness,
+    }
+}
+
 /// A flat seabed that the line may lie on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlatSeabed {

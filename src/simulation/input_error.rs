@@ -294,7 +294,7 @@ impl Simulation {
         let step = record.step * (allowed / error).powf(1.0 / ORDER);
         let (fault, cure) = match self.model.solver.input_reconstruction {
             Reconstruction::Jump => (
-                "a path that jumps to each",
+                "a path that jumps at each of them",
                 "solver.input_reconstruction = \"smooth\"",
             ),
             Reconstruction::Interpolate => (

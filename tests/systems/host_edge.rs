@@ -213,7 +213,10 @@ fn a_path_that_jumps_has_an_estimated_error_with_a_smooth_path_as_its_cure() {
             "{name}: {error} estimated {estimate}"
         );
         let cure = "or solver.input_reconstruction = \"smooth\" would do";
-        assert_says(&hosted.warning.unwrap(), &["a path that jumps to each", cure]);
+        assert_says(
+            &hosted.warning.unwrap(),
+            &["a path that jumps at each of them", cure],
+        );
     }
 }
 

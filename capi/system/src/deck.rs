@@ -145,7 +145,7 @@ fn coupled(lists: &Lists, scene: &Scene) -> Vec<Coupled> {
     bodies.chain(points).map(place).collect()
 }
 
-/// Laws that differ from MoorDyn's with any settings, where a scene has them.
+/// Remarks on the laws of a scene that differ from MoorDyn's under any settings.
 fn other_laws(scene: &Scene) -> Vec<&'static str> {
     let seabed = scene.seabed.as_ref();
     let viscoelastic = scene
@@ -155,15 +155,15 @@ fn other_laws(scene: &Scene) -> Vec<&'static str> {
     let laws = [
         (
             seabed.is_some_and(|seabed| seabed.friction.acts()),
-            "friction in a run: it holds a node until its limit; in MoorDyn it grows with the velocity up to the limit, so that a line creeps",
+            "friction during a run holds a node up to its limit; in MoorDyn it grows with the velocity up to the limit, and lines drift slowly",
         ),
         (
             seabed.is_some_and(|seabed| seabed.grid.is_some()),
-            "soundings: the seabed is a smooth surface through them; MoorDyn's has edges at them",
+            "the seabed is a smooth surface through the soundings; MoorDyn's has edges there",
         ),
         (
             viscoelastic,
-            "a viscoelastic line that would push carries nothing; in MoorDyn it pushes",
+            "a viscoelastic line carries no compression; in MoorDyn it does",
         ),
     ];
     laws.into_iter().filter(|law| law.0).map(|law| law.1).collect()
@@ -185,7 +185,7 @@ fn rows_of_tables(scene: &Scene, deck: &Path) -> Vec<String> {
         };
         let heads = text.lines().take_while(|line| !is_row(line)).count();
         (heads != HEADS).then(|| {
-            format!("{file}: all of its rows are read; MoorDyn skips the first {HEADS} lines, and {heads} are above the first row here")
+            format!("{file}: all rows are read; MoorDyn skips the first {HEADS} lines, but {heads} lines precede the first row here")
         })
     };
     files.filter_map(remark).collect()

@@ -106,8 +106,8 @@ impl System {
         };
         let part = |values: &[f64]| std::array::from_fn(|axis| values[coupled.first + axis]);
         Ok(BodyState {
-            place: part(&self.place[0]),
-            rate: part(&self.place[1]),
+            place: part(&self.motion[0]),
+            rate: part(&self.motion[1]),
         })
     }
 
@@ -139,10 +139,10 @@ impl System {
         }
     }
 
-    /// Mass matrix of the end nodes that a coupled object carries, about its reference point; zero of a point.
+    /// Mass matrix of the end nodes that a coupled object carries, about its reference point; zero for a point.
     pub(crate) fn carried_mass(&self, coupled: &Coupled) -> Outcome<BodyMass> {
         let simulation = self.simulation()?;
-        let place = &self.place[0][coupled.first..];
+        let place = &self.motion[0][coupled.first..];
         let mut sum = [[0.0; 6]; 6];
         let points = simulation.model().points.iter().enumerate();
         for (point, data) in points {

@@ -27,7 +27,7 @@ struct Body {
     version: String,
     scene: [u8; 32],
     start: Start,
-    place: [Vec<f64>; 3],
+    motion: [Vec<f64>; 3],
     ahead: f64,
     snapshot: Snapshot,
 }
@@ -38,7 +38,7 @@ struct BodyView<'a> {
     version: &'a str,
     scene: [u8; 32],
     start: &'a Start,
-    place: &'a [Vec<f64>; 3],
+    motion: &'a [Vec<f64>; 3],
     ahead: f64,
     snapshot: &'a Snapshot,
 }
@@ -86,7 +86,7 @@ impl System {
             version: env!("CARGO_PKG_VERSION"),
             scene: self.scene_sum,
             start: &self.start,
-            place: &self.place,
+            motion: &self.motion,
             ahead: self.ahead,
             snapshot: self.simulation()?.snapshot(),
         };
@@ -138,7 +138,7 @@ impl System {
                 watch.resume(simulation);
             }
         }
-        self.place = body.place;
+        self.motion = body.motion;
         self.ahead = body.ahead;
         self.has_stepped = true;
         self.open_files()

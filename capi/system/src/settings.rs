@@ -12,7 +12,7 @@ use moorline::scene::{ContactLaw, LineType, Reconstruction, Scene};
 
 use crate::failure::{Code, Failure, Outcome};
 
-/// Part of the shorter of two intervals next to a row of a tension table over which its slope changes [-].
+/// Half the width of a corner of the tension curve, over the shorter of the two intervals next to it [-].
 const CORNER: f64 = 1e-3;
 
 /// Meaning of the force on a coupled object.
@@ -123,7 +123,7 @@ impl Settings {
     }
 }
 
-/// Gives a line type MoorDyn's curve through its tension table, which is straight between rows, and MoorDyn's stiffness behind a damping ratio: the last
+/// Makes the tension of a line type straight between the rows of its table, as in MoorDyn, and bases its damping ratio on MoorDyn's stiffness: the last
 /// tension over the last strain.
 fn straighten(line_type: &mut LineType) {
     let Some(table) = &mut line_type.tension_strain else {
@@ -139,7 +139,7 @@ fn straighten(line_type: &mut LineType) {
     }
 }
 
-/// Rows of strain [-] and tension [N], with others so close to the inner ones that a smooth curve through all of them is straight but there.
+/// Rows of strain [-] and tension [N] with two more next to each inner one, so that the smooth curve through all of them is straight except at corners.
 fn with_corners(rows: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut all = vec![rows[0]];
     for three in rows.windows(3) {

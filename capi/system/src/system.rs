@@ -22,7 +22,7 @@ const CLOCK_TOLERANCE: f64 = 1e-6;
 /// Words of remarks of the reader that do not hold behind this interface, which has MoorDyn's laws and files of single lines.
 const OVERRULED: [&str; 2] = ["negative_tension", "no files of single lines"];
 
-/// Keys of a scene in notes, and the variables of the environment in their place.
+/// Scene keys that occur in notes, and the environment variables that replace them here.
 const CHOICES: [(&str, &str); 3] = [
     ("solver.tolerance", "MOORLINE_TOLERANCE"),
     (
@@ -65,7 +65,7 @@ pub struct System {
     pub(crate) scene_sum: [u8; 32],
     /// Coupled positions [m] and angles [rad] at the end of the last step, their rates [m/s, rad/s], and the accelerations with which these rates differ from
     /// those of the step before [m/s², rad/s²].
-    pub(crate) place: [Vec<f64>; 3],
+    pub(crate) motion: [Vec<f64>; 3],
     /// Time of the host less that of the simulation [s].
     pub(crate) ahead: f64,
     files: Option<Files>,
@@ -98,7 +98,7 @@ impl System {
             simulation: None,
             start: Start::default(),
             scene_sum: [0; 32],
-            place: [Vec::new(), Vec::new(), Vec::new()],
+            motion: [Vec::new(), Vec::new(), Vec::new()],
             ahead: 0.0,
             files: None,
             watch: None,
@@ -127,7 +127,7 @@ impl System {
         };
         self.begin(start)?;
         self.scene_sum = check_sum(&self.deck.scene);
-        self.place = [x.to_vec(), xd.to_vec(), vec![0.0; x.len()]];
+        self.motion = [x.to_vec(), xd.to_vec(), vec![0.0; x.len()]];
         self.files = None;
         self.open_files()?;
         self.write_channels(0.0)?;
@@ -251,7 +251,7 @@ impl System {
             return Err(step_failure(&error));
         }
         self.has_stepped = true;
-        let [place, rate, acceleration] = &mut self.place;
+        let [place, rate, acceleration] = &mut self.motion;
         place.clear();
         place.extend(x.iter().zip(xd).map(|(x, v)| x + v * dt));
         acceleration.clear();
@@ -264,7 +264,7 @@ impl System {
         Ok(Stepped { time })
     }
 
-    /// Logs notes on the present state, each once, with the names that choices have here.
+    /// Logs notes on the present state, each once, with environment variables in place of scene keys.
     fn log_watch(&mut self) {
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             for note in watch.look(simulation) {
@@ -371,7 +371,7 @@ impl System {
             let on_coupled = &mut forces[coupled.first..coupled.first + coupled.size];
             on_coupled.copy_from_slice(force);
             if let (Some(Body::Vessel(_)), Force::Nodal) = (coupled.body, self.settings.force) {
-                let acceleration = &self.place[2][coupled.first..coupled.first + coupled.size];
+                let acceleration = &self.motion[2][coupled.first..coupled.first + coupled.size];
                 let mass = self.carried_mass(coupled)?;
                 for (force, row) in on_coupled.iter_mut().zip(mass) {
                     *force -= row.iter().zip(acceleration).map(|(m, a)| m * a).sum::<f64>();

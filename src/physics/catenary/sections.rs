@@ -529,16 +529,8 @@ impl Sections {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{FlatSeabed, Section, solve};
+    use super::super::{FlatSeabed, section, solve};
     use super::{Sections, Shape};
-
-    fn section(length: f64, weight: f64, axial_stiffness: f64) -> Section {
-        Section {
-            length,
-            weight,
-            axial_stiffness,
-        }
-    }
 
     #[test]
     fn the_march_agrees_with_the_uniform_line_on_every_kind_of_it() {

@@ -103,17 +103,9 @@ fn hanging_vertically(sections: &[Section], mut vertical: f64) -> Matrix2<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::solve as solve_line;
+    use super::super::{section, solve as solve_line};
     use super::{Catenary, Section, in_flight};
     use nalgebra::Matrix2;
-
-    fn section(length: f64, weight: f64, axial_stiffness: f64) -> Section {
-        Section {
-            length,
-            weight,
-            axial_stiffness,
-        }
-    }
 
     fn solve(sections: &[Section], span: f64, rise: f64) -> Catenary {
         solve_line(sections, span, rise, None).unwrap()
