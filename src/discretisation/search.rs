@@ -9,8 +9,6 @@ use crate::simulation::{Error, Simulation};
 
 /// Elements of a line alone that are tried [-].
 const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320];
-/// Part of the tolerance for an estimated error where the elements are extrapolated and the steps follow a rule [-].
-const AIM_UNTRIED: f64 = 0.7;
 /// Explicit steps of an element that all trials may take [-].
 const WORK_MAX: f64 = 1e8;
 /// The same where steps are fully implicit [-].
@@ -178,7 +176,7 @@ impl Ladder {
             (Some(_), Some(trial)) => (trial.elements, trial.error),
             (Some(_), None) => (last.elements, last.error),
             (None, _) => {
-                let wanted = last.elements as f64 * last.error / (AIM_UNTRIED * tolerance);
+                let wanted = last.elements as f64 * last.error / (AIM * tolerance);
                 let wanted = wanted.min(ELEMENTS_MAX);
                 let error = last.error * last.elements as f64 / wanted;
                 (wanted.ceil() as usize, error)
