@@ -94,10 +94,11 @@ def rope(stiffness, damping):
     return coupled(decks.taut()).replace("2.0E7 -0.5", f"{stiffness} {damping}")
 
 
-def light_cable():
+def light_cable(bending_stiffness=0, depth=100):
     """A short, stiff cable that slaps on a soft seabed: its axial waves are 5 times as fast as its steps are long."""
-    return decks.deck("a cable", ["cable 0.2 80 7.0E8 -0.8 0 1.2 1.0 0.1 0.0"], ["1 Fixed 150 0 -100 0 0 0 0", "2 Coupled 0 0 -10 0 0 0 0"],
-                      ["1 cable 1 2 200 30 -"], {"WtrDpth": 100.0, "kBot": 3.0e4, "cBot": 0.0})
+    return decks.deck("a cable", [f"cable 0.2 80 7.0E8 -0.8 {bending_stiffness} 1.2 1.0 0.1 0.0"],
+                      ["1 Fixed 150 0 -100 0 0 0 0", "2 Coupled 0 0 -10 0 0 0 0"],
+                      ["1 cable 1 2 200 30 -"], {"WtrDpth": depth, "kBot": 3.0e4, "cBot": 0.0})
 
 
 def bridle():
@@ -130,6 +131,7 @@ def harmonic(base, parts, duration=20.0):
 
 SWAY = harmonic([5.2, 0, -70], {0: (5, 12, 0), 2: (2, 9, 0)})
 ROPE = harmonic([10, 0, -10], {0: (2, 12, 0), 2: (1, 9, 0)})
+FLOAT = harmonic([0, 0, -10], {0: (2, 12, 0), 1: (1, 15, 0.3), 2: (1.5, 9, 0)})
 SIX = harmonic([0] * 6, {0: (3, 12, 0), 1: (1, 15, 0), 2: (1.5, 9, 0), 3: (0.05, 10, 0), 4: (0.06, 12, 0), 5: (0.03, 20, 0)})
 
 
@@ -164,8 +166,9 @@ CASES = [
     ("taut, tension from a table", rope("rope.txt", "-0.5"), "hydrochrono", ROPE, 0.02, 40, 0.004, 20, 0.005),
     ("taut, viscoelastic", rope("1.2E7|2.4E7", "5.0E7|2.0E6"), "hydrochrono", ROPE, 0.02, 40, 0.002, 20, 0.005),
     ("oc3 in waves and a current", sea(), "hydrochrono", harmonic([5.2, 0, -10], {0: (3, 12, 0), 2: (1.5, 9, 0)}), 0.02, 40, 0.002, 20, 0.005),
-    ("cable on a soft seabed", light_cable(), "hydrochrono", harmonic([0, 0, -10], {0: (2, 12, 0), 1: (1, 15, 0.3), 2: (1.5, 9, 0)}),
-     0.02, 40, 0.0005, 15, 0.005),
+    ("cable on a soft seabed", light_cable(), "hydrochrono", FLOAT, 0.02, 40, 0.0005, 15, 0.005),
+    ("cable that bends on a soft seabed", light_cable(1.0e4), "hydrochrono", FLOAT, 0.02, 40, 0.0005, 15, 0.005),
+    ("cable that bends and hangs", light_cable(1.0e5, 300), "hydrochrono", FLOAT, 0.02, 40, 0.0005, 15, 0.001),
     ("bridle", bridle(), "hydrochrono", harmonic([5, 8, -70, 5, -8, -70], {axis: (3, 12, 0) for axis in (0, 3)}), 0.02, 40, 0.001, 20, 0.005),
     ("clump", coupled(decks.clump()), "hydrochrono", harmonic([5, 0, -10], {0: (3, 12, 0), 2: (1.5, 9, 0)}), 0.02, 40, 0.002, 20, 0.005),
     ("oc4 on a body", on_body(decks.oc4()), "wec_sim", SIX, 0.02, 60, 0.002, 20, 0.002),

@@ -123,7 +123,7 @@ impl Choice {
         let steps = Steps {
             explicit: explicit.step.min(longest),
             axial: accurate.min(longest_axial),
-            implicit: implicit_step(model, network),
+            implicit: implicit_step(model, network).min(of_jumps),
         };
         let integrator = match asked {
             Integrator::Auto => choose(model, network, &steps, tension),
@@ -168,7 +168,7 @@ struct Steps {
     implicit: f64,
 }
 
-/// Step of generalised-α [s]: one that resolves the free points, where generalised-α is a choice.
+/// Step of generalised-α without jumps of the ends [s]: one that resolves the free points, where generalised-α is a choice.
 fn implicit_step(model: &Model, network: &Network) -> f64 {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
     let choosy = lines.all(Line::serves_leapfrog);

@@ -463,6 +463,9 @@ fn build_line(
         contact.at_nodes = false; // beams have contact along their elements
     }
     built.bending = line_bending(index, line, &parts, &built)?;
+    if let Some(bending) = built.bending.as_mut().filter(|_| scene.solver.negative_tension) {
+        bending.compression_max.fill(0.0); // the springs of other codes carry none
+    }
     if scene.meets_surface_between(line, names.ends(line)) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }

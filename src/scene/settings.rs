@@ -22,7 +22,7 @@ table! {
         pub elements: Option<usize> => within(1.0, ELEMENTS_MAX).elsewhere(&["segments"]),
         /// Time integrator; `dynamics` is another name of the key.
         pub integrator: Integrator = Integrator::Auto => PLAIN.or_called("dynamics"),
-        /// True if axial damping acts in compression too, as in other codes, so that tension may be negative.
+        /// True if axial damping acts in compression too, so that tension may be negative, and the springs of lines that bend do not, as in other codes.
         pub negative_tension: bool = false,
         /// Upper limit of the internal time step [s].
         pub time_step_max: f64 = 0.05 => positive(1e4).elsewhere(&["dtm"]),

@@ -51,7 +51,7 @@ impl Scene {
     fn solution_in_words(&self) -> Vec<String> {
         let (solver, output) = (&self.solver, &self.output);
         let compression = if solver.negative_tension {
-            "axial damping acts in compression too, so tension can be negative, as in other codes"
+            "axial damping acts in compression and springs do not, so tension can be negative, as in other codes"
         } else if self.all_beams() {
             "beams carry compression as well as tension"
         } else {
