@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::fmi::FmiVersion;
 use super::package::Stamp;
-use super::xml::{Xml, document, number};
+use super::xml::{Xml, document, empty, number, texts, within};
 use crate::interface::{Causality, Interface, Kind, Layout, Unit, Variability, Variable};
 use crate::model::Model;
 use crate::scene::{Profile, Scene, SceneError};
@@ -100,17 +100,17 @@ fn token(xml: &str, scene: &str) -> String {
 }
 
 fn write(scene: &Scene, interface: &Interface, version: FmiVersion, signed: (&str, &Stamp)) -> String {
-    document(|writer| write_root(writer, scene, interface, version, signed))
+    document(|xml| write_root(xml, scene, interface, version, signed))
 }
 
 fn write_root(
-    writer: &mut Xml,
+    xml: &mut Xml,
     scene: &Scene,
     interface: &Interface,
     version: FmiVersion,
     (token, stamp): (&str, &Stamp),
 ) -> io::Result<()> {
-    let name = model_name(scene);
+    let (name, version_text) = (model_name(scene), version.to_string());
     let generation_tool = format!("moorline {VERSION}");
     let naming = if interface.variables().iter().all(|v| is_structured(&v.name)) {
         "structured"
@@ -121,14 +121,9 @@ fn write_root(
         FmiVersion::Two => "guid",
         FmiVersion::Three => "instantiationToken",
     };
-    let stamped = [
-        ("author", stamp.author.as_deref()),
-        ("generationDateAndTime", stamp.date.as_deref()),
-    ];
-    let stamped = stamped.into_iter().filter_map(|(key, text)| Some((key, text?)));
-    let root = writer.create_element("fmiModelDescription").with_attributes([
-        ("fmiVersion", version.to_string().as_str()),
-        ("modelName", name.as_str()),
+    let mut root = vec![
+        ("fmiVersion", version_text.as_str()),
+        ("modelName", &name),
         (token_key, token),
         (
             "description",
@@ -137,53 +132,42 @@ fn write_root(
         ),
         ("version", VERSION),
         ("license", "MIT OR Apache-2.0"),
-        ("generationTool", generation_tool.as_str()),
+        ("generationTool", &generation_tool),
         ("variableNamingConvention", naming),
-    ]);
-    let root = root.with_attributes(stamped);
-    root.write_inner_content(|writer| {
-        write_co_simulation(writer, scene, version)?;
-        write_units(writer, interface, version)?;
-        write_log_categories(writer)?;
-        writer
-            .create_element("DefaultExperiment")
-            .with_attributes([
-                ("startTime", "0.0"),
-                ("stopTime", number(scene.output.duration).as_str()),
-                ("tolerance", number(scene.solver.tolerance).as_str()),
-                ("stepSize", number(scene.output.interval).as_str()),
-            ])
-            .write_empty()?;
-        writer
-            .create_element("ModelVariables")
-            .write_inner_content(|writer| write_variables(writer, interface, version))?;
-        writer
-            .create_element("ModelStructure")
-            .write_inner_content(|writer| {
-                write_structure(writer, interface, version, scene.output.derivatives)
-            })?;
-        Ok(())
-    })?;
-    Ok(())
+    ];
+    root.extend(stamp.author.as_deref().map(|author| ("author", author)));
+    root.extend(stamp.date.as_deref().map(|date| ("generationDateAndTime", date)));
+    let experiment = [
+        ("startTime", "0.0".to_string()),
+        ("stopTime", number(scene.output.duration)),
+        ("tolerance", number(scene.solver.tolerance)),
+        ("stepSize", number(scene.output.interval)),
+    ];
+    within(xml, "fmiModelDescription", &root, |xml| {
+        write_co_simulation(xml, scene, version)?;
+        write_units(xml, interface, version)?;
+        within(xml, "LogCategories", &[], |xml| {
+            LOG_CATEGORIES.iter().try_for_each(|(name, description)| {
+                empty(xml, "Category", &[("name", name), ("description", description)])
+            })
+        })?;
+        empty(xml, "DefaultExperiment", &texts(&experiment))?;
+        within(xml, "ModelVariables", &[], |xml| {
+            write_variables(xml, interface, version)
+        })?;
+        within(xml, "ModelStructure", &[], |xml| {
+            write_structure(xml, interface, version, scene.output.derivatives)
+        })
+    })
 }
 
 /// Title of the scene, without characters that XML cannot carry.
 fn model_name(scene: &Scene) -> String {
-    let title: String = scene
-        .title
-        .chars()
-        .map(|c| {
-            if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') {
-                ' '
-            } else {
-                c
-            }
-        })
-        .collect();
-    if title.trim().is_empty() {
-        "mooring".to_string()
-    } else {
-        title.trim().to_string()
+    let illegal = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    let title = scene.title.replace(illegal, " ");
+    match title.trim() {
+        "" => "mooring".to_string(),
+        title => title.to_string(),
     }
 }
 
@@ -222,7 +206,7 @@ fn is_structured(name: &str) -> bool {
     })
 }
 
-fn write_co_simulation(writer: &mut Xml, scene: &Scene, version: FmiVersion) -> io::Result<()> {
+fn write_co_simulation(xml: &mut Xml, scene: &Scene, version: FmiVersion) -> io::Result<()> {
     let identifier = model_identifier(scene);
     let (derivatives, order) = match scene.output.derivatives {
         true => ("true", "1"),
@@ -258,94 +242,66 @@ fn write_co_simulation(writer: &mut Xml, scene: &Scene, version: FmiVersion) -> 
         ],
     };
     let adjoint = scene.output.derivatives && version == FmiVersion::Three;
-    let adjoint = adjoint.then_some(("providesAdjointDerivatives", "true"));
-    writer
-        .create_element("CoSimulation")
-        .with_attributes(attributes.iter().copied().chain(adjoint))
-        .write_empty()?;
-    Ok(())
+    let adjoint: &[_] = match adjoint {
+        true => &[("providesAdjointDerivatives", "true")],
+        false => &[],
+    };
+    empty(xml, "CoSimulation", &[attributes, adjoint].concat())
 }
 
-fn write_units(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
-    let mut units: Vec<Unit> = match version {
-        FmiVersion::Two => Vec::new(),
-        FmiVersion::Three => vec![Unit::SECOND],
-    };
-    for variable in interface.variables().iter().filter(|v| has_unit(v)) {
+/// Units of variables with a number that has one, each once.
+pub(super) fn units<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Unit> {
+    let mut units = Vec::new();
+    for variable in variables.into_iter().filter(|variable| has_unit(variable)) {
         if !units.contains(&variable.unit) {
             units.push(variable.unit);
         }
     }
-    writer
-        .create_element("UnitDefinitions")
-        .write_inner_content(|writer| {
-            for unit in &units {
-                write_unit(writer, unit)?;
-            }
-            Ok(())
-        })?;
-    Ok(())
+    units
 }
 
-fn write_unit(writer: &mut Xml, unit: &Unit) -> io::Result<()> {
-    let present = unit.exponents();
-    writer
-        .create_element("Unit")
-        .with_attribute(("name", unit.name))
-        .write_inner_content(|writer| {
-            writer
-                .create_element("BaseUnit")
-                .with_attributes(present.iter().map(|(base, text)| (*base, text.as_str())))
-                .write_empty()?;
-            if *unit == Unit::RADIAN {
-                let factor = number(180.0 / std::f64::consts::PI);
-                writer
-                    .create_element("DisplayUnit")
-                    .with_attributes([("name", "deg"), ("factor", factor.as_str())])
-                    .write_empty()?;
-            }
-            Ok(())
-        })?;
-    Ok(())
+fn write_units(xml: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
+    let mut units = units(interface.variables());
+    if version == FmiVersion::Three {
+        units.retain(|unit| *unit != Unit::SECOND);
+        units.insert(0, Unit::SECOND); // that of the independent variable
+    }
+    within(xml, "UnitDefinitions", &[], |xml| {
+        units.iter().try_for_each(|unit| write_unit(xml, unit))
+    })
 }
 
-fn write_log_categories(writer: &mut Xml) -> io::Result<()> {
-    writer
-        .create_element("LogCategories")
-        .write_inner_content(|writer| {
-            for (name, description) in LOG_CATEGORIES {
-                writer
-                    .create_element("Category")
-                    .with_attributes([("name", name), ("description", description)])
-                    .write_empty()?;
-            }
-            Ok(())
-        })?;
-    Ok(())
+fn write_unit(xml: &mut Xml, unit: &Unit) -> io::Result<()> {
+    within(xml, "Unit", &[("name", unit.name)], |xml| {
+        empty(xml, "BaseUnit", &texts(&unit.exponents()))?;
+        if *unit != Unit::RADIAN {
+            return Ok(());
+        }
+        let factor = number(180.0 / std::f64::consts::PI);
+        empty(xml, "DisplayUnit", &[("name", "deg"), ("factor", &factor)])
+    })
 }
 
-fn write_variables(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
+fn write_variables(xml: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
     for (index, variable) in interface.variables().iter().enumerate() {
         match version {
-            FmiVersion::Two => write_variable2(writer, variable, index)?,
-            FmiVersion::Three => write_variable3(writer, variable, index)?,
+            FmiVersion::Two => write_variable2(xml, variable, index)?,
+            FmiVersion::Three => write_variable3(xml, variable, index)?,
         }
     }
-    if version == FmiVersion::Three {
-        let reference = time_reference(interface).to_string();
-        writer
-            .create_element("Float64")
-            .with_attributes([
-                ("name", "time"),
-                ("valueReference", reference.as_str()),
-                ("description", "time"),
-                ("causality", "independent"),
-                ("variability", "continuous"),
-                ("unit", Unit::SECOND.name),
-            ])
-            .write_empty()?;
+    if version == FmiVersion::Two {
+        return Ok(());
     }
-    Ok(())
+    let reference = time_reference(interface).to_string();
+    let time = [
+        ("name", "time"),
+        ("valueReference", reference.as_str()),
+        ("description", "time"),
+        ("causality", "independent"),
+        ("variability", "continuous"),
+        ("unit", Unit::SECOND.name),
+    ];
+    empty(xml, "Float64", &time)
 }
 
 /// Value reference of the independent variable of FMI 3.0, after all others.
@@ -414,11 +370,7 @@ fn nominal(variable: &Variable) -> Option<f64> {
     (is_real && magnitude > 0.0).then_some(magnitude)
 }
 
-fn texts<'a>(attributes: &'a [(&'static str, String)]) -> impl Iterator<Item = (&'a str, &'a str)> {
-    attributes.iter().map(|(key, text)| (*key, text.as_str()))
-}
-
-fn write_variable2(writer: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
+fn write_variable2(xml: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
     let common = common_attributes(variable, index);
     let mut value = value_attributes(variable);
     // not in FMI 3.0: the crate fmi 0.8 refuses descriptions with it
@@ -428,17 +380,9 @@ fn write_variable2(writer: &mut Xml, variable: &Variable, index: usize) -> io::R
         Kind::Int32 => "Integer",
         Kind::Boolean => "Boolean",
     };
-    writer
-        .create_element("ScalarVariable")
-        .with_attributes(texts(&common))
-        .write_inner_content(|writer| {
-            writer
-                .create_element(element)
-                .with_attributes(texts(&value))
-                .write_empty()?;
-            Ok(())
-        })?;
-    Ok(())
+    within(xml, "ScalarVariable", &texts(&common), |xml| {
+        empty(xml, element, &texts(&value))
+    })
 }
 
 /// Returns whether a host may access the variable within a communication step.
@@ -447,34 +391,27 @@ fn has_intermediate_values(variable: &Variable) -> bool {
     is_in_time && variable.variability == Variability::Continuous
 }
 
-fn write_variable3(writer: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
+fn write_variable3(xml: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
     let mut attributes = common_attributes(variable, index);
     if has_intermediate_values(variable) {
         attributes.push(("intermediateUpdate", "true".to_string()));
     }
     attributes.extend(value_attributes(variable));
-    let element = writer
-        .create_element(match variable.kind {
-            Kind::Float64 => "Float64",
-            Kind::Int32 => "Int32",
-            Kind::Boolean => "Boolean",
-        })
-        .with_attributes(texts(&attributes));
-    match variable.dimension {
-        None => element.write_empty()?,
-        Some(length) => element.write_inner_content(|writer| {
-            writer
-                .create_element("Dimension")
-                .with_attribute(("start", length.to_string().as_str()))
-                .write_empty()?;
-            Ok(())
-        })?,
+    let element = match variable.kind {
+        Kind::Float64 => "Float64",
+        Kind::Int32 => "Int32",
+        Kind::Boolean => "Boolean",
     };
-    Ok(())
+    match variable.dimension {
+        None => empty(xml, element, &texts(&attributes)),
+        Some(length) => within(xml, element, &texts(&attributes), |xml| {
+            empty(xml, "Dimension", &[("start", &length.to_string())])
+        }),
+    }
 }
 
 fn write_structure(
-    writer: &mut Xml,
+    xml: &mut Xml,
     interface: &Interface,
     version: FmiVersion,
     derivatives: bool,
@@ -487,60 +424,43 @@ fn write_structure(
             .filter(move |(_, variable)| causalities.contains(&variable.causality))
     };
     // without derivatives outputs change with a step alone
-    let depends = |variable| match derivatives {
-        true => references(&interface.motions_of(variable)),
-        false => String::new(),
-    };
-    let outputs = || of(&[Causality::Output]).map(|(index, variable)| (index, depends(variable)));
-    let initial: Vec<(usize, String)> = of(&[Causality::Output, Causality::CalculatedParameter])
-        .map(|(index, variable)| (index, references(&variable.initial_dependencies)))
-        .collect();
+    let outputs = of(&[Causality::Output]).map(|(index, variable)| match derivatives {
+        true => (index, interface.motions_of(variable)),
+        false => (index, Vec::new()),
+    });
+    let initial = of(&[Causality::Output, Causality::CalculatedParameter])
+        .map(|(index, variable)| (index, variable.initial_dependencies.clone()));
     match version {
         FmiVersion::Two => {
-            writer.create_element("Outputs").write_inner_content(|writer| {
-                outputs().try_for_each(|(index, depends)| {
-                    write_unknown(writer, ["Unknown", "index"], index, &depends)
-                })
+            within(xml, "Outputs", &[], |xml| {
+                write_unknowns(xml, ["Unknown", "index"], outputs)
             })?;
-            writer
-                .create_element("InitialUnknowns")
-                .write_inner_content(|writer| {
-                    initial.iter().try_for_each(|(index, depends)| {
-                        write_unknown(writer, ["Unknown", "index"], *index, depends)
-                    })
-                })?;
+            within(xml, "InitialUnknowns", &[], |xml| {
+                write_unknowns(xml, ["Unknown", "index"], initial)
+            })
         }
         FmiVersion::Three => {
-            for (index, depends) in outputs() {
-                write_unknown(writer, ["Output", "valueReference"], index, &depends)?;
-            }
-            for (index, depends) in &initial {
-                write_unknown(writer, ["InitialUnknown", "valueReference"], *index, depends)?;
-            }
+            write_unknowns(xml, ["Output", "valueReference"], outputs)?;
+            write_unknowns(xml, ["InitialUnknown", "valueReference"], initial)
         }
     }
-    Ok(())
 }
 
-fn write_unknown(
-    writer: &mut Xml,
+/// Writes rows of the table, by their index, with the value references that they depend on.
+fn write_unknowns(
+    xml: &mut Xml,
     [element, key]: [&str; 2],
-    index: usize,
-    dependencies: &str,
+    mut unknowns: impl Iterator<Item = (usize, Vec<u32>)>,
 ) -> io::Result<()> {
-    writer
-        .create_element(element)
-        .with_attributes([
-            (key, Interface::reference(index).to_string().as_str()),
-            ("dependencies", dependencies),
-        ])
-        .write_empty()?;
-    Ok(())
-}
-
-fn references(references: &[u32]) -> String {
-    let texts: Vec<String> = references.iter().map(u32::to_string).collect();
-    texts.join(" ")
+    unknowns.try_for_each(|(index, dependencies)| {
+        let dependencies: Vec<String> = dependencies.iter().map(u32::to_string).collect();
+        let reference = Interface::reference(index).to_string();
+        let attributes = [
+            (key, reference.as_str()),
+            ("dependencies", &dependencies.join(" ")),
+        ];
+        empty(xml, element, &attributes)
+    })
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use quick_xml::events::{BytesDecl, BytesText, Event};
 
 use super::csv::{push_shortest, push_whole, shortest};
 use super::record::{Frame, Node};
+use super::xml::{texts, within};
 
 /// Folder of the frames, next to the collection.
 pub const FRAME_FOLDER: &str = "vtk";
@@ -34,26 +35,24 @@ pub(super) fn is_frame(name: &str) -> bool {
 /// Writing to `out` fails.
 pub fn write_frame(frame: &Frame, out: impl Write) -> io::Result<()> {
     let nodes: Vec<Node> = frame.lines.iter().flatten().copied().collect();
-    let mut xml = document(out)?;
-    xml.create_element("VTKFile")
-        .with_attributes([
-            ("type", "PolyData"),
-            ("version", "1.0"),
-            ("byte_order", "LittleEndian"),
-        ])
-        .write_inner_content(|xml| {
-            xml.create_element("PolyData").write_inner_content(|xml| {
-                let counts = [
-                    ("NumberOfPoints", nodes.len().to_string()),
-                    ("NumberOfLines", frame.lines.len().to_string()),
-                ];
-                xml.create_element("Piece")
-                    .with_attributes(counts.iter().map(|(key, n)| (*key, n.as_str())))
-                    .write_inner_content(|xml| write_piece(xml, frame, &nodes))?;
-                Ok(())
-            })?;
-            Ok(())
-        })?;
+    let root = [
+        ("type", "PolyData"),
+        ("version", "1.0"),
+        ("byte_order", "LittleEndian"),
+    ];
+    let counts = [
+        ("NumberOfPoints", nodes.len().to_string()),
+        ("NumberOfLines", frame.lines.len().to_string()),
+    ];
+    let mut xml = Writer::new_with_indent(out, b' ', 1);
+    xml.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
+    within(&mut xml, "VTKFile", &root, |xml| {
+        within(xml, "PolyData", &[], |xml| {
+            within(xml, "Piece", &texts(&counts), |xml| {
+                write_piece(xml, frame, &nodes)
+            })
+        })
+    })?;
     xml.into_inner().flush()
 }
 
@@ -62,23 +61,21 @@ fn write_piece<W: Write>(xml: &mut Writer<W>, frame: &Frame, nodes: &[Node]) -> 
     let wholes = |values: &mut dyn Iterator<Item = usize>| {
         tuples(values, 1, |text, value| push_whole(text, value as f64))
     };
-    xml.create_element("PointData")
-        .with_attribute(("Scalars", "tension"))
-        .write_inner_content(|xml| {
-            let tensions = reals(&mut nodes.iter().map(|node| node.tension), 1);
-            write_array(xml, ["Float64", "tension", "1"], &tensions)?;
-            let arcs = reals(&mut nodes.iter().map(|node| node.s), 1);
-            write_array(xml, ["Float64", "s", "1"], &arcs)
-        })?;
-    xml.create_element("CellData").write_inner_content(|xml| {
+    within(xml, "PointData", &[("Scalars", "tension")], |xml| {
+        let tensions = reals(&mut nodes.iter().map(|node| node.tension), 1);
+        write_array(xml, ["Float64", "tension", "1"], &tensions)?;
+        let arcs = reals(&mut nodes.iter().map(|node| node.s), 1);
+        write_array(xml, ["Float64", "s", "1"], &arcs)
+    })?;
+    within(xml, "CellData", &[], |xml| {
         let lines = wholes(&mut (0..frame.lines.len()));
         write_array(xml, ["Int32", "line", "1"], &lines)
     })?;
-    xml.create_element("Points").write_inner_content(|xml| {
+    within(xml, "Points", &[], |xml| {
         let positions = reals(&mut nodes.iter().flat_map(|node| node.position), 3);
         write_array(xml, ["Float64", "position", "3"], &positions)
     })?;
-    xml.create_element("Lines").write_inner_content(|xml| {
+    within(xml, "Lines", &[], |xml| {
         // Every line owns a run of the points; `offsets` holds where each run ends.
         let mut ends = frame.lines.iter().scan(0, |end, line| {
             *end += line.len();
@@ -87,8 +84,7 @@ fn write_piece<W: Write>(xml: &mut Writer<W>, frame: &Frame, nodes: &[Node]) -> 
         let connectivity = wholes(&mut (0..nodes.len()));
         write_array(xml, ["Int64", "connectivity", "1"], &connectivity)?;
         write_array(xml, ["Int64", "offsets", "1"], &wholes(&mut ends))
-    })?;
-    Ok(())
+    })
 }
 
 /// Text of values, a tuple of `components` numbers a line.
@@ -138,12 +134,6 @@ pub(super) const COLLECTION_END: &str = " </Collection>\n</VTKFile>";
 pub(super) fn collected(index: usize, time: f64) -> String {
     let (time, file) = (shortest(time), frame_name(index));
     format!("  <DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n")
-}
-
-fn document<W: Write>(out: W) -> io::Result<Writer<W>> {
-    let mut xml = Writer::new_with_indent(out, b' ', 1);
-    xml.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
-    Ok(xml)
 }
 
 #[cfg(test)]

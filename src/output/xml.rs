@@ -1,6 +1,6 @@
 //! XML documents: one writer for all files of an FMU and of an SSP package.
 
-use std::io;
+use std::io::{self, Write};
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
@@ -21,7 +21,11 @@ pub(super) fn document(write: impl FnOnce(&mut Xml) -> io::Result<()>) -> String
 }
 
 /// Writes an element without content.
-pub(super) fn empty(xml: &mut Xml, name: &str, attributes: &[(&str, &str)]) -> io::Result<()> {
+pub(super) fn empty<W: Write>(
+    xml: &mut Writer<W>,
+    name: &str,
+    attributes: &[(&str, &str)],
+) -> io::Result<()> {
     let element = xml.create_element(name);
     element
         .with_attributes(attributes.iter().copied())
@@ -30,16 +34,22 @@ pub(super) fn empty(xml: &mut Xml, name: &str, attributes: &[(&str, &str)]) -> i
 }
 
 /// Writes an element with the content that `write` writes.
-pub(super) fn within(
-    xml: &mut Xml,
+pub(super) fn within<W: Write>(
+    xml: &mut Writer<W>,
     name: &str,
     attributes: &[(&str, &str)],
-    write: impl FnOnce(&mut Xml) -> io::Result<()>,
+    write: impl FnOnce(&mut Writer<W>) -> io::Result<()>,
 ) -> io::Result<()> {
     let element = xml.create_element(name);
     let element = element.with_attributes(attributes.iter().copied());
     element.write_inner_content(write)?;
     Ok(())
+}
+
+/// Attributes whose texts are made for them.
+pub(super) fn texts<'a>(attributes: &'a [(&'a str, String)]) -> Vec<(&'a str, &'a str)> {
+    let attributes = attributes.iter();
+    attributes.map(|(key, text)| (*key, text.as_str())).collect()
 }
 
 /// Shortest decimal form that reads back to the same bits.

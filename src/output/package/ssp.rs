@@ -5,8 +5,9 @@
 
 use std::io;
 
-use crate::interface::{Causality, Interface, Kind, Unit, Variable};
-use crate::output::xml::{Xml, document, empty, number, within};
+use crate::interface::{Causality, Interface, Kind, Variable};
+use crate::output::description;
+use crate::output::xml::{Xml, document, empty, number, texts, within};
 use crate::scene::Scene;
 
 /// Path in the package.
@@ -98,20 +99,10 @@ fn connection(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
 }
 
 fn units(xml: &mut Xml, variables: &[&Variable]) -> io::Result<()> {
-    let mut units: Vec<Unit> = Vec::new();
-    for variable in variables.iter().filter(|variable| variable.kind == Kind::Float64) {
-        if !units.contains(&variable.unit) {
-            units.push(variable.unit);
-        }
-    }
+    let units = description::units(variables.iter().copied());
     units.iter().try_for_each(|unit| {
-        let exponents = unit.exponents();
-        let exponents: Vec<(&str, &str)> = exponents
-            .iter()
-            .map(|(base, text)| (*base, text.as_str()))
-            .collect();
         within(xml, "ssc:Unit", &[("name", unit.name)], |xml| {
-            empty(xml, "ssc:BaseUnit", &exponents)
+            empty(xml, "ssc:BaseUnit", &texts(&unit.exponents()))
         })
     })
 }
