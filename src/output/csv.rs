@@ -27,22 +27,15 @@ pub(super) struct CsvTable {
 }
 
 impl CsvTable {
-    /// Begins a table with its header row.
-    pub(super) fn create(
+    /// A table in a new file, with its header row, or in one that continues behind its last row.
+    pub(super) fn open(
         mut file: Growing,
         columns: &[Column],
         digits: Option<usize>,
     ) -> Result<CsvTable, OutputError> {
-        file.append(&header(columns), Vec::new())?;
-        CsvTable::reopen(file, columns, digits)
-    }
-
-    /// Continues a table behind its last row.
-    pub(super) fn reopen(
-        file: Growing,
-        columns: &[Column],
-        digits: Option<usize>,
-    ) -> Result<CsvTable, OutputError> {
+        if file.end() == 0 {
+            file.append(&header(columns), Vec::new())?;
+        }
         Ok(CsvTable {
             file,
             text: RowText::new(columns, digits),

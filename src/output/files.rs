@@ -8,74 +8,32 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::csv::{CsvTable, write_units};
+use super::csv::write_units;
 use super::growing::{Growing, Mark};
-use super::parquet::ParquetTable;
-use super::record::{Column, Form, Frame, Node, Record};
+use super::record::{Column, Form, Frame, Record};
+use super::table::Table;
 use super::times::Times;
 use super::{OutputError, figures, make_folder, vtk, write_file};
+use crate::scene::table::Choice;
 use crate::scene::{Format, Frames, Output};
 
 /// Shapes of a run whose scene does not give their interval, about [-].
 const FRAMES_MAX: usize = 240;
 
-/// A table in the format of the scene.
-#[derive(Debug)]
-enum Table {
-    Csv(CsvTable),
-    Parquet(Box<ParquetTable>),
-}
-
-impl Table {
-    fn create(stem: &Path, columns: &[Column], output: &Output) -> Result<Table, OutputError> {
-        let file = Growing::create(&with_ending(stem, output))?;
-        Ok(match output.format {
-            Some(Format::Parquet) => {
-                Table::Parquet(Box::new(ParquetTable::create(file, columns, output.digits)?))
-            }
-            Some(Format::Csv) | None => Table::Csv(CsvTable::create(file, columns, output.digits)?),
-        })
-    }
-
-    fn reopen(stem: &Path, mark: &Mark, columns: &[Column], output: &Output) -> Result<Table, OutputError> {
-        let file = Growing::reopen(&with_ending(stem, output), mark.clone())?;
-        Ok(match output.format {
-            Some(Format::Parquet) => {
-                let table = ParquetTable::reopen(file, mark, columns, output.digits)?;
-                Table::Parquet(Box::new(table))
-            }
-            Some(Format::Csv) | None => Table::Csv(CsvTable::reopen(file, columns, output.digits)?),
-        })
-    }
-
-    fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
-        match self {
-            Table::Csv(table) => table.row(values),
-            Table::Parquet(table) => table.row(values),
-        }
-    }
-
-    fn flush(&mut self) -> Result<(), OutputError> {
-        match self {
-            Table::Csv(table) => table.flush(),
-            Table::Parquet(table) => table.flush(),
-        }
-    }
-
-    fn mark(&mut self) -> Result<Mark, OutputError> {
-        self.flush()?;
-        match self {
-            Table::Csv(table) => table.file().mark(),
-            Table::Parquet(table) => table.file().mark(),
-        }
-    }
-}
-
-fn with_ending(stem: &Path, output: &Output) -> PathBuf {
-    stem.with_extension(match output.format {
-        Some(Format::Parquet) => "parquet",
-        Some(Format::Csv) | None => "csv",
-    })
+/// Opens the table of a stem, in the format of the scene: a new one, or one that continues behind a mark.
+fn open_table(
+    stem: &Path,
+    mark: Option<&Mark>,
+    columns: &[Column],
+    output: &Output,
+) -> Result<Table, OutputError> {
+    let format = output.format.unwrap_or(Format::Csv);
+    let path = stem.with_extension(format.word());
+    let file = match mark {
+        None => Growing::create(&path)?,
+        Some(mark) => Growing::reopen(&path, mark.clone())?,
+    };
+    Table::open(file, format, columns, output.digits)
 }
 
 /// Shapes for ParaView.
@@ -129,26 +87,16 @@ impl RunFiles {
     ) -> Result<RunFiles, OutputError> {
         make_folder(folder)?;
         remove_old(folder);
-        let results = Table::create(&folder.join("results"), record.columns(), output)?;
+        let open = |stem: &str, columns: &[Column]| open_table(&folder.join(stem), None, columns, output);
+        let results = open("results", record.columns())?;
         write_file(&folder.join("results.units.csv"), |w| {
             write_units(record.columns(), w)
         })?;
         let columns = profile_columns(record, bends);
-        let profile = output
-            .profile
-            .is_given()
-            .then(|| Table::create(&folder.join("profile"), &columns, output));
-        let strides = strides(output, times);
-        let shapes = strides.files.map(|_| Shapes::create(folder));
-        Ok(RunFiles {
-            folder: folder.to_path_buf(),
-            results,
-            profile: profile.transpose()?,
-            shapes: shapes.transpose()?,
-            strides,
-            last: times.count,
-            row: Vec::new(),
-        })
+        let profile = output.profile.is_given().then(|| open("profile", &columns));
+        let shapes = strides(output, times).files.map(|_| Shapes::create(folder));
+        let files = (results, profile.transpose()?, shapes.transpose()?);
+        Ok(RunFiles::new(folder, files, output, times))
     }
 
     /// Continues the files of an interrupted run.
@@ -163,7 +111,7 @@ impl RunFiles {
         (marks, bends): (&Marks, bool),
     ) -> Result<RunFiles, OutputError> {
         let open = |stem: &str, mark: &Mark, columns: &[Column]| {
-            Table::reopen(&folder.join(stem), mark, columns, output)
+            open_table(&folder.join(stem), Some(mark), columns, output)
         };
         let results = open("results", &marks.results, record.columns())?;
         let columns = profile_columns(record, bends);
@@ -173,15 +121,25 @@ impl RunFiles {
             let written = *written;
             Ok(Shapes { collection, written })
         });
-        Ok(RunFiles {
+        let files = (results, profile.transpose()?, shapes.transpose()?);
+        Ok(RunFiles::new(folder, files, output, times))
+    }
+
+    fn new(
+        folder: &Path,
+        (results, profile, shapes): (Table, Option<Table>, Option<Shapes>),
+        output: &Output,
+        times: &Times,
+    ) -> RunFiles {
+        RunFiles {
             folder: folder.to_path_buf(),
             results,
-            profile: profile.transpose()?,
-            shapes: shapes.transpose()?,
+            profile,
+            shapes,
             strides: strides(output, times),
             last: times.count,
             row: Vec::new(),
-        })
+        }
     }
 
     /// Adds a row, the number `index` of the run from 0: to the record and the table, and where one is due the shape of the lines.
@@ -306,23 +264,21 @@ fn profile_columns(record: &Record, bends: bool) -> Vec<Column> {
 /// Adds a row for every node of every line.
 fn add_nodes(profile: &mut Table, frame: &Frame, row: &mut Vec<f64>) -> Result<(), OutputError> {
     for (line, nodes) in frame.lines.iter().enumerate() {
-        for (
-            index,
-            Node {
-                s,
-                position,
-                tension,
-                bending,
-            },
-        ) in nodes.iter().enumerate()
-        {
-            let [x, y, z] = *position;
+        for (index, node) in nodes.iter().enumerate() {
+            let [x, y, z] = node.position;
+            let bending = node.bending.map(|bending| [bending.curvature, bending.moment]);
             row.clear();
-            row.extend([frame.time, line as f64, index as f64, *s, x, y, z, *tension]);
-            row.extend(match bending {
-                Some(bending) => [bending.curvature, bending.moment],
-                None => [f64::NAN; 2],
-            });
+            row.extend([
+                frame.time,
+                line as f64,
+                index as f64,
+                node.s,
+                x,
+                y,
+                z,
+                node.tension,
+            ]);
+            row.extend(bending.unwrap_or([f64::NAN; 2]));
             profile.row(row)?;
         }
     }
@@ -336,19 +292,13 @@ fn remove_old(folder: &Path) {
         ["results", "profile"].map(|stem| ["csv", "parquet"].map(|ending| format!("{stem}.{ending}")));
     let figures = figures::STEMS.iter().map(|stem| format!("{stem}.svg"));
     let others = ["report.html", COLLECTION_FILE, super::state::FILE].map(String::from);
-    let shapes = fs::read_dir(folder.join(vtk::FRAME_FOLDER))
-        .into_iter()
-        .flatten()
-        .flatten();
-    let shapes = shapes.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    let shapes = shapes.filter(|name| vtk::is_frame(name));
-    let shapes = shapes.map(|name| format!("{}/{name}", vtk::FRAME_FOLDER));
-    let names = tables
-        .concat()
-        .into_iter()
-        .chain(figures)
-        .chain(others)
-        .chain(shapes);
+    let shapes = fs::read_dir(folder.join(vtk::FRAME_FOLDER)).into_iter();
+    let shapes = shapes.flatten().flatten().filter_map(|entry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        vtk::is_frame(&name).then(|| format!("{}/{name}", vtk::FRAME_FOLDER))
+    });
+    let names = tables.into_iter().flatten().chain(figures);
+    let names = names.chain(others).chain(shapes);
     for path in names.map(|name| folder.join(name)) {
         // a link stays, and its target is replaced
         if fs::symlink_metadata(&path).is_ok_and(|found| found.is_file()) {

@@ -30,20 +30,13 @@ pub(super) struct Mark {
     ending: Vec<u8>,
 }
 
-impl Mark {
-    /// Ending behind the data.
-    pub(super) fn ending(&self) -> &[u8] {
-        &self.ending
-    }
-}
-
 impl Growing {
     /// A new file in place of an old one of the name; the target of a link is replaced.
     pub(super) fn create(path: &Path) -> Result<Growing, OutputError> {
         let file = target_of(path).and_then(|target| create(&target));
         Ok(Growing {
             path: path.to_path_buf(),
-            file: file.map_err(|source| of_file(path, source))?,
+            file: file.map_err(|source| OutputError::of_file(path, source))?,
             mark: Mark::default(),
         })
     }
@@ -57,7 +50,7 @@ impl Growing {
             .read(true)
             .write(true)
             .open(path)
-            .map_err(|source| of_file(path, source))?;
+            .map_err(|source| OutputError::of_file(path, source))?;
         let mut tail = vec![0; mark.tail.len()];
         let start = mark.end - mark.tail.len() as u64;
         let read = file
@@ -65,7 +58,7 @@ impl Growing {
             .and_then(|_| file.read_exact(&mut tail));
         if read.is_err() || tail != mark.tail {
             let changed = "it has been changed since the run was interrupted: run the scene from the start";
-            return Err(of_file(
+            return Err(OutputError::of_file(
                 path,
                 io::Error::new(io::ErrorKind::InvalidInput, changed),
             ));
@@ -76,7 +69,7 @@ impl Growing {
         growing.append(&[], ending)?;
         let length = growing.mark.end + growing.mark.ending.len() as u64;
         let cut = growing.file.set_len(length);
-        cut.map_err(|source| of_file(&growing.path, source))?;
+        cut.map_err(|source| OutputError::of_file(&growing.path, source))?;
         Ok(growing)
     }
 
@@ -91,7 +84,7 @@ impl Growing {
         if let Err(source) = written {
             // the first failure is reported
             let _ = self.restore();
-            return Err(of_file(&self.path, source));
+            return Err(OutputError::of_file(&self.path, source));
         }
         mark.end += data.len() as u64;
         mark.tail.extend(&data[data.len().saturating_sub(TAIL)..]);
@@ -111,24 +104,24 @@ impl Growing {
     /// The place up to which the file is written, once the disk has it.
     pub(super) fn mark(&mut self) -> Result<Mark, OutputError> {
         let stored = self.file.sync_data();
-        stored.map_err(|source| of_file(&self.path, source))?;
+        stored.map_err(|source| OutputError::of_file(&self.path, source))?;
         Ok(self.mark.clone())
     }
 
-    /// Bytes of the data [-].
+    /// Bytes of the data [-]; 0 of a new file.
     pub(super) fn end(&self) -> u64 {
         self.mark.end
     }
 
+    /// Ending behind the data.
+    pub(super) fn ending(&self) -> &[u8] {
+        &self.mark.ending
+    }
+
     /// An error of the encoder, as an error of this file.
     pub(super) fn failure(&self, source: io::Error) -> OutputError {
-        of_file(&self.path, source)
+        OutputError::of_file(&self.path, source)
     }
-}
-
-fn of_file(path: &Path, source: io::Error) -> OutputError {
-    let path = path.to_path_buf();
-    OutputError::File { path, source }
 }
 
 #[cfg(test)]

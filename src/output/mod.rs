@@ -80,6 +80,13 @@ pub enum OutputError {
     },
 }
 
+impl OutputError {
+    fn of_file(path: &Path, source: io::Error) -> OutputError {
+        let path = path.to_path_buf();
+        OutputError::File { path, source }
+    }
+}
+
 /// Makes a folder and those above it, where they are missing.
 ///
 /// # Errors
@@ -144,10 +151,7 @@ pub fn write_file(
         write(&mut file)?;
         file.flush()
     });
-    made.map_err(|source| OutputError::File {
-        path: path.to_path_buf(),
-        source,
-    })
+    made.map_err(|source| OutputError::of_file(path, source))
 }
 
 /// Checks that a file could be written under a name: the name belongs to a regular file, a link to one, or nothing,
@@ -166,10 +170,7 @@ pub fn check_file(path: &Path) -> Result<(), OutputError> {
             _ => Ok(()),
         }
     });
-    target.map_err(|source| OutputError::File {
-        path: path.to_path_buf(),
-        source,
-    })
+    target.map_err(|source| OutputError::of_file(path, source))
 }
 
 /// The regular file, or the free name, that a path leads to; links are followed.

@@ -22,7 +22,7 @@ use parquet::schema::types::{SchemaDescPtr, SchemaDescriptor, Type};
 use super::OutputError;
 use super::arrow_schema;
 use super::csv::rounded;
-use super::growing::{Growing, Mark};
+use super::growing::Growing;
 use super::record::{Column, Form};
 
 /// Beginning and end of a file.
@@ -57,30 +57,22 @@ struct Buffer {
 }
 
 impl ParquetTable {
-    /// Begins a table without rows.
-    pub(super) fn create(
+    /// A table in a new file, without rows, or in one that continues behind its last group.
+    pub(super) fn open(
         file: Growing,
         columns: &[Column],
         digits: Option<usize>,
     ) -> Result<ParquetTable, OutputError> {
         let mut table = ParquetTable::new(file, columns, digits)?;
-        let footer = table.footer().map_err(|error| table.failure(error))?;
-        table.file.append(MAGIC, footer)?;
-        Ok(table)
-    }
-
-    /// Continues a table behind its last row.
-    pub(super) fn reopen(
-        file: Growing,
-        mark: &Mark,
-        columns: &[Column],
-        digits: Option<usize>,
-    ) -> Result<ParquetTable, OutputError> {
-        let mut table = ParquetTable::new(file, columns, digits)?;
-        let ending = mark.ending();
+        if table.file.end() == 0 {
+            let footer = table.footer().map_err(|error| table.failure(error))?;
+            table.file.append(MAGIC, footer)?;
+            return Ok(table);
+        }
+        let ending = table.file.ending();
         let metadata = &ending[..ending.len().saturating_sub(FOOTER_END)];
-        let metadata =
-            ParquetMetaDataReader::decode_metadata(metadata).map_err(|error| table.failure(error))?;
+        let metadata = ParquetMetaDataReader::decode_metadata(metadata);
+        let metadata = metadata.map_err(|error| table.failure(error))?;
         table.groups = metadata.row_groups().to_vec();
         Ok(table)
     }
@@ -220,36 +212,27 @@ fn field(column: &Column, is_single: bool) -> Result<Type, ParquetError> {
 }
 
 fn write_column(column: &Buffer, writer: &mut ColumnWriter<'_>) -> Result<(), ParquetError> {
-    let values = &column.values;
-    let present = values.iter().filter(|value| !value.is_nan());
-    let levels: Option<Vec<i16>> = match column.form {
-        Form::Sparse => Some(values.iter().map(|value| i16::from(!value.is_nan())).collect()),
-        _ => None,
-    };
-    let (levels, is_sparse) = (levels.as_deref(), levels.is_some());
+    let is_sparse = column.form == Form::Sparse;
+    let levels = column.values.iter().map(|value| i16::from(!value.is_nan()));
+    let levels: Option<Vec<i16>> = is_sparse.then(|| levels.collect());
+    let levels = levels.as_deref();
+    let values = column.values.iter().copied();
+    let values = values.filter(|value| !(is_sparse && value.is_nan()));
     match (writer, &column.form) {
-        (ColumnWriter::DoubleColumnWriter(writer), _) if is_sparse => {
-            let present: Vec<f64> = present.copied().collect();
-            writer.write_batch(&present, levels, None)
+        (ColumnWriter::DoubleColumnWriter(writer), _) => {
+            writer.write_batch(&values.collect::<Vec<f64>>(), levels, None)
         }
-        (ColumnWriter::DoubleColumnWriter(writer), _) => writer.write_batch(values, None, None),
         (ColumnWriter::FloatColumnWriter(writer), _) => {
-            let all: Vec<f32> = match is_sparse {
-                true => present.map(|value| *value as f32).collect(),
-                false => values.iter().map(|value| *value as f32).collect(),
-            };
-            writer.write_batch(&all, levels, None)
+            let singles: Vec<f32> = values.map(|value| value as f32).collect();
+            writer.write_batch(&singles, levels, None)
         }
         (ColumnWriter::Int64ColumnWriter(writer), _) => {
-            let whole: Vec<i64> = values.iter().map(|value| *value as i64).collect();
+            let whole: Vec<i64> = values.map(|value| value as i64).collect();
             writer.write_batch(&whole, None, None)
         }
         (ColumnWriter::ByteArrayColumnWriter(writer), Form::Name(names)) => {
             let names: Vec<ByteArray> = names.iter().map(|name| name.as_str().into()).collect();
-            let texts: Vec<ByteArray> = values
-                .iter()
-                .map(|value| names[*value as usize].clone())
-                .collect();
+            let texts: Vec<ByteArray> = values.map(|value| names[value as usize].clone()).collect();
             writer.write_batch(&texts, None, None)
         }
         _ => unreachable!("the schema has no other types"),
@@ -336,7 +319,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("results.parquet");
         let file = Growing::create(&path).unwrap();
-        let mut table = ParquetTable::create(file, &columns(), None).unwrap();
+        let mut table = ParquetTable::open(file, &columns(), None).unwrap();
         assert!(rows(&path).is_empty());
         let whole = table.group_rows;
         (0..whole + 10).for_each(|i| table.row(&row(i)).unwrap());
@@ -346,8 +329,8 @@ mod tests {
         (0..100).for_each(|i| table.row(&row(i)).unwrap());
         table.flush().unwrap();
         assert_eq!(rows(&path).len(), whole + 110);
-        let file = Growing::reopen(&path, mark.clone()).unwrap();
-        let mut table = ParquetTable::reopen(file, &mark, &columns(), None).unwrap();
+        let file = Growing::reopen(&path, mark).unwrap();
+        let mut table = ParquetTable::open(file, &columns(), None).unwrap();
         assert_eq!(rows(&path).len(), whole + 10);
         (whole + 10..whole + 20).for_each(|i| table.row(&row(i)).unwrap());
         table.flush().unwrap();
@@ -361,7 +344,7 @@ mod tests {
     fn a_table_keeps_a_bounded_number_of_values() {
         let folder = tempfile::tempdir().unwrap();
         let file = Growing::create(&folder.path().join("a.parquet")).unwrap();
-        let mut table = ParquetTable::create(file, &columns(), None).unwrap();
+        let mut table = ParquetTable::open(file, &columns(), None).unwrap();
         for i in 0..300_000 {
             table.row(&row(i)).unwrap();
             let kept: usize = table.columns.iter().map(|column| column.values.len()).sum();

@@ -1,15 +1,61 @@
-//! Tables that appear under their name when they are whole.
+//! Tables in the formats that a scene may choose; and tables that appear under their name when they are whole.
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use super::csv::CsvTable;
-use super::growing::Growing;
+use super::growing::{Growing, Mark};
 use super::parquet::ParquetTable;
 use super::record::Column;
 use super::{OutputError, partial_name, target_of};
 use crate::scene::Format;
+
+/// A table that is written row by row, in one of the formats.
+#[derive(Debug)]
+pub(super) enum Table {
+    Csv(CsvTable),
+    Parquet(Box<ParquetTable>),
+}
+
+impl Table {
+    /// A table in a new file, without rows, or in one that continues behind its last row.
+    pub(super) fn open(
+        file: Growing,
+        format: Format,
+        columns: &[Column],
+        digits: Option<usize>,
+    ) -> Result<Table, OutputError> {
+        Ok(match format {
+            Format::Csv => Table::Csv(CsvTable::open(file, columns, digits)?),
+            Format::Parquet => Table::Parquet(Box::new(ParquetTable::open(file, columns, digits)?)),
+        })
+    }
+
+    /// Adds a row: a value for every column.
+    pub(super) fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
+        match self {
+            Table::Csv(table) => table.row(values),
+            Table::Parquet(table) => table.row(values),
+        }
+    }
+
+    /// Writes the buffered rows.
+    pub(super) fn flush(&mut self) -> Result<(), OutputError> {
+        match self {
+            Table::Csv(table) => table.flush(),
+            Table::Parquet(table) => table.flush(),
+        }
+    }
+
+    /// Writes the buffered rows and returns the mark of the file.
+    pub(super) fn mark(&mut self) -> Result<Mark, OutputError> {
+        self.flush()?;
+        match self {
+            Table::Csv(table) => table.file().mark(),
+            Table::Parquet(table) => table.file().mark(),
+        }
+    }
+}
 
 /// A table that is written row by row under a temporary name.
 #[derive(Debug)]
@@ -17,13 +63,7 @@ pub struct WholeTable {
     /// File that the name leads to.
     target: PathBuf,
     partial: PathBuf,
-    rows: Rows,
-}
-
-#[derive(Debug)]
-enum Rows {
-    Csv(CsvTable),
-    Parquet(Box<ParquetTable>),
+    table: Table,
 }
 
 impl WholeTable {
@@ -37,16 +77,13 @@ impl WholeTable {
         columns: &[Column],
         digits: Option<usize>,
     ) -> Result<WholeTable, OutputError> {
-        let target = target_of(path).map_err(|source| failure(path, source))?;
+        let target = target_of(path).map_err(|source| OutputError::of_file(path, source))?;
         let partial = partial_name(&target);
-        let file = Growing::create(&partial)?;
+        let table = Table::open(Growing::create(&partial)?, format, columns, digits)?;
         Ok(WholeTable {
             target,
             partial,
-            rows: match format {
-                Format::Csv => Rows::Csv(CsvTable::create(file, columns, digits)?),
-                Format::Parquet => Rows::Parquet(Box::new(ParquetTable::create(file, columns, digits)?)),
-            },
+            table,
         })
     }
 
@@ -55,10 +92,7 @@ impl WholeTable {
     /// # Errors
     /// The operating system refuses.
     pub fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
-        match &mut self.rows {
-            Rows::Csv(table) => table.row(values),
-            Rows::Parquet(table) => table.row(values),
-        }
+        self.table.row(values)
     }
 
     /// Gives the table its name, in place of an older file.
@@ -66,11 +100,9 @@ impl WholeTable {
     /// # Errors
     /// The operating system refuses.
     pub fn finish(mut self) -> Result<(), OutputError> {
-        match &mut self.rows {
-            Rows::Csv(table) => table.flush()?,
-            Rows::Parquet(table) => table.flush()?,
-        }
-        fs::rename(&self.partial, &self.target).map_err(|source| failure(&self.target, source))
+        self.table.flush()?;
+        let renamed = fs::rename(&self.partial, &self.target);
+        renamed.map_err(|source| OutputError::of_file(&self.target, source))
     }
 }
 
@@ -78,13 +110,6 @@ impl Drop for WholeTable {
     fn drop(&mut self) {
         // after `finish` there is none; one that cannot be removed does not look complete
         let _ = fs::remove_file(&self.partial);
-    }
-}
-
-fn failure(path: &Path, source: io::Error) -> OutputError {
-    OutputError::File {
-        path: path.to_path_buf(),
-        source,
     }
 }
 
