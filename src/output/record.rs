@@ -216,6 +216,11 @@ impl Course {
         }
     }
 
+    /// Nodes of all lines in all shapes.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = &Node> + Clone {
+        self.frames.iter().flat_map(|frame| frame.lines.iter().flatten())
+    }
+
     /// True if the run is a free flight of beams.
     pub fn is_flight(&self) -> bool {
         self.flight.is_some()

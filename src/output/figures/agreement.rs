@@ -1,6 +1,6 @@
 //! Computed against measured values: every condition a disc, the diagonal where they agree.
 
-use super::axis::Axis;
+use super::axis::{Axis, ends};
 use super::chart::{Chart, Curve, Stroke};
 use super::{DARK, colour};
 
@@ -18,9 +18,8 @@ pub struct Series {
 
 /// Figure as SVG; `quantity` names the measured quantity and its unit. `None` without values.
 pub fn agreement(title: &str, quantity: &str, series: &[Series]) -> Option<String> {
-    let values = || series.iter().flat_map(|one| one.pairs.iter().flatten());
-    let low = values().copied().fold(f64::INFINITY, f64::min);
-    let high = values().copied().fold(f64::NEG_INFINITY, f64::max);
+    let values = series.iter().flat_map(|one| one.pairs.iter().flatten());
+    let (low, high) = ends(values.copied());
     if low > high {
         return None;
     }

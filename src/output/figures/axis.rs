@@ -19,6 +19,13 @@ pub enum Scale {
     Decades,
 }
 
+/// Least and greatest of some values; without values the former is greater.
+pub(super) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| {
+        (min.min(value), max.max(value))
+    })
+}
+
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -35,14 +42,9 @@ pub struct Axis {
 impl Axis {
     /// Axis from the least to the greatest value of a component (0 or 1) of the curves, no more.
     pub fn fitting(curves: &[Curve], component: usize, label: String) -> Axis {
-        let values = curves
-            .iter()
-            .flat_map(|curve| &curve.points)
-            .map(|point| point[component])
-            .filter(|value| value.is_finite());
-        let (mut min, mut max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| {
-            (min.min(v), max.max(v))
-        });
+        let values = curves.iter().flat_map(|curve| &curve.points);
+        let values = values.map(|point| point[component]);
+        let (mut min, mut max) = ends(values.filter(|value| value.is_finite()));
         if min > max {
             (min, max) = (0.0, 1.0);
         }

@@ -99,6 +99,12 @@ impl Curve {
         self
     }
 
+    /// Returns the curve without values that are not finite, and with few points, so that a figure stays small.
+    fn thinned(mut self) -> Curve {
+        self.points = Trace::of(&self.points).points();
+        self
+    }
+
     fn style(&self) -> ShapeStyle {
         let [r, g, b] = self.colour;
         let (opacity, width) = match self.stroke {
@@ -169,13 +175,10 @@ impl Chart {
         stacked_svg(std::slice::from_ref(self))
     }
 
-    fn named(&self) -> impl Iterator<Item = &Curve> {
-        self.curves.iter().filter(|curve| !curve.name.is_empty())
-    }
-
     /// Places of the legend's entries: left edge [px] and row.
     fn legend(&self) -> Vec<(&Curve, u32, u32)> {
-        entries(self.named(), self.width)
+        let named = self.curves.iter().filter(|curve| !curve.name.is_empty());
+        entries(named, self.width)
     }
 
     fn total_height(&self) -> u32 {
@@ -306,9 +309,7 @@ fn draw_label(area: &Area, label: &str, colour: [u8; 3], patch: &Patch) -> DrawR
     area.draw(&Rectangle::new([low, high], WHITE.mix(0.7).filled()))?;
     let [r, g, b] = colour;
     let colour = RGBColor(r, g, b);
-    let text = text_style(LABEL)
-        .color(&colour)
-        .pos(Pos::new(HPos::Left, VPos::Center));
+    let text = text_behind(LABEL, &colour);
     let middle = (low.1 + high.1) / 2;
     area.draw_text(label, &text, (low.0 + fine(1), middle))
 }
@@ -329,17 +330,15 @@ fn entries<'a>(curves: impl Iterator<Item = &'a Curve>, wide: u32) -> Vec<(&'a C
     places
 }
 
-impl Curve {
-    /// Returns the curve without values that are not finite, and with few points, so that a figure stays small.
-    fn thinned(mut self) -> Curve {
-        self.points = Trace::of(&self.points).points();
-        self
-    }
-}
-
 fn text_style(pixels: f64) -> TextStyle<'static> {
     let size = pixels * f64::from(FINE) * TEXT_SCALE;
     TextStyle::from(("sans-serif", size).into_font())
+}
+
+/// Style of text that begins at a point, in the middle of its height.
+fn text_behind(pixels: f64, colour: &RGBColor) -> TextStyle<'_> {
+    let text = text_style(pixels).color(colour);
+    text.pos(Pos::new(HPos::Left, VPos::Center))
 }
 
 fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult {
@@ -365,9 +364,7 @@ fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult 
             area.draw(&Rectangle::new(corners, style.filled()))?;
         }
     }
-    let text = text_style(f64::from(TEXT))
-        .color(&RGBColor(40, 40, 40))
-        .pos(Pos::new(HPos::Left, VPos::Center));
+    let text = text_behind(f64::from(TEXT), &RGBColor(40, 40, 40));
     area.draw_text(&curve.name, &text, (fine(left + SAMPLE + 6), y))
 }
 

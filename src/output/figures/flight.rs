@@ -1,9 +1,9 @@
 //! Beams in free flight: stroboscopic shapes, and the conserved quantities of such a flight.
 
 use super::super::record::FlightQuantity;
-use super::axis::{Axis, plain};
+use super::axis::{Axis, ends, plain};
 use super::chart::{self, Chart, Curve, Stroke};
-use super::{HISTORY_HEIGHT, Record, TRACES_MAX, WIDTH, colour, with_title};
+use super::{Record, TRACES_MAX, colour, in_time, with_title};
 
 /// A view is left out where the beams spread less than this part of their longest spread [-].
 const VIEW_RATIO: f64 = 0.01;
@@ -18,10 +18,7 @@ const AXES: [&str; 3] = ["x [m]", "y [m]", "z [m]"];
 pub(super) fn shapes(record: &Record) -> Option<String> {
     record.course.is_flight().then_some(())?;
     let spread = [0, 1, 2].map(|axis| {
-        let nodes = record.course.frames.iter().flat_map(|f| f.lines.iter().flatten());
-        let (min, max) = nodes.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), node| {
-            (min.min(node.position[axis]), max.max(node.position[axis]))
-        });
+        let (min, max) = ends(record.course.nodes().map(|node| node.position[axis]));
         max - min
     });
     let widest = spread.iter().copied().fold(0.0, f64::max);
@@ -63,7 +60,11 @@ fn view_chart(record: &Record, [across, up]: [usize; 2]) -> Chart {
         }
     }
     let interval = drawn.get(1).map_or(0.0, |frame| frame.time - drawn[0].time);
-    let title = format!("{}, every {} s", with_title("Flight", record), plain(interval));
+    let title = format!(
+        "{}, every {} s",
+        with_title("Flight", &record.title),
+        plain(interval)
+    );
     let x = Axis::around(&curves, 0, AXES[across].to_string());
     let y = Axis::around(&curves, 1, AXES[up].to_string());
     Chart::to_scale(title, x, y, curves)
@@ -88,18 +89,14 @@ pub(super) fn balance(record: &Record) -> Option<String> {
     let momentum = ["about x", "about y", "about z"].into_iter().enumerate();
     let momentum = momentum.map(|(axis, name)| history(record, name, axis, FlightQuantity::Momentum(axis)));
     let charts = [
-        (with_title("Energy", record), "energy [J]", energy.to_vec()),
+        (with_title("Energy", &record.title), "energy [J]", energy.to_vec()),
         (
             "Angular momentum about the origin".to_string(),
             "angular momentum [N m s]",
             momentum.collect(),
         ),
     ]
-    .map(|(title, label, curves)| {
-        let x = Axis::fitting(&curves, 0, "time [s]".to_string());
-        let y = Axis::around(&curves, 1, label.to_string());
-        Chart::new(title, x, y, curves, WIDTH, HISTORY_HEIGHT)
-    });
+    .map(|(title, label, curves)| in_time(title, label.to_string(), curves));
     Some(chart::stacked_svg(&charts))
 }
 

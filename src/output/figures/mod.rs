@@ -11,7 +11,7 @@ mod flight;
 mod labels;
 pub mod modes;
 
-use axis::{Axis, force_unit};
+use axis::{Axis, ends, force_unit};
 use chart::{Chart, Curve, Stroke};
 
 use super::record::{ELEVATION, Node, Record};
@@ -90,21 +90,16 @@ pub fn profile(record: &Record) -> Option<String> {
         curves.push(Curve::new(ends.to_vec(), colour, Stroke::Level).named(label));
     }
     let y = Axis::around(&curves, 1, "z [m]".to_string());
-    let title = with_title("Line profile", record);
+    let title = with_title("Line profile", &record.title);
     Some(Chart::to_scale(title, x, y, curves).svg())
 }
 
 /// Lines seen from above. `None` where they lie in one vertical plane, or there are no frames.
 pub fn plan(record: &Record) -> Option<String> {
     let (cos, sin) = principal_direction(record);
-    let nodes = record.course.frames.iter().flat_map(|f| f.lines.iter().flatten());
     let spread = |along: [f64; 2]| {
-        let offsets = nodes
-            .clone()
-            .map(|n| n.position[0] * along[0] + n.position[1] * along[1]);
-        let (min, max) = offsets.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| {
-            (min.min(v), max.max(v))
-        });
+        let nodes = record.course.nodes();
+        let (min, max) = ends(nodes.map(|n| n.position[0] * along[0] + n.position[1] * along[1]));
         max - min
     };
     if spread([-sin, cos]) <= PLAN_RATIO * spread([cos, sin]) {
@@ -113,22 +108,15 @@ pub fn plan(record: &Record) -> Option<String> {
     let curves = shapes(record, |[x, y, _]| [x, y])?;
     let x = Axis::around(&curves, 0, "x [m]".to_string());
     let y = Axis::around(&curves, 1, "y [m]".to_string());
-    Some(Chart::to_scale(with_title("Plan", record), x, y, curves).svg())
+    Some(Chart::to_scale(with_title("Plan", &record.title), x, y, curves).svg())
 }
 
 /// Tension at end B of every line in time, with the static catenary's as a dashed level. `None` without a history.
 pub fn tension(record: &Record) -> Option<String> {
-    let mut curves = Vec::new();
-    for (index, line) in record.lines.iter().enumerate() {
-        if let Some(history) = record.history(&format!("{}.tension_b", line.name)) {
-            let stroke = if index < PALETTE.len() {
-                Stroke::Bold
-            } else {
-                Stroke::Dashed
-            };
-            curves.push(Curve::new(history, colour(index), stroke).named(&line.name));
-        }
-    }
+    let mut curves = of_lines(record, "tension_b", |index| match index < PALETTE.len() {
+        true => Stroke::Bold,
+        false => Stroke::Dashed,
+    });
     if record.lines.len() <= LEVELS_MAX {
         for (index, line) in record.lines.iter().enumerate() {
             if let (Some(catenary), [[start, ..], .., [end, ..]]) =
@@ -141,76 +129,60 @@ pub fn tension(record: &Record) -> Option<String> {
             }
         }
     }
-    history_chart(with_title("Tension at end B", record), "tension", curves)
+    let title = with_title("Tension at end B", &record.title);
+    Some(in_newtons(title, |unit| format!("tension [{unit}]"), curves)?.svg())
 }
 
 /// Components of the end force on the vessel in time, a chart for every fairlead. `None` without a history.
 pub fn force(record: &Record) -> Option<String> {
-    let charts: Vec<Chart> = record
-        .points
-        .iter()
-        .filter_map(|point| {
-            let curves = ["fx", "fy", "fz"]
-                .iter()
-                .enumerate()
-                .filter_map(|(index, component)| {
-                    let history = record.history(&format!("{point}.{component}"))?;
-                    Some(Curve::new(history, colour(index), Stroke::Bold).named(component))
-                });
-            let title = format!("Force of the mooring on the vessel at {point}");
-            history_of(title, "force", curves.collect())
-        })
-        .collect();
+    let chart = |point: &String| {
+        let components = ["fx", "fy", "fz"].iter().enumerate();
+        let curves = components.filter_map(|(index, component)| {
+            let history = record.history(&format!("{point}.{component}"))?;
+            Some(Curve::new(history, colour(index), Stroke::Bold).named(component))
+        });
+        let title = format!("Force of the mooring on the vessel at {point}");
+        in_newtons(title, |unit| format!("force [{unit}]"), curves.collect())
+    };
+    let charts: Vec<Chart> = record.points.iter().filter_map(chart).collect();
     (!charts.is_empty()).then(|| chart::stacked_svg(&charts))
 }
 
 /// Greatest curvature and bending moment along every line that bends, in time. `None` where none does.
 pub fn bending(record: &Record) -> Option<String> {
-    let histories = |result: &str| -> Vec<Curve> {
-        let lines = record.lines.iter().enumerate();
-        let curves = lines.filter_map(|(index, line)| {
-            let history = record.history(&format!("{}.{result}", line.name))?;
-            Some(Curve::new(history, colour(index), Stroke::Bold).named(&line.name))
-        });
-        curves.collect()
-    };
+    let histories = |result: &str| of_lines(record, result, |_| Stroke::Bold);
     let curves = histories("curvature_max");
     if curves.is_empty() {
         return None;
     }
-    let title = with_title("Greatest curvature", record);
+    let title = with_title("Greatest curvature", &record.title);
     let curvature = in_time(title, "curvature [1/m]".to_string(), curves);
     let title = "Greatest bending moment".to_string();
-    let moment = moment_chart(title, histories("moment_max"))?;
+    let label = |unit: &str| format!("moment [{unit} m]");
+    let moment = in_newtons(title, label, histories("moment_max"))?;
     Some(chart::stacked_svg(&[curvature, moment]))
+}
+
+/// Histories of a result of every line that has one, by its number.
+fn of_lines(record: &Record, result: &str, stroke: impl Fn(usize) -> Stroke) -> Vec<Curve> {
+    let lines = record.lines.iter().enumerate();
+    let curves = lines.filter_map(|(index, line)| {
+        let history = record.history(&format!("{}.{result}", line.name))?;
+        Some(Curve::new(history, colour(index), stroke(index)).named(&line.name))
+    });
+    curves.collect()
 }
 
 /// Elevation of the surface in time. `None` without waves.
 pub fn waves(record: &Record) -> Option<String> {
     let history = record.history(ELEVATION)?;
     let curves = vec![Curve::new(history, WATER, Stroke::Bold)];
-    let title = with_title("Surface at x = y = 0", record);
+    let title = with_title("Surface at x = y = 0", &record.title);
     Some(in_time(title, "elevation [m]".to_string(), curves).svg())
 }
 
-fn history_chart(title: String, quantity: &str, curves: Vec<Curve>) -> Option<String> {
-    Some(history_of(title, quantity, curves)?.svg())
-}
-
-/// Chart of forces [N] in time [s], in the multiple of the newton that fits.
-fn history_of(title: String, quantity: &str, mut curves: Vec<Curve>) -> Option<Chart> {
-    let unit = scale_to_unit(&mut curves)?;
-    Some(in_time(title, format!("{quantity} [{unit}]"), curves))
-}
-
-/// Chart of moments [N m] in time [s], in the multiple of the newton metre that fits.
-fn moment_chart(title: String, mut curves: Vec<Curve>) -> Option<Chart> {
-    let unit = scale_to_unit(&mut curves)?;
-    Some(in_time(title, format!("moment [{unit} m]"), curves))
-}
-
-/// Divides values [N], or [N m], by the multiple of the newton that fits, and returns its name. `None` without a finite value.
-fn scale_to_unit(curves: &mut [Curve]) -> Option<&'static str> {
+/// Chart of forces [N] or moments [N m] in time [s], in the multiple of the newton that fits, whose name `label` gets. `None` without a finite value.
+fn in_newtons(title: String, label: impl Fn(&str) -> String, mut curves: Vec<Curve>) -> Option<Chart> {
     let values = curves.iter().flat_map(|c| &c.points).map(|p| p[1].abs());
     let greatest = values.filter(|v| v.is_finite()).fold(f64::NAN, f64::max);
     if greatest.is_nan() {
@@ -220,7 +192,7 @@ fn scale_to_unit(curves: &mut [Curve]) -> Option<&'static str> {
     for point in curves.iter_mut().flat_map(|c| &mut c.points) {
         point[1] /= size;
     }
-    Some(unit)
+    Some(in_time(title, label(unit), curves))
 }
 
 fn in_time(title: String, label: String, curves: Vec<Curve>) -> Chart {
@@ -229,11 +201,10 @@ fn in_time(title: String, label: String, curves: Vec<Curve>) -> Chart {
     Chart::new(title, x, y, curves, WIDTH, HISTORY_HEIGHT)
 }
 
-fn with_title(what: &str, record: &Record) -> String {
-    if record.title.is_empty() {
-        what.to_string()
-    } else {
-        format!("{what}: {}", record.title)
+fn with_title(what: &str, title: &str) -> String {
+    match title {
+        "" => what.to_string(),
+        title => format!("{what}: {title}"),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, Curve, Stroke};
-use super::{WIDTH, colour};
+use super::{WIDTH, colour, with_title};
 use crate::output::modes::{Mode, NaturalModes};
 use crate::output::report::rounded;
 
@@ -18,10 +18,7 @@ pub fn modes(modes: &NaturalModes) -> Option<String> {
     if curves.is_empty() {
         return None;
     }
-    let title = match modes.title.is_empty() {
-        true => "Lowest natural modes".to_string(),
-        false => format!("Lowest natural modes: {}", modes.title),
-    };
+    let title = with_title("Lowest natural modes", &modes.title);
     let x = Axis::around(&curves, 0, "s [m]".to_string());
     let y = Axis::around(&curves, 1, "displacement [-]".to_string());
     Some(Chart::new(title, x, y, curves, WIDTH, HEIGHT).svg())
