@@ -3,8 +3,6 @@
 //! A summary, the static equilibrium compared with the closed-form catenary, tension and laid length in time, the figures as inline
 //! SVG, and a description of the model.
 
-use std::fmt::Write;
-
 use quick_xml::escape::escape;
 
 use super::record::{LineRecord, Record, StaticLine};
@@ -30,10 +28,7 @@ pub fn html(record: &Record, figures: &[(&str, String)], words: &str) -> String 
         title => title,
     };
     let title = escape(title);
-    let figures: String = figures
-        .iter()
-        .map(|(_, svg)| format!("<figure>\n{svg}</figure>\n"))
-        .collect();
+    let figures = shown(figures.iter().map(|(_, svg)| svg));
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -132,24 +127,29 @@ fn history(record: &Record) -> String {
     )
 }
 
-fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
-    let mut html = format!(
-        "<div class=\"wide\"><table>\n<caption>{}</caption>\n<tr>",
-        escape(caption)
-    );
-    for cell in head {
-        html.push_str(&format!("<th>{}</th>", escape(*cell)));
-    }
-    html.push_str("</tr>\n");
-    for row in rows {
-        html.push_str("<tr>");
-        for cell in row {
-            write!(html, "<td>{}</td>", escape(cell.as_str())).expect("a string takes any text");
-        }
-        html.push_str("</tr>\n");
-    }
-    html.push_str("</table></div>\n");
-    html
+/// Table with a row of headings; without a caption where that is empty.
+pub(super) fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
+    let row = |tag: &str, cells: &mut dyn Iterator<Item = &str>| {
+        let cells: String = cells
+            .map(|cell| format!("<{tag}>{}</{tag}>", escape(cell)))
+            .collect();
+        format!("<tr>{cells}</tr>\n")
+    };
+    let caption = match caption {
+        "" => String::new(),
+        caption => format!("<caption>{}</caption>\n", escape(caption)),
+    };
+    let head = row("th", &mut head.iter().copied());
+    let rows = rows
+        .iter()
+        .map(|cells| row("td", &mut cells.iter().map(String::as_str)));
+    let rows: String = rows.collect();
+    format!("<div class=\"wide\"><table>\n{caption}{head}{rows}</table></div>\n")
+}
+
+/// Figures as parts of a page.
+pub(super) fn shown<'s>(figures: impl Iterator<Item = &'s String>) -> String {
+    figures.map(|svg| format!("<figure>\n{svg}</figure>\n")).collect()
 }
 
 /// Difference in per cent of the reference; in its own unit where the reference is 0.

@@ -1,11 +1,9 @@
 //! `documentation/index.html`: figure of the scene in equilibrium, table of variables, and what is modelled.
 
-use std::fmt::Write;
-
 use quick_xml::escape::escape;
 
 use crate::interface::{Causality, Interface, Variable};
-use crate::output::report::STYLE;
+use crate::output::report::{self, STYLE};
 use crate::output::xml::number;
 use crate::output::{collect, figures};
 use crate::scene::Scene;
@@ -31,11 +29,7 @@ pub(super) fn html(title: &str, scene: &Scene, simulation: &Simulation, interfac
     let mut record = collect::record(scene, simulation, Some(simulation), (Vec::new(), 0));
     record.course.frames.push(collect::frame(simulation, 0.0));
     let figures = [figures::profile(&record), figures::plan(&record)];
-    let figures: String = figures
-        .into_iter()
-        .flatten()
-        .map(|svg| format!("<figure>\n{svg}</figure>\n"))
-        .collect();
+    let figures = report::shown(figures.iter().flatten());
     let title = escape(title);
     let tables: String = [
         ("Inputs", Causality::Input),
@@ -60,28 +54,26 @@ pub(super) fn html(title: &str, scene: &Scene, simulation: &Simulation, interfac
 
 /// The variables of one role, below a heading; nothing where there are none.
 fn table(heading: &str, variables: &[Variable], causality: Causality) -> String {
-    let mut rows = String::new();
-    for variable in variables
+    let variables = variables
         .iter()
-        .filter(|variable| variable.causality == causality)
-    {
-        let start = variable.start.map_or_else(String::new, number);
+        .filter(|variable| variable.causality == causality);
+    let rows = variables.map(|variable| {
         let name = match variable.dimension {
             Some(length) => format!("{}[{length}]", variable.name),
             None => variable.name.clone(),
         };
-        let cells = [name.as_str(), variable.unit.name, &start, &variable.description];
-        let cells: String = cells
-            .iter()
-            .map(|cell| format!("<td>{}</td>", escape(*cell)))
-            .collect();
-        let _ = writeln!(rows, "<tr>{cells}</tr>"); // a string takes any text
-    }
+        let start = variable.start.map_or_else(String::new, number);
+        vec![
+            name,
+            variable.unit.name.to_string(),
+            start,
+            variable.description.clone(),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
     if rows.is_empty() {
-        return rows;
+        return String::new();
     }
-    format!(
-        "<h2>{heading}</h2>\n<div class=\"wide\"><table>\n<tr><th>name</th><th>unit</th><th>start</th><th>meaning</th></tr>\n\
-         {rows}</table></div>\n"
-    )
+    let table = report::table("", &["name", "unit", "start", "meaning"], &rows);
+    format!("<h2>{heading}</h2>\n{table}")
 }
