@@ -38,10 +38,7 @@ impl Channels {
     /// The first channel whose name is unknown or refers to something that the model does not have.
     pub fn new(scene: &Scene, model: &Model) -> Result<Channels, SceneError> {
         let found = scene.output.channels.iter().enumerate().map(|(index, name)| {
-            let source = Channel::parse(name).and_then(|channel| {
-                channel.check(scene)?;
-                source(&channel, model)
-            });
+            let source = Channel::parse(name).and_then(|channel| source(&channel, model));
             let source =
                 source.map_err(|problem| SceneError::new(format!("output.channels[{index}]"), problem))?;
             Ok((column(name, source, model), source))
@@ -64,45 +61,27 @@ impl Channels {
 }
 
 fn source(channel: &Channel, model: &Model) -> Result<Source, String> {
-    let line_of = |name: &str| {
-        let index = model.lines.iter().position(|line| line.name == *name);
-        index.ok_or_else(|| format!("no line is called `{name}`"))
+    let of_node = |name: &str, place: NodePlace, quantity: Quantity| {
+        let line = model.lines.iter().position(|line| line.name == *name);
+        let line = line.ok_or_else(|| format!("no line is called `{name}`"))?;
+        let last = model.lines[line].nodes_max() - 1;
+        let node = match place {
+            NodePlace::Number(node) => check_node(node, last).map(|()| node)?,
+            NodePlace::End(LineEnd::A) => 0,
+            NodePlace::End(LineEnd::B) => last,
+        };
+        Ok(Source::Node { line, node, quantity })
     };
-    let end_node = |line: usize, end: LineEnd| match end {
-        LineEnd::A => 0,
-        LineEnd::B => model.lines[line].nodes_max() - 1,
-    };
-    Ok(match channel {
-        Channel::EndTension { line, end } => {
-            let line = line_of(line)?;
-            Source::Node {
-                line,
-                node: end_node(line, *end),
-                quantity: Quantity::Tension,
-            }
-        }
-        Channel::Node { line, node, quantity } => {
-            let line = line_of(line)?;
-            let node = match *node {
-                NodePlace::Number(node) => {
-                    check_node(node, model.lines[line].nodes_max() - 1)?;
-                    node
-                }
-                NodePlace::End(end) => end_node(line, end),
-            };
-            Source::Node {
-                line,
-                node,
-                quantity: *quantity,
-            }
-        }
-        Channel::Point { point, quantity } => Source::Point {
+    match channel {
+        Channel::EndTension { line, end } => of_node(line, NodePlace::End(*end), Quantity::Tension),
+        Channel::Node { line, node, quantity } => of_node(line, *node, *quantity),
+        Channel::Point { point, quantity } => Ok(Source::Point {
             point: model
                 .point_index(point)
                 .ok_or_else(|| format!("no point is called `{point}`"))?,
             quantity: *quantity,
-        },
-    })
+        }),
+    }
 }
 
 fn column(name: &str, source: Source, model: &Model) -> Column {
@@ -137,17 +116,15 @@ fn value(source: Source, simulation: &Simulation) -> f64 {
                 Quantity::Tension | Quantity::Force(_) => simulation.segment_tension(line, node),
             }
         }
-        Source::Point { point, quantity } => match quantity {
-            Quantity::Position(axis) => state.points[point].position[axis],
-            Quantity::Velocity(axis) => state.points[point].velocity[axis],
-            Quantity::Force(axis) => simulation.end_force(point)[axis],
-            Quantity::Tension => simulation
-                .end_force(point)
-                .iter()
-                .map(|part| part * part)
-                .sum::<f64>()
-                .sqrt(),
-        },
+        Source::Point { point, quantity } => {
+            let force = || simulation.end_force(point);
+            match quantity {
+                Quantity::Position(axis) => state.points[point].position[axis],
+                Quantity::Velocity(axis) => state.points[point].velocity[axis],
+                Quantity::Force(axis) => force()[axis],
+                Quantity::Tension => force().iter().map(|part| part * part).sum::<f64>().sqrt(),
+            }
+        }
     }
 }
 

@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use super::json;
 use super::record::{Catenary, Column, Flight, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
 use crate::model::{End, Line, Role};
-use crate::scene::{PointKind, Scene};
+use crate::scene::Scene;
+use crate::scene::table::Choice;
 use crate::simulation::{NodeBending, Simulation};
 
 /// Points of a catenary's drawn shape [-].
@@ -142,7 +143,7 @@ pub fn statics(scene: &Scene, simulation: Simulation) -> json::Statics {
         points: (0..simulation.model().points.len())
             .map(|point| json::Point {
                 name: scene.points[point].name.clone(),
-                kind: kind_name(scene.points[point].kind),
+                kind: scene.points[point].kind.word(),
                 position: simulation.state().points[point].position.into(),
                 force: simulation.end_force(point),
             })
@@ -197,26 +198,6 @@ fn static_line(simulation: &Simulation, line: usize) -> json::Line {
             laid_length: closed.laid_length() + 0.0, // an empty sum is −0
             sag: closed.sag(),
         }),
-        profile: simulation
-            .profile(line)
-            .into_iter()
-            .map(|node| json::ProfileNode {
-                s: node.s,
-                x: node.x,
-                y: node.y,
-                z: node.z,
-                tension: node.tension,
-                bending: node.bending,
-            })
-            .collect(),
-    }
-}
-
-fn kind_name(kind: PointKind) -> &'static str {
-    match kind {
-        PointKind::Fixed => "fixed",
-        PointKind::Coupled => "coupled",
-        PointKind::Prescribed => "prescribed",
-        PointKind::Free => "free",
+        profile: simulation.profile(line),
     }
 }

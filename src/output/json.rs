@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::simulation::NodeBending;
+pub use crate::simulation::ProfileNode;
 
 /// A static equilibrium.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -72,24 +72,6 @@ pub struct End {
     pub tension: f64,
 }
 
-/// A node of a profile.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ProfileNode {
-    /// Unstretched arc length from end A [m].
-    pub s: f64,
-    /// Position along x [m].
-    pub x: f64,
-    /// Position along y [m].
-    pub y: f64,
-    /// Height above still water [m].
-    pub z: f64,
-    /// Effective tension [N].
-    pub tension: f64,
-    /// Curvature and moment, where the line has bending stiffness.
-    #[serde(flatten)]
-    pub bending: Option<NodeBending>,
-}
-
 /// A point in equilibrium.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Point {
@@ -136,6 +118,7 @@ pub fn write(statics: &Statics, mut out: impl Write) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulation::NodeBending;
 
     fn statics() -> Statics {
         let end = End {

@@ -105,17 +105,13 @@ pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
 
 /// Columns of these variables.
 pub fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Column> {
-    let form = |variable: &Variable| match variable.kind {
-        Kind::Float64 => Form::Real,
-        Kind::Int32 | Kind::Boolean => Form::Whole,
-    };
     let column = |variable: &Variable| {
-        Column::new(
-            &variable.name,
-            variable.unit.name,
-            variable.description.clone(),
-            form(variable),
-        )
+        let form = match variable.kind {
+            Kind::Float64 => Form::Real,
+            Kind::Int32 | Kind::Boolean => Form::Whole,
+        };
+        let (unit, description) = (variable.unit.name, variable.description.as_str());
+        Column::new(&variable.name, unit, description, form)
     };
     variables.into_iter().map(column).collect()
 }

@@ -27,15 +27,16 @@ const ASIDE: f64 = 1e-3;
 pub struct ProfileNode {
     /// Unstretched arc length from end A [m].
     pub s: f64,
-    /// Position [m].
+    /// Position along x [m].
     pub x: f64,
-    /// Position [m].
+    /// Position along y [m].
     pub y: f64,
-    /// Position [m].
+    /// Height above still water [m].
     pub z: f64,
     /// Effective tension [N].
     pub tension: f64,
     /// Curvature and moment, where the line has bending stiffness.
+    #[serde(flatten)]
     pub bending: Option<NodeBending>,
 }
 
