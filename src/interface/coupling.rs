@@ -1,15 +1,10 @@
 //! Variables for hosts that solve for a body together with its mooring.
 
-use super::rows::{component, row};
+use super::rows::{FORCES, POSES, component, row};
 use super::{Binding, Causality, InterfaceQuantity, Unit, Variable};
 use crate::model::Body;
 use crate::scene::{InterfaceOutput, Scene};
 use crate::simulation::Simulation;
-
-/// Axes of a body's motion; a point has the first three.
-const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
-/// Forces and moments along them.
-const FORCES: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 
 /// Adds the variables of a body that the scene requests.
 pub(super) fn push(variables: &mut Vec<Variable>, scene: &Scene, body: Body, name: &str) {
@@ -37,7 +32,7 @@ fn push_free(variables: &mut Vec<Variable>, body: Body, name: &str, axis: usize)
     let of = format!(
         "{of} of the mooring without inertia at the end of the coming step, at no displacement and velocity, on"
     );
-    let meaning = component(&of, name, AXES[axis % 3]);
+    let meaning = component(&of, name, POSES[axis % 3]);
     let binding = Binding::Interface {
         body,
         quantity: InterfaceQuantity::Free,
@@ -78,14 +73,14 @@ fn push_matrix(variables: &mut Vec<Variable>, body: Body, name: &str, quantity: 
     for i in 0..body.axes() {
         for j in 0..body.axes() {
             let between = if i < 3 && j < 3 { "" } else { "_" };
-            let meaning = format!("{what} on {name}: -{} per {motion} in {}", FORCES[i], AXES[j]);
+            let meaning = format!("{what} on {name}: -{} per {motion} in {}", FORCES[i], POSES[j]);
             let binding = Binding::Interface {
                 body,
                 quantity,
                 row: i,
                 column: j,
             };
-            let label = format!("{name}.{label}_{}{between}{}", AXES[i], AXES[j]);
+            let label = format!("{name}.{label}_{}{between}{}", POSES[i], POSES[j]);
             let unit = units[i / 3 + j / 3];
             variables.push(row(label, meaning, Causality::Output, unit, binding));
         }

@@ -15,24 +15,20 @@ use crate::scene::{LineType, Scene, Water};
 /// Fills [`Variable::initial_dependencies`] of all outputs and calculated parameters.
 pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     let attached_to = |body: Body| -> Vec<usize> { attached(model, body).map(|(line, _)| line).collect() };
-    let knowns: Vec<Known> = variables
-        .iter()
-        .enumerate()
-        .filter(|(_, variable)| {
-            matches!(
-                variable.binding,
-                Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Parameter(_)
-            )
+    let known = |(index, variable): (usize, &Variable)| {
+        let moves = match variable.binding {
+            Binding::Displacement { body, .. } => attached_to(body),
+            Binding::LengthChange { .. } | Binding::Parameter(_) => Vec::new(),
+            _ => return None,
+        };
+        let (reference, binding) = (Interface::reference(index), variable.binding.clone());
+        Some(Known {
+            reference,
+            binding,
+            moves,
         })
-        .map(|(index, variable)| Known {
-            reference: Interface::reference(index),
-            binding: variable.binding.clone(),
-            moves: match variable.binding {
-                Binding::Displacement { body, .. } => attached_to(body),
-                _ => Vec::new(),
-            },
-        })
-        .collect();
+    };
+    let knowns: Vec<Known> = variables.iter().enumerate().filter_map(known).collect();
     let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
     for variable in &mut *variables {
         let (lines, closed_form) = match &variable.binding {
@@ -148,14 +144,11 @@ impl Interface {
 
 /// All lines of the networks that the given lines belong to.
 fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSet<usize> {
-    lines
-        .into_iter()
-        .flat_map(|line| {
-            model
-                .networks
-                .iter()
-                .filter(move |network| network.lines.contains(&line))
-        })
+    let networks = lines.into_iter().flat_map(|line| {
+        let networks = model.networks.iter();
+        networks.filter(move |network| network.lines.contains(&line))
+    });
+    networks
         .flat_map(|network| network.lines.iter().copied())
         .collect()
 }
@@ -276,16 +269,11 @@ impl Scope<'_> {
 
     /// Free points that the lines share.
     fn free_points(&self) -> impl Iterator<Item = &crate::scene::Point> {
-        self.model
-            .networks
-            .iter()
-            .filter(|network| {
-                network
-                    .lines
-                    .iter()
-                    .any(|line| !self.closed_form && self.lines.contains(line))
-            })
-            .flat_map(|network| &network.free_points)
-            .map(|&point| &self.scene.points[point])
+        let networks = self.model.networks.iter().filter(|network| {
+            let mut lines = network.lines.iter();
+            !self.closed_form && lines.any(|line| self.lines.contains(line))
+        });
+        let points = networks.flat_map(|network| &network.free_points);
+        points.map(|&point| &self.scene.points[point])
     }
 }

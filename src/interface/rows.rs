@@ -72,11 +72,11 @@ pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 const NOT_GIVEN: &str = "if never set but to 0, derived from displacements that change, or 0 where solver.input_reconstruction is 1";
 
 /// Displacements of a body; a point has the first three.
-const POSES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+pub(super) const POSES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 /// Velocities of a body.
 const RATES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
 /// Forces and moments on a body.
-const FORCES: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
+pub(super) const FORCES: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 
 /// Rows of a coupled point or a vessel: its displacement, its velocity, and the force and moment of its moorings.
 pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
@@ -87,34 +87,24 @@ pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
     };
     for axis in axes.clone() {
         let label = POSES[axis];
-        let (meaning, unit) = match axis {
-            0..3 => (
-                format!("displacement of {name} from its reference position along global {label}"),
-                Unit::METRE,
-            ),
-            _ => (
-                format!(
-                    "{label} of {name} from its reference attitude; body to global by yaw about z, pitch about y', roll about x''"
-                ),
-                Unit::RADIAN,
+        let meaning = match axis {
+            0..3 => format!("displacement of {name} from its reference position along global {label}"),
+            _ => format!(
+                "{label} of {name} from its reference attitude; body to global by yaw about z, pitch about y', roll about x''"
             ),
         };
+        let unit = [Unit::METRE, Unit::RADIAN][axis / 3];
         let binding = Binding::Displacement { body, axis };
         add(label, meaning, Causality::Input, unit, binding);
     }
     for axis in axes.clone() {
         let along = AXES[axis % 3];
-        let (meaning, unit) = match axis {
-            _ if is_point => (
-                format!("velocity of {name} along global {along}"),
-                Unit::METRE_PER_SECOND,
-            ),
-            0..3 => (component("velocity of", name, along), Unit::METRE_PER_SECOND),
-            _ => (
-                component("angular velocity of", name, along),
-                Unit::RADIAN_PER_SECOND,
-            ),
+        let meaning = match axis {
+            _ if is_point => format!("velocity of {name} along global {along}"),
+            0..3 => component("velocity of", name, along),
+            _ => component("angular velocity of", name, along),
         };
+        let unit = [Unit::METRE_PER_SECOND, Unit::RADIAN_PER_SECOND][axis / 3];
         let binding = Binding::Velocity { body, axis };
         let meaning = format!("{meaning}; {NOT_GIVEN}");
         add(RATES[axis], meaning, Causality::Input, unit, binding);
@@ -128,11 +118,7 @@ pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
             0..3 => component("force of the mooring on", name, along),
             _ => component("moment about the origin of the mooring on", name, along),
         };
-        let unit = if axis < 3 {
-            Unit::NEWTON
-        } else {
-            Unit::NEWTON_METRE
-        };
+        let unit = [Unit::NEWTON, Unit::NEWTON_METRE][axis / 3];
         let binding = Binding::EndForce { body, axis };
         add(FORCES[axis], meaning, Causality::Output, unit, binding);
     }
