@@ -9,6 +9,9 @@ use super::units;
 /// Longest line that is read [bytes].
 const LINE_MAX: u64 = 1 << 20;
 
+/// Hint on numbers with decimal commas between commas, tabs or blanks.
+pub(super) const DECIMAL_COMMAS: &str = "; decimal commas are read where `;` stands between the columns";
+
 /// Separator of the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
@@ -84,7 +87,7 @@ impl Separator {
         };
         value.ok_or_else(|| {
             let hint = match cell.contains(',') && self != Separator::Semicolon {
-                true => "; decimal commas are read where `;` stands between the columns",
+                true => DECIMAL_COMMAS,
                 false => "",
             };
             format!("expected a finite number, found {}{hint}", shown(cell))

@@ -8,6 +8,7 @@ use toml::de::{DeString, DeTable, DeValue};
 use super::SceneError;
 use super::nearest::suggestion;
 use super::path::{Step, push};
+use super::table::Value;
 
 /// A value of the document.
 #[derive(Clone, Copy)]
@@ -43,6 +44,13 @@ impl<'n> Node<'n> {
         }
     }
 
+    /// Reads a value of a type of the scene format.
+    pub(super) fn read<T: Value + Default>(&self) -> Result<T, SceneError> {
+        let mut value = T::default();
+        value.read(self)?;
+        Ok(value)
+    }
+
     fn path(&self) -> String {
         let Some((holder, step)) = self.holder else {
             return String::new();
@@ -58,17 +66,6 @@ impl<'n> Node<'n> {
             at: self.path(),
             problem: problem.into(),
             span: Some(self.value.span()),
-        }
-    }
-
-    /// Returns a mistake in a key of this table.
-    fn refuse_key(&self, key: &Spanned<DeString<'_>>, problem: impl Into<String>) -> SceneError {
-        let mut at = self.path();
-        push(&mut at, Step::Key(key.get_ref()));
-        SceneError {
-            at,
-            problem: problem.into(),
-            span: Some(key.span()),
         }
     }
 
@@ -160,7 +157,6 @@ impl<'n> Node<'n> {
     pub(super) fn entries(&'n self) -> Option<Vec<Entry<'n>>> {
         let entries = self.value.get_ref().as_table()?.iter();
         let entries = entries.map(|(key, value)| Entry {
-            table: self,
             key,
             value: self.under(key.get_ref(), value),
         });
@@ -172,9 +168,10 @@ impl<'n> Node<'n> {
     /// Reads one of several words, of which those with a unit hold a value: `"word"` or `{ word = value }`. Returns the word and the value.
     pub(super) fn word(
         &'n self,
-        known: &'static [(&'static str, Option<&'static str>)],
+        mut known: impl Iterator<Item = (&'static str, Option<&'static str>)> + Clone,
     ) -> Result<(&'static str, Option<Node<'n>>), SceneError> {
-        let names = || known.iter().map(|(name, _)| *name);
+        let all = known.clone();
+        let names = || all.clone().map(|(name, _)| name);
         let entry = match self.entries().as_deref() {
             Some([entry]) => Some(*entry),
             _ => None,
@@ -193,13 +190,13 @@ impl<'n> Node<'n> {
             },
             None => self.refuse(problem),
         };
-        let Some((name, unit)) = known.iter().find(|(known, _)| *known == name) else {
+        let Some((name, unit)) = known.find(|(known, _)| *known == name) else {
             let suggestion = suggestion(name, "known values", names());
             return Err(refuse(format!("unknown value `{name}`{suggestion}")));
         };
         match (unit, entry) {
             (None, None) => Ok((name, None)),
-            (Some(_), Some(entry)) => Ok((name, Some(entry.value.in_unit(*unit)))),
+            (Some(_), Some(entry)) => Ok((name, Some(entry.value.in_unit(unit)))),
             (Some(_), None) => Err(refuse(format!("`{name}` needs a value: write {{ {name} = … }}"))),
             (None, Some(_)) => Err(refuse(format!("`{name}` takes no value: write \"{name}\""))),
         }
@@ -209,7 +206,6 @@ impl<'n> Node<'n> {
 /// A key of a table and its value.
 #[derive(Clone, Copy)]
 pub(super) struct Entry<'n> {
-    table: &'n Node<'n>,
     key: &'n Spanned<DeString<'n>>,
     pub value: Node<'n>,
 }
@@ -222,7 +218,10 @@ impl<'n> Entry<'n> {
 
     /// Returns a mistake in the key.
     pub(super) fn refuse(&self, problem: impl Into<String>) -> SceneError {
-        self.table.refuse_key(self.key, problem)
+        SceneError {
+            span: Some(self.key.span()),
+            ..self.value.refuse(problem)
+        }
     }
 }
 

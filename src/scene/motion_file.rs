@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::columns::{Heading, Lines, Separator, is_number};
+use super::columns::{DECIMAL_COMMAS, Heading, Lines, Separator, is_number};
 use super::rows::shown;
 use super::units::{self, Quantity};
 use super::{MotionRow, input_file};
@@ -100,17 +100,20 @@ fn parse(input: impl BufRead, of_units_file: &BTreeMap<String, String>) -> Resul
         true => Table::without_header(separator, &first),
         false => Table::of_header(separator, &first, of_units_file),
     };
-    let mut table = table.map_err(|problem| format!(", line {line}: {problem}"))?;
+    let mut table = table.map_err(on_line(line))?;
     let mut row = if bare { Some((line, first)) } else { lines.next()? };
     if let Some((line, text)) = row.as_ref().filter(|_| !bare)
-        && table
-            .take_units(text)
-            .map_err(|problem| format!(", line {line}: {problem}"))?
+        && table.take_units(text).map_err(on_line(*line))?
     {
         row = lines.next()?;
     }
     let rows = table.rows(row, &mut lines)?;
     Ok(table.moves(&rows))
+}
+
+/// Puts the line in front of a problem.
+fn on_line(line: usize) -> impl Fn(String) -> String {
+    move |problem| format!(", line {line}: {problem}")
 }
 
 /// Units of columns by name, in the file that a run writes next to its results; none where there is no such file.
@@ -320,16 +323,12 @@ impl Table {
     ) -> Result<Vec<Vec<f64>>, String> {
         let mut rows: Vec<Vec<f64>> = Vec::new();
         while let Some((line, text)) = row {
-            let values = self
-                .row(&text)
-                .map_err(|problem| format!(", line {line}: {problem}"))?;
-            if let Some(last) = rows.last()
-                && values[0] <= last[0]
+            let values = self.row(&text).map_err(on_line(line))?;
+            if let Some([last, ..]) = rows.last().map(Vec::as_slice)
+                && values[0] <= *last
             {
-                return Err(format!(
-                    ", line {line}: time {} s does not come after {} s",
-                    values[0], last[0]
-                ));
+                let problem = format!("time {} s does not come after {last} s", values[0]);
+                return Err(on_line(line)(problem));
             }
             if rows.len() == ROWS_MAX {
                 return Err(format!(": more than {ROWS_MAX} rows"));
@@ -347,16 +346,13 @@ impl Table {
         let cells = self.separator.cells(text);
         if cells.len() != self.width {
             let names: Vec<&str> = self.columns.iter().map(|column| column.name.as_str()).collect();
-            let twice = self.separator == Separator::Comma && cells.len() > self.width;
+            let (wanted, names, found) = (self.width, names.join(", "), cells.len());
+            let hint = match self.separator == Separator::Comma && found > wanted {
+                true => DECIMAL_COMMAS,
+                false => "",
+            };
             return Err(format!(
-                "expected {} numbers ({}), found {}{}",
-                self.width,
-                names.join(", "),
-                cells.len(),
-                match twice {
-                    true => "; decimal commas are read where `;` stands between the columns",
-                    false => "",
-                }
+                "expected {wanted} numbers ({names}), found {found}{hint}"
             ));
         }
         let separator = self.separator;
@@ -375,15 +371,12 @@ impl Table {
 
     /// "columns between semicolons: time [s], x [m], pitch [deg]; decimal commas".
     fn in_words(&self) -> String {
-        let mut columns: Vec<String> = Vec::new();
-        for Column { name, unit, .. } in &self.columns {
-            columns.push(format!("{name} [{unit}]"));
-        }
-        let mut said = format!(
-            "columns between {}: {}",
-            self.separator.in_words(),
-            columns.join(", ")
-        );
+        let columns = self.columns.iter();
+        let columns: Vec<String> = columns
+            .map(|column| format!("{} [{}]", column.name, column.unit))
+            .collect();
+        let (separator, columns) = (self.separator.in_words(), columns.join(", "));
+        let mut said = format!("columns between {separator}: {columns}");
         for (is_so, words) in [
             (!self.has_header, "; no header, so columns count by their places"),
             (self.has_unit_row, "; units from the row below the header"),

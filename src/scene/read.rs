@@ -40,7 +40,10 @@ impl LoadedScene {
         if self.format != TOML {
             return self.places.locate_note(&self.text, note);
         }
-        with_lines(&self.text, vec![note]).remove(0)
+        match Document::parse(&self.text) {
+            Ok(document) => document.place_note(&self.text, note),
+            Err(_) => note,
+        }
     }
 
     /// Gives a mistake that was found later its place in the file.
@@ -121,7 +124,7 @@ impl Scene {
 ///
 /// # Errors
 /// The first mistake, with its key path and its bytes in the text.
-pub fn part<T: Value>(text: &str) -> Result<T, SceneError> {
+pub fn part<T: Value + Default>(text: &str) -> Result<T, SceneError> {
     Document::parse(text)?.read()
 }
 
@@ -167,30 +170,11 @@ fn scene_of(text: &str, folder: &Path) -> Result<(Scene, Vec<Note>), Vec<SceneEr
     let of_files = scene.read_files(folder);
     let mistakes = scene.mistakes_with(of_files);
     if mistakes.is_empty() {
-        let mut notes = scene.notes();
-        place_in_lines(&document, text, &mut notes);
+        let notes = scene.notes().into_iter();
+        let notes = notes.map(|note| document.place_note(text, note)).collect();
         Ok((scene, notes))
     } else {
         Err(document.place(mistakes))
-    }
-}
-
-/// Notes on a scene with the lines of its text where their keys stand.
-fn with_lines(text: &str, mut notes: Vec<Note>) -> Vec<Note> {
-    if let Ok(document) = Document::parse(text) {
-        place_in_lines(&document, text, &mut notes);
-    }
-    notes
-}
-
-/// Gives notes the lines where their keys stand in the text of a document.
-fn place_in_lines(document: &Document, text: &str, notes: &mut [Note]) {
-    for note in notes {
-        if let Some(file) = path::file_of(&document.root, &note.at) {
-            note.at = file;
-        }
-        let span = path::locate(&document.root, &note.at);
-        note.line = span.map(|span| path::line_column(text, span.start).0);
     }
 }
 
@@ -281,10 +265,18 @@ impl<'t> Document<'t> {
         Ok(Document { root })
     }
 
-    fn read<T: Value>(&self) -> Result<T, SceneError> {
-        let mut value = T::blank();
-        value.read(&Node::root(&self.root))?;
-        Ok(value)
+    fn read<T: Value + Default>(&self) -> Result<T, SceneError> {
+        Node::root(&self.root).read()
+    }
+
+    /// Gives a note the line of the text where its key stands.
+    fn place_note(&self, text: &str, mut note: Note) -> Note {
+        if let Some(file) = path::file_of(&self.root, &note.at) {
+            note.at = file;
+        }
+        let span = path::locate(&self.root, &note.at);
+        note.line = span.map(|span| path::line_column(text, span.start).0);
+        note
     }
 
     /// Gives mistakes their place in the text and puts them in its order.
@@ -327,17 +319,19 @@ pub fn read_text(path: &Path, is_latin_1: impl Fn(&str) -> bool) -> Result<Strin
         path: path.to_path_buf(),
         problem,
     };
+    let not_text = |byte: usize, problem: String| LoadError::NotText {
+        path: path.to_path_buf(),
+        byte,
+        problem,
+    };
     let mut file = input_file::open(path, "a scene file", input_file::SIZE_MAX)
         .map_err(|unopened| unreadable(unopened.problem))?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)
         .map_err(|error| unreadable(format!("cannot be read: {error}")))?;
     if let Some(byte) = bytes.iter().position(|byte| *byte == 0) {
-        return Err(LoadError::NotText {
-            path: path.to_path_buf(),
-            byte,
-            problem: format!("a binary file (byte {byte} is 0), not a TOML scene"),
-        });
+        let problem = format!("a binary file (byte {byte} is 0), not a TOML scene");
+        return Err(not_text(byte, problem));
     }
     String::from_utf8(bytes).or_else(|error| {
         let latin: String = error.as_bytes().iter().map(|byte| char::from(*byte)).collect();
@@ -347,13 +341,10 @@ pub fn read_text(path: &Path, is_latin_1: impl Fn(&str) -> bool) -> Result<Strin
         let byte = error.utf8_error().valid_up_to();
         let before = String::from_utf8_lossy(&error.as_bytes()[..byte]).into_owned();
         let (line, column) = path::line_column(&before, byte);
-        Err(LoadError::NotText {
-            path: path.to_path_buf(),
-            byte,
-            problem: format!(
-                "not UTF-8 text: byte {byte} (line {line}, column {column}) is 0x{:02X}; save the file as UTF-8",
-                error.as_bytes()[byte]
-            ),
-        })
+        let problem = format!(
+            "not UTF-8 text: byte {byte} (line {line}, column {column}) is 0x{:02X}; save the file as UTF-8",
+            error.as_bytes()[byte]
+        );
+        Err(not_text(byte, problem))
     })
 }

@@ -143,18 +143,12 @@ impl Value for Friction {
         Kind::NumberOrTable(Directions::SCHEMA)
     }
 
-    fn blank() -> Friction {
-        Friction::default()
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         if node.entries().is_none() {
             *self = Friction::isotropic(node.number("a number or { transverse = μ, axial = μ }")?);
             return Ok(());
         }
-        let mut directions = Directions::default();
-        directions.read(node)?;
-        let Directions { transverse, axial } = directions;
+        let Directions { transverse, axial } = node.read()?;
         *self = Friction { transverse, axial };
         Ok(())
     }

@@ -139,9 +139,10 @@ table! {
 }
 
 /// Form of node positions and tensions among the variables.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Profile {
     /// They are no variables.
+    #[default]
     None,
     /// Arrays in FMI 3.0; FMI 2.0, which has none, gets scalars.
     Array,
@@ -171,10 +172,6 @@ impl Profile {
 impl Value for Profile {
     fn kind() -> Kind {
         Kind::Words(Profile::WORDS)
-    }
-
-    fn blank() -> Profile {
-        Profile::None
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
@@ -255,10 +252,6 @@ pub enum Threads {
 impl Value for Threads {
     fn kind() -> Kind {
         Kind::Count
-    }
-
-    fn blank() -> Threads {
-        Threads::Auto
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {

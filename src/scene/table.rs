@@ -307,10 +307,6 @@ pub trait Value {
     fn kind() -> Kind
     where
         Self: Sized;
-    /// Value before anything is read.
-    fn blank() -> Self
-    where
-        Self: Sized;
     /// Returns whether a table may leave the key out without giving a default.
     fn is_optional() -> bool
     where
@@ -376,10 +372,6 @@ pub trait Table: Default {
 impl<T: Table> Value for T {
     fn kind() -> Kind {
         Kind::Table(T::SCHEMA)
-    }
-
-    fn blank() -> T {
-        T::default()
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
@@ -489,7 +481,7 @@ macro_rules! table {
             }
         }
     };
-    (@default $type:ty) => { <$type as $crate::scene::table::Value>::blank() };
+    (@default $type:ty) => { <$type as Default>::default() };
     (@default $type:ty, $default:expr) => { $default };
     (@optional $type:ty) => { <$type as $crate::scene::table::Value>::is_optional };
     (@optional $type:ty, $default:expr) => { || true };
@@ -509,6 +501,12 @@ macro_rules! choice {
             $($(#[doc = $doc])+ $variant,)+
         }
 
+        impl Default for $name {
+            fn default() -> $name {
+                <$name as $crate::scene::table::Choice>::WORDS[0].1
+            }
+        }
+
         $crate::scene::table::choice!(@value $name, [$(($word, $variant, [$($doc),+])),+]);
     };
     (@value $name:ident, [$(($word:literal, $variant:ident, [$($doc:literal),+])),+]) => {
@@ -518,16 +516,11 @@ macro_rules! choice {
                 name: stringify!($name),
                 words: &[$(($word, concat!($($doc),+))),+],
             };
-            const KNOWN: &'static [(&'static str, Option<&'static str>)] = &[$(($word, None)),+];
         }
 
         impl $crate::scene::table::Value for $name {
             fn kind() -> $crate::scene::table::Kind {
                 $crate::scene::table::Kind::Words(<$name as $crate::scene::table::Choice>::MEANINGS)
-            }
-
-            fn blank() -> $name {
-                <$name as $crate::scene::table::Choice>::WORDS[0].1
             }
 
             fn read(&mut self, node: &$crate::scene::document::Node<'_>) -> Result<(), $crate::scene::SceneError> {
@@ -587,19 +580,10 @@ macro_rules! choice_of_values {
                 })
             }
 
-            fn blank() -> $name {
-                $name::default()
-            }
-
             fn read(&mut self, node: &$crate::scene::document::Node<'_>) -> Result<(), $crate::scene::SceneError> {
-                const KNOWN: &[(&str, Option<&str>)] =
-                    &[$(($word, None),)+ $(($held_word, $rule.unit()),)+];
-                *self = match node.word(KNOWN)? {
-                    $(($held_word, Some(node)) => {
-                        let mut value = <$type as $crate::scene::table::Value>::blank();
-                        value.read(&node)?;
-                        $name::$held(value)
-                    })+
+                let known = [$(($word, None),)+ $(($held_word, $rule.unit()),)+];
+                *self = match node.word(known.into_iter())? {
+                    $(($held_word, Some(node)) => $name::$held(node.read()?),)+
                     $(($word, _) => $name::$plain,)+
                     _ => $name::default(),
                 };
@@ -634,8 +618,6 @@ pub trait Choice: Copy + PartialEq + 'static {
     const WORDS: &'static [(&'static str, Self)];
     /// Words with their meanings.
     const MEANINGS: Words;
-    /// Words, none of which holds a value.
-    const KNOWN: &'static [(&'static str, Option<&'static str>)];
 
     /// Place among the words, from 0.
     fn place(self) -> Option<usize> {
@@ -650,24 +632,20 @@ pub trait Choice: Copy + PartialEq + 'static {
 
 /// Reads a word.
 pub(super) fn read_choice<T: Choice>(node: &Node<'_>) -> Result<T, SceneError> {
-    let (word, _) = node.word(T::KNOWN)?;
-    let mut words = T::WORDS.iter();
-    let (_, value) = words
-        .find(|(known, _)| *known == word)
-        .expect("the word is one of these");
-    Ok(*value)
+    let words = || T::WORDS.iter();
+    let (word, _) = node.word(words().map(|(word, _)| (*word, None)))?;
+    let known = words().find(|(known, _)| *known == word);
+    Ok(known.expect("the word is one of these").1)
 }
 
 /// The choice that a number stands for in the FMU.
 pub(super) fn numbered_choice<T: Choice>(number: f64) -> Result<T, String> {
-    let mut words = T::WORDS.iter().enumerate();
-    let found = words.find(|(place, _)| *place as f64 == number);
+    let words = T::WORDS.iter().enumerate();
+    let found = words.clone().find(|(place, _)| *place as f64 == number);
     found.map(|(_, (_, value))| *value).ok_or_else(|| {
-        let known = T::WORDS
-            .iter()
-            .enumerate()
-            .map(|(place, (word, _))| format!("{place} ({word})"));
-        let known: Vec<String> = known.collect();
+        let known: Vec<String> = words
+            .map(|(place, (word, _))| format!("{place} ({word})"))
+            .collect();
         format!("{number} is neither {}", known.join(" nor "))
     })
 }

@@ -14,7 +14,7 @@ use super::words::significant;
 use super::{SceneError, input_file};
 
 /// Tension over strain: `[[strain, tension], …]` or `{ file = "rope.csv" }`, which stands relative to the scene's folder.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct TensionStrain {
     /// Path of the file, where there is one.
     pub file: Option<String>,
@@ -45,13 +45,6 @@ impl Value for TensionStrain {
         Kind::NumberOrTable(TensionFile::SCHEMA)
     }
 
-    fn blank() -> TensionStrain {
-        TensionStrain {
-            file: None,
-            rows: Vec::new(),
-        }
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         if node.elements().is_some() {
             return self.rows.read(node);
@@ -59,9 +52,8 @@ impl Value for TensionStrain {
         if node.entries().is_none() {
             return Err(node.expected("[[strain, tension], …] or { file = \"…\" }"));
         }
-        let mut table = TensionFile::default();
-        table.read(node)?;
-        self.file = Some(table.file);
+        let TensionFile { file } = node.read()?;
+        self.file = Some(file);
         Ok(())
     }
 

@@ -37,13 +37,15 @@ table! {
     }
 }
 
+impl Default for TimeFunction {
+    fn default() -> TimeFunction {
+        TimeFunction::Constant(0.0)
+    }
+}
+
 impl Value for TimeFunction {
     fn kind() -> Kind {
         Kind::NumberOrTable(FunctionText::SCHEMA)
-    }
-
-    fn blank() -> TimeFunction {
-        TimeFunction::Constant(0.0)
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
@@ -53,8 +55,7 @@ impl Value for TimeFunction {
             *self = TimeFunction::Constant(node.number(expected)?);
             return Ok(());
         }
-        let mut text = FunctionText::default();
-        text.read(node)?;
+        let text: FunctionText = node.read()?;
         let given = text.entries().filter(|(_, value)| !value.is_absent());
         let given: Vec<&str> = given.map(|(key, _)| key.name()).collect();
         if let [first, second, ..] = given[..] {
@@ -62,14 +63,12 @@ impl Value for TimeFunction {
                 "`{first}` and `{second}` cannot both be given: a load has one function of time"
             )));
         }
-        let constant = || TimeFunction::Constant(text.constant.unwrap_or_default());
-        let step = text
-            .step
-            .map(TimeFunction::Step)
-            .or(text.ramp.map(TimeFunction::Ramp));
-        *self = step
-            .or(text.table.map(TimeFunction::Table))
-            .unwrap_or_else(constant);
+        *self = match (text.step, text.ramp, text.table) {
+            (Some(numbers), ..) => TimeFunction::Step(numbers),
+            (_, Some(numbers), _) => TimeFunction::Ramp(numbers),
+            (.., Some(rows)) => TimeFunction::Table(rows),
+            _ => TimeFunction::Constant(text.constant.unwrap_or_default()),
+        };
         Ok(())
     }
 
@@ -257,7 +256,7 @@ pub enum MotionPath {
 
 /// `file = "motion.csv"`: columns time, x, y, z [s, m] and for vessels roll, pitch, yaw [rad], a header row, relative to the scene's
 /// folder.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct MotionFile {
     /// Path of the file.
     pub file: String,
@@ -287,6 +286,19 @@ pub struct HarmonicMotion {
 }
 
 impl HarmonicMotion {
+    /// The motion by the sines of its axes x, y, z, roll, pitch and yaw, with a ramp [s].
+    pub(super) fn of([x, y, z, roll, pitch, yaw]: [Vec<Vec<f64>>; 6], ramp: Option<f64>) -> HarmonicMotion {
+        HarmonicMotion {
+            x,
+            y,
+            z,
+            roll,
+            pitch,
+            yaw,
+            ramp,
+        }
+    }
+
     /// The six axes by name, with their sines: amplitudes [m] of x, y, z and [rad] of roll, pitch, yaw.
     pub fn axes(&self) -> [(&'static str, &Vec<Vec<f64>>); 6] {
         [
@@ -369,7 +381,7 @@ table! {
 impl MotionText {
     /// The motion, where the keys go together.
     fn path(self) -> Result<MotionPath, String> {
-        let axes = [&self.x, &self.y, &self.z, &self.roll, &self.pitch, &self.yaw];
+        let axes = [self.x, self.y, self.z, self.roll, self.pitch, self.yaw];
         let swings = axes.iter().any(|axis| axis.is_some());
         match (self.file, self.table) {
             (Some(_), Some(_)) => Err("`file` and `table` cannot both be given".into()),
@@ -378,28 +390,22 @@ impl MotionText {
             ),
             (Some(file), None) => Ok(MotionPath::File(MotionFile {
                 file,
-                rows: Vec::new(),
-                columns: String::new(),
+                ..MotionFile::default()
             })),
             (None, Some(rows)) => Ok(MotionPath::Table(rows.iter().map(|row| row.0).collect())),
             (None, None) if !swings => {
                 Err("a motion needs `x`, `y` or `z`, or `table`, or `file`; vessels also `roll`, `pitch` or `yaw`".into())
             }
-            (None, None) => Ok(MotionPath::Harmonic(HarmonicMotion {
-                x: self.x.unwrap_or_default(),
-                y: self.y.unwrap_or_default(),
-                z: self.z.unwrap_or_default(),
-                roll: self.roll.unwrap_or_default(),
-                pitch: self.pitch.unwrap_or_default(),
-                yaw: self.yaw.unwrap_or_default(),
-                ramp: self.ramp,
-            })),
+            (None, None) => {
+                let axes = axes.map(Option::unwrap_or_default);
+                Ok(MotionPath::Harmonic(HarmonicMotion::of(axes, self.ramp)))
+            }
         }
     }
 }
 
 /// A row of 4 numbers, or of 7 with the rotations.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 struct TableRow(MotionRow);
 
 impl Value for TableRow {
@@ -407,13 +413,8 @@ impl Value for TableRow {
         Kind::Numbers
     }
 
-    fn blank() -> TableRow {
-        TableRow([0.0; 7])
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
-        let mut numbers: Vec<f64> = Vec::new();
-        Value::read(&mut numbers, node)?;
+        let numbers: Vec<f64> = node.read()?;
         let count = numbers.len();
         if ![4, 7].contains(&count) {
             let expected = "an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel)";
@@ -430,13 +431,15 @@ impl Value for TableRow {
     }
 }
 
+impl Default for MotionPath {
+    fn default() -> MotionPath {
+        MotionPath::Harmonic(HarmonicMotion::default())
+    }
+}
+
 impl Value for MotionPath {
     fn kind() -> Kind {
         Kind::Table(MotionText::SCHEMA)
-    }
-
-    fn blank() -> MotionPath {
-        MotionPath::Harmonic(HarmonicMotion::default())
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
@@ -445,8 +448,7 @@ impl Value for MotionPath {
                 "{ x = [[amplitude, period], …], z = …, ramp = … }, { table = [[t, x, y, z], …] } or { file = \"motion.csv\" }",
             ));
         }
-        let mut text = MotionText::default();
-        text.read(node)?;
+        let text: MotionText = node.read()?;
         *self = text.path().map_err(|problem| node.refuse(problem))?;
         Ok(())
     }

@@ -14,10 +14,6 @@ impl Value for f64 {
         Kind::Number
     }
 
-    fn blank() -> f64 {
-        0.0
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         *self = node.number("a number")?;
         Ok(())
@@ -53,10 +49,6 @@ macro_rules! count {
                 Kind::Count
             }
 
-            fn blank() -> $type {
-                0
-            }
-
             fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
                 *self = node.count("a whole number, not negative")? as $type;
                 Ok(())
@@ -88,10 +80,6 @@ impl Value for bool {
         Kind::Truth
     }
 
-    fn blank() -> bool {
-        false
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         *self = node.truth()?;
         Ok(())
@@ -107,10 +95,6 @@ impl Value for String {
         Kind::Text
     }
 
-    fn blank() -> String {
-        String::new()
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         *self = node.text()?.to_string();
         Ok(())
@@ -121,13 +105,9 @@ impl Value for String {
     }
 }
 
-impl<T: Value> Value for Option<T> {
+impl<T: Value + Default> Value for Option<T> {
     fn kind() -> Kind {
         T::kind()
-    }
-
-    fn blank() -> Option<T> {
-        None
     }
 
     fn is_optional() -> bool {
@@ -135,7 +115,7 @@ impl<T: Value> Value for Option<T> {
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
-        self.insert(T::blank()).read(node)
+        self.insert(T::default()).read(node)
     }
 
     fn write(&self) -> Option<Toml> {
@@ -153,7 +133,7 @@ impl<T: Value> Value for Option<T> {
     }
 
     fn set_number(&mut self, number: f64) -> Result<(), String> {
-        self.get_or_insert_with(T::blank).set_number(number)
+        self.get_or_insert_with(T::default).set_number(number)
     }
 
     fn is_absent(&self) -> bool {
@@ -195,22 +175,16 @@ pub(super) fn decimal_commas(numbers: &[f64], lengths: &[usize]) -> String {
 }
 
 /// Reads the elements of an array one by one.
-fn read_all<T: Value>(node: &Node<'_>, mut keep: impl FnMut(T)) -> Result<(), SceneError> {
+fn read_all<T: Value + Default>(node: &Node<'_>, mut keep: impl FnMut(T)) -> Result<(), SceneError> {
     for element in node.elements().ok_or_else(|| node.expected("an array"))? {
-        let mut value = T::blank();
-        value.read(&element)?;
-        keep(value);
+        keep(element.read()?);
     }
     Ok(())
 }
 
-impl<T: Value, const N: usize> Value for [T; N] {
+impl<T: Value + Default, const N: usize> Value for [T; N] {
     fn kind() -> Kind {
         list_of(T::kind())
-    }
-
-    fn blank() -> [T; N] {
-        std::array::from_fn(|_| T::blank())
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
@@ -245,13 +219,9 @@ impl<T: Value, const N: usize> Value for [T; N] {
     }
 }
 
-impl<T: Value> Value for Vec<T> {
+impl<T: Value + Default> Value for Vec<T> {
     fn kind() -> Kind {
         list_of(T::kind())
-    }
-
-    fn blank() -> Vec<T> {
-        Vec::new()
     }
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
@@ -279,7 +249,7 @@ impl<T: Value> Value for Vec<T> {
     }
 }
 
-impl<T: Value> Value for BTreeMap<String, T> {
+impl<T: Value + Default> Value for BTreeMap<String, T> {
     fn kind() -> Kind {
         match T::kind() {
             Kind::Table(schema) => Kind::ByName(schema),
@@ -287,15 +257,9 @@ impl<T: Value> Value for BTreeMap<String, T> {
         }
     }
 
-    fn blank() -> BTreeMap<String, T> {
-        BTreeMap::new()
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         for entry in node.entries().ok_or_else(|| node.expected("a table"))? {
-            let mut value = T::blank();
-            value.read(&entry.value)?;
-            self.insert(entry.name().to_string(), value);
+            self.insert(entry.name().to_string(), entry.value.read()?);
         }
         Ok(())
     }

@@ -221,10 +221,6 @@ impl Value for Waves {
         Kind::Table(Sea::SCHEMA)
     }
 
-    fn blank() -> Waves {
-        Waves::default()
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         if node.elements().is_some() {
             return self.seas.read(node);
@@ -235,9 +231,7 @@ impl Value for Waves {
                  { spectrum = \"jonswap\", significant_height, peak_period }, or an array of seas",
             ));
         }
-        let mut sea = Sea::default();
-        sea.read(node)?;
-        self.seas = vec![sea];
+        self.seas = vec![node.read()?];
         Ok(())
     }
 
@@ -256,26 +250,25 @@ impl Value for Waves {
     }
 }
 
+impl Default for WaveComponents {
+    fn default() -> WaveComponents {
+        WaveComponents::Rows(Vec::new())
+    }
+}
+
 impl Value for WaveComponents {
     fn kind() -> Kind {
         Kind::Numbers
     }
 
-    fn blank() -> WaveComponents {
-        WaveComponents::Rows(Vec::new())
-    }
-
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
-        if node.elements().is_some() {
-            let mut rows = Vec::new();
-            Value::read(&mut rows, node)?;
-            *self = WaveComponents::Rows(rows);
-            return Ok(());
-        }
         let expected =
             "rows [[amplitude, period, direction, phase], …], or the number of components of a spectrum";
-        node.count(expected)
-            .map(|number| *self = WaveComponents::Number(number))
+        *self = match node.elements() {
+            Some(_) => WaveComponents::Rows(node.read()?),
+            None => WaveComponents::Number(node.count(expected)?),
+        };
+        Ok(())
     }
 
     fn write(&self) -> Option<Toml> {
