@@ -121,9 +121,7 @@ impl Channel {
             Channel::EndTension { line, .. } => find_line(scene, line).map(|_| ()),
             Channel::Node { line, node, .. } => {
                 let line = find_line(scene, line)?;
-                let mut elements = line.sections.iter().map(|section| section.elements);
-                let elements = elements.try_fold(0_usize, |sum, count| sum.checked_add(count?));
-                match (node, elements) {
+                match (node, line.element_count()) {
                     (NodePlace::Number(node), Some(elements)) => check_node(*node, elements),
                     _ => Ok(()),
                 }

@@ -179,14 +179,9 @@ pub enum Bounds {
 impl Bounds {
     /// Returns whether a value is finite and within the bounds.
     pub(super) fn accepts(self, value: f64) -> bool {
-        match self {
-            Bounds::Elsewhere => true,
-            Bounds::Finite => value.is_finite(),
-            Bounds::Positive(limit) => (POSITIVE_MIN..=limit).contains(&value),
-            Bounds::NotNegative(limit) => (0.0..=limit).contains(&value),
-            Bounds::Magnitude(limit) => value.abs() <= limit,
-            Bounds::Within(least, most) => (least..=most).contains(&value),
-        }
+        let [least, most] = self.range();
+        let is_within = least.is_none_or(|least| value >= least) && most.is_none_or(|most| value <= most);
+        self == Bounds::Elsewhere || value.is_finite() && is_within
     }
 
     /// Least and greatest number that are accepted, where the bounds alone say it.
@@ -272,20 +267,16 @@ fn check_name(findings: &mut Findings, at: &str, name: &str) {
     }
 }
 
-/// Checks the names of points, lines and vessels, which share the name space of the FMU's variables.
-fn check_names<'s>(
-    findings: &mut Findings,
-    taken: &mut BTreeMap<&'s str, String>,
-    list: &str,
-    names: impl Iterator<Item = &'s str>,
-) {
-    for (index, name) in names.enumerate() {
-        let at = format!("{list}[{index}].name");
+/// Checks the names of points, lines and vessels, each of which is taken once.
+fn check_names(scene: &Scene, findings: &mut Findings) {
+    let mut taken = BTreeMap::new();
+    for (owner, name) in scene.names() {
+        let at = below(&owner, "name");
         check_name(findings, &at, name);
         if let Some(other) = taken.get(name) {
             findings.say(at, format!("the name `{name}` is taken by {other}: take another"));
         } else {
-            taken.insert(name, format!("{list}[{index}]"));
+            taken.insert(name, owner);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::motion_file::{Moves, axis_number, read_moves};
-use super::{HarmonicMotion, MotionPath, MotionRow, PointKind, Scene};
+use super::{HarmonicMotion, MotionPath, MotionRow, Point, PointKind, Scene};
 
 /// Motions of a run, in addition to those of its scene. A body that moves here does not move as its scene says.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -92,10 +92,8 @@ impl Scene {
         }
         for body in drive.regular.iter().map(|regular| &regular.body) {
             self.must_move(body)?;
-            let turns = drive
-                .regular
-                .iter()
-                .any(|other| other.body == *body && other.axis > 2);
+            let mut regular = drive.regular.iter();
+            let turns = regular.any(|other| other.body == *body && other.axis > 2);
             self.must_turn(body, turns)?;
             if taken.contains(body) {
                 return Err(format!(
@@ -167,12 +165,10 @@ impl Scene {
     }
 
     /// Vessels and coupled points that do not ride on one.
-    fn moved_by_a_host(&self) -> Vec<&str> {
+    pub(super) fn moved_by_a_host(&self) -> Vec<&str> {
         let vessels = self.vessels.iter().map(|vessel| vessel.name.as_str());
-        let points = self
-            .points
-            .iter()
-            .filter(|point| point.kind == PointKind::Coupled && point.on.is_none());
+        let coupled = |point: &&Point| point.kind == PointKind::Coupled && point.on.is_none();
+        let points = self.points.iter().filter(coupled);
         vessels.chain(points.map(|point| point.name.as_str())).collect()
     }
 
@@ -189,7 +185,7 @@ impl Scene {
 
     /// Points follow no rotation.
     fn must_turn(&self, body: &str, turns: bool) -> Result<(), String> {
-        if !turns || self.vessels.iter().any(|vessel| vessel.name == body) {
+        if !turns || self.vessel(body).is_some() {
             return Ok(());
         }
         Err(format!(
@@ -219,22 +215,11 @@ impl Scene {
 
 /// The regular motions of one body as a scene has them.
 fn harmonic(all: &[RegularMotion], body: &str, ramp: Option<f64>) -> HarmonicMotion {
-    let mut motion = HarmonicMotion {
-        ramp,
-        ..HarmonicMotion::default()
-    };
+    let mut axes: [Vec<Vec<f64>>; 6] = Default::default();
     for regular in all.iter().filter(|regular| regular.body == body) {
-        let axis = match regular.axis {
-            0 => &mut motion.x,
-            1 => &mut motion.y,
-            2 => &mut motion.z,
-            3 => &mut motion.roll,
-            4 => &mut motion.pitch,
-            _ => &mut motion.yaw,
-        };
-        axis.push(vec![regular.amplitude, regular.period, regular.phase]);
+        axes[regular.axis].push(vec![regular.amplitude, regular.period, regular.phase]);
     }
-    motion
+    HarmonicMotion::of(axes, ramp)
 }
 
 #[cfg(test)]

@@ -5,8 +5,7 @@ use super::notes::Note;
 use super::path::quoted;
 use super::table::{Acts, Table};
 use super::{
-    ForceOutput, Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed,
-    Section, Solver,
+    ForceOutput, Integrator, Line, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section, Solver,
 };
 
 impl Scene {
@@ -108,7 +107,7 @@ impl Scene {
     }
 
     fn idle_of_line_type(&self, at: &str, line_type: &LineType, notes: &mut Vec<Note>) {
-        let beam = line_type.model == LineModel::Beam || self.solver.integrator == Integrator::Beam;
+        let beam = self.makes_beams(line_type);
         // a beam may have its rotary inertia from the diameter
         let spun = beam && line_type.rotary_inertia.is_none() && line_type.solid_section.is_none();
         let sheared = [line_type.shear_stiffness, line_type.torsional_stiffness];
@@ -131,10 +130,7 @@ impl Scene {
         let (solver, usual) = (&self.solver, Solver::default());
         let mut points = self.points.iter();
         let alone = self.vessels.is_empty() && points.all(|point| point.kind != PointKind::Coupled);
-        let bends = |section: &Section| {
-            let line_type = self.line_types.get(&section.line_type);
-            line_type.is_some_and(LineType::bends)
-        };
+        let bends = |section: &Section| self.type_of(section).is_some_and(LineType::bends);
         let (rests, meshed) = (self.is_quasi_static(), !self.lines.iter().any(Line::is_open));
         let still = self.motion.is_empty() && self.points.iter().all(|point| point.motion.is_none());
         let chosen = solver.integrator != Integrator::Auto || self.sections().all(bends);

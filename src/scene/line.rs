@@ -68,6 +68,12 @@ impl Line {
         }
     }
 
+    /// Number of its elements [-], if every section has its own.
+    pub(super) fn element_count(&self) -> Option<usize> {
+        let mut counts = self.sections.iter().map(|section| section.elements);
+        counts.try_fold(0_usize, |sum, count| sum.checked_add(count?))
+    }
+
     /// Unstretched length [m].
     pub(super) fn length(&self) -> f64 {
         self.sections.iter().map(|section| section.length).sum()

@@ -118,6 +118,18 @@ impl Scene {
         self.solver.integrator == Integrator::Beam || types.any(|kind| kind.model == LineModel::Beam)
     }
 
+    /// Returns whether a line type makes beams: by its model, or because the integrator makes every line a beam.
+    pub(super) fn makes_beams(&self, line_type: &LineType) -> bool {
+        self.solver.integrator == Integrator::Beam || line_type.model == LineModel::Beam
+    }
+
+    /// Name of the first line type that makes beams and meets a condition.
+    pub(super) fn type_of_beams(&self, meets: impl Fn(&LineType) -> bool) -> Option<&str> {
+        let mut types = self.line_types.iter();
+        let found = types.find(|(_, line_type)| self.makes_beams(line_type) && meets(line_type));
+        found.map(|(name, _)| name.as_str())
+    }
+
     /// Returns whether all lines are beams.
     pub(super) fn all_beams(&self) -> bool {
         !self.lines.is_empty() && self.lines.iter().all(|line| self.is_beam(line))

@@ -170,6 +170,27 @@ impl Scene {
         self.points.iter().find(|point| point.name == name)
     }
 
+    /// The points that forces move.
+    fn free_points(&self) -> impl Iterator<Item = &Point> {
+        self.points.iter().filter(|point| point.kind == PointKind::Free)
+    }
+
+    /// The vessel of a name.
+    fn vessel(&self, name: &str) -> Option<&Vessel> {
+        self.vessels.iter().find(|vessel| vessel.name == name)
+    }
+
+    /// Names of points, lines and vessels, which share the name space of the FMU's variables, each with the key path of its owner.
+    fn names(&self) -> impl Iterator<Item = (String, &str)> {
+        let points = self.points.iter().enumerate();
+        let points = points.map(|(i, point)| (format!("points[{i}]"), &point.name[..]));
+        let lines = self.lines.iter().enumerate();
+        let lines = lines.map(|(i, line)| (format!("lines[{i}]"), &line.name[..]));
+        let vessels = self.vessels.iter().enumerate();
+        let vessels = vessels.map(|(i, vessel)| (format!("vessels[{i}]"), &vessel.name[..]));
+        points.chain(lines).chain(vessels)
+    }
+
     /// Sections of all lines.
     fn sections(&self) -> impl Iterator<Item = &Section> {
         self.lines.iter().flat_map(|line| &line.sections)
@@ -177,10 +198,11 @@ impl Scene {
 
     /// Line types of the sections of a line, as far as the scene has them.
     fn types_of(&self, line: &Line) -> impl Iterator<Item = &LineType> {
-        let types = line
-            .sections
-            .iter()
-            .map(|section| self.line_types.get(&section.line_type));
-        types.flatten()
+        line.sections.iter().filter_map(|section| self.type_of(section))
+    }
+
+    /// Line type of a section, if the scene has it.
+    fn type_of(&self, section: &Section) -> Option<&LineType> {
+        self.line_types.get(&section.line_type)
     }
 }

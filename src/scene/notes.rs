@@ -128,18 +128,17 @@ impl Scene {
 fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut Vec<Note>) {
     let used = scene.sections().any(|section| section.line_type == name);
     let drags = !used || scene.water.is_none() || line_type.drag_normal.is_some();
-    let (waves, flow) = (scene.waves().is_some(), scene.has_host_flow());
-    let current = scene.current().is_some() && !flow;
+    let pushing = match (scene.waves(), scene.current()) {
+        (Some(_), _) => Some("waves exert"),
+        _ if scene.has_host_flow() => Some("flow exerts"),
+        (None, current) => current.map(|_| "current exerts"),
+    };
     let moves = scene.solver.integrator != Integrator::QuasiStatic;
     rules! { notes, &format!("line_types.{}", quoted(name));
         "" if !used => "no line uses this line type";
-        "" if !drags && waves =>
-            "no `drag_normal`: the waves exert no normal drag on the line, and the water does not damp it";
-        "" if !drags && flow =>
-            "no `drag_normal`: the flow exerts no normal drag on the line, and the water does not damp it";
-        "" if !drags && !waves && current =>
-            "no `drag_normal`: the current exerts no normal drag on the line, and the water does not damp it";
-        "" if !drags && !waves && !flow && !current && moves =>
+        "" given pushing = pushing.filter(|_| !drags) =>
+            "no `drag_normal`: the {pushing} no normal drag on the line, and the water does not damp it";
+        "" if !drags && pushing.is_none() && moves =>
             "no `drag_normal`: the water does not damp the line's transverse motion";
         "" if used && scene.seabed.is_some() && scene.weight(line_type) < 0.0 =>
             "lighter than the water: it floats up from the seabed";
@@ -151,7 +150,7 @@ pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3
     let Some(carrier) = &point.on else {
         return Some(point.position);
     };
-    let vessel = scene.vessels.iter().find(|vessel| vessel.name == *carrier)?;
+    let vessel = scene.vessel(carrier)?;
     let turn = Order::Zyx.rotation(vessel.attitude.into());
     Some((Vector3::from(vessel.position) + turn * Vector3::from(point.position)).into())
 }
@@ -230,14 +229,8 @@ fn note_twins(scene: &Scene, names: &Names, notes: &mut Vec<Note>) {
 
 /// Notes names of points, lines and vessels that differ in upper and lower case alone.
 fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
-    let points = scene.points.iter().map(|point| &point.name).enumerate();
-    let lines = scene.lines.iter().map(|line| &line.name).enumerate();
-    let vessels = scene.vessels.iter().map(|vessel| &vessel.name).enumerate();
-    let points = points.map(|(i, name)| (format!("points[{i}]"), name));
-    let lines = lines.map(|(i, name)| (format!("lines[{i}]"), name));
-    let vessels = vessels.map(|(i, name)| (format!("vessels[{i}]"), name));
     let mut known = BTreeMap::new();
-    for (at, name) in points.chain(lines).chain(vessels) {
+    for (at, name) in scene.names() {
         let first = known.entry(name.to_lowercase()).or_insert(name);
         rules! { notes, &at;
             "name" if *first != name => "\"{name}\" and \"{first}\" differ in upper and lower case alone";

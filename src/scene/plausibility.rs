@@ -318,18 +318,13 @@ impl Scene {
             (Some(table), _) => table.rows.last().map_or(STRAIN, |row| row[0].max(STRAIN)),
             (None, Strain::Engineering) => STRAIN,
         };
-        let types = line.sections.iter();
-        types
-            .filter_map(|section| self.line_types.get(&section.line_type))
-            .map(of_type)
-            .fold(STRAIN, f64::max)
+        self.types_of(line).map(of_type).fold(STRAIN, f64::max)
     }
 }
 
 /// Returns whether a line ends at a free point, whose position is a first guess.
 fn is_guessed(scene: &Scene, line: &Line) -> bool {
-    let mut free = scene.points.iter().filter(|point| point.kind == PointKind::Free);
-    free.any(|point| line.joins(&point.name))
+    scene.free_points().any(|point| line.joins(&point.name))
 }
 
 /// Lines that are too long; without water a scene is a bench test, and ends at one place make a loop.
@@ -372,7 +367,7 @@ fn weight_strain(scene: &Scene, notes: &mut Vec<Note>) {
             continue;
         }
         let types = line.sections.iter().filter_map(|section| {
-            let line_type = scene.line_types.get(&section.line_type)?;
+            let line_type = scene.type_of(section)?;
             Some((line_type, scene.weight(line_type).abs() * section.length))
         });
         let weight: f64 = types.clone().map(|(_, weight)| weight).sum();

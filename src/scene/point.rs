@@ -139,8 +139,7 @@ impl Vessel {
 impl Scene {
     /// [`Vessel::in_own_order`] of a body by its name; the rows of a point are as they are.
     pub(super) fn in_own_order(&self, body: &str, rows: Vec<MotionRow>) -> Vec<MotionRow> {
-        let vessel = self.vessels.iter().find(|vessel| vessel.name == body);
-        match vessel {
+        match self.vessel(body) {
             Some(vessel) => vessel.in_own_order(rows),
             None => rows,
         }

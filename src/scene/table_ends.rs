@@ -44,8 +44,7 @@ fn note_gap(at: String, rows: &[[f64; 7]]) -> Option<Note> {
 /// A table that begins where a body or point is, as seen from the origin.
 fn note_absolute(scene: &Scene, at: &str, rows: &[[f64; 7]]) -> Option<Note> {
     let name = at.strip_prefix("motion.")?.trim_matches('"');
-    let mut vessels = scene.vessels.iter().filter(|vessel| vessel.name == name);
-    let vessel = vessels.next().map(|vessel| vessel.position);
+    let vessel = scene.vessel(name).map(|vessel| vessel.position);
     let place = vessel.or_else(|| Some(scene.point(name)?.position))?;
     let [_, x, y, z, ..] = *rows.first()?;
     let norm = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);

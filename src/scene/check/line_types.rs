@@ -3,7 +3,7 @@
 use super::{Findings, below, check_name, quantity, rules};
 use crate::scene::path::quoted;
 use crate::scene::table::{Acts, Table};
-use crate::scene::{FibreLaw, Integrator, LineModel, LineType, Rayleigh, Scene, Strain};
+use crate::scene::{FibreLaw, LineModel, LineType, Rayleigh, Scene, Strain};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     for (name, line_type) in &scene.line_types {
@@ -118,11 +118,10 @@ fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
 
 /// A beam resists everything, by its own number or by its solid section; a cable has neither shear nor torsion.
 fn check_model(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
-    let own = line_type.model == LineModel::Beam;
-    let beam = own || scene.solver.integrator == Integrator::Beam;
-    let why = match own {
-        true => "",
-        false => ", and integrator = \"beam\" makes every line a beam",
+    let beam = scene.makes_beams(line_type);
+    let why = match line_type.model {
+        LineModel::Beam => "",
+        LineModel::Cable => ", and integrator = \"beam\" makes every line a beam",
     };
     for (key, value) in line_type.entries() {
         let (bending, name) = (key.name() == "bending_stiffness", key.name());

@@ -45,7 +45,7 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
     }
     for (i, section) in line.sections.iter().enumerate() {
         let name = &section.line_type;
-        let Some(line_type) = scene.line_types.get(name) else {
+        let Some(line_type) = scene.type_of(section) else {
             let types = scene.line_types.keys().map(String::as_str);
             let problem = unknown("line type", "line types", name, types);
             findings.say(format!("{at}.sections[{i}].type"), problem);
@@ -100,9 +100,7 @@ fn check_nodes(
     line: &Line,
     ends: [Option<[f64; 3]>; 2],
 ) {
-    let mut elements = line.sections.iter().map(|section| section.elements);
-    let elements = elements.try_fold(0_usize, |sum, n| sum.checked_add(n?));
-    let Some(elements) = elements else {
+    let Some(elements) = line.element_count() else {
         return findings.say(at, "given nodes need `elements` in every section of the line");
     };
     let (count, wanted) = (nodes.len(), elements + 1);
@@ -126,10 +124,7 @@ fn check_nodes(
 
 /// Directions of clamped ends, which only lines that bend can have.
 fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
-    let flexible = |section: &Section| {
-        let line_type = scene.line_types.get(&section.line_type);
-        line_type.is_some_and(|line_type| !line_type.bends())
-    };
+    let flexible = |section: &Section| scene.type_of(section).is_some_and(|kind| !kind.bends());
     rules! { findings, at;
         "rest_shape" if line.rest_shape != RestShape::Straight && line.sections.iter().all(flexible) =>
             "every shape of a perfectly flexible line bends nothing: leave it out, or give a type of the line a `bending_stiffness` [N m²]";

@@ -5,16 +5,9 @@ use crate::scene::names::Names;
 use crate::scene::path::quoted;
 use crate::scene::table::{Choice, Table};
 use crate::scene::{LineType, Point, PointKind, Scene, Section};
-use std::collections::BTreeMap;
 
 pub(super) fn check(scene: &Scene, names: &Names, findings: &mut Findings) {
-    let mut taken = BTreeMap::new();
-    let points = scene.points.iter().map(|point| point.name.as_str());
-    check_names(findings, &mut taken, "points", points);
-    let lines = scene.lines.iter().map(|line| line.name.as_str());
-    check_names(findings, &mut taken, "lines", lines);
-    let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
-    check_names(findings, &mut taken, "vessels", vessels);
+    check_names(scene, findings);
     for (i, point) in scene.points.iter().enumerate() {
         let at = format!("points[{i}]");
         check_place(findings, &at, point, scene);
@@ -103,7 +96,7 @@ fn untaken(point: &Point, scene: &Scene) -> Option<String> {
         ));
     }
     let bends = |section: Option<&Section>| {
-        let line_type = section.and_then(|section| scene.line_types.get(&section.line_type));
+        let line_type = section.and_then(|section| scene.type_of(section));
         line_type.is_some_and(LineType::bends)
     };
     let ends = scene.lines.iter().flat_map(|line| {
@@ -167,16 +160,13 @@ fn check_unconnected(scene: &Scene, findings: &mut Findings) {
 
 /// `[motion]` drives coupled points and vessels only.
 fn check_run_motion(scene: &Scene, findings: &mut Findings) {
-    let moved = |point: &&Point| point.kind == PointKind::Coupled && point.on.is_none();
-    let coupled = scene.points.iter().filter(moved).map(|point| point.name.as_str());
-    let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
     for (name, motion) in &scene.motion {
         let at = format!("motion.{}", quoted(name));
-        if vessels.clone().any(|vessel| vessel == name) {
+        if scene.vessel(name).is_some() {
             continue;
         }
         let Some(point) = scene.point(name) else {
-            findings.say(at, nothing_driven(name, coupled.clone(), vessels.clone()));
+            findings.say(at, nothing_driven(name, &scene.moved_by_a_host()));
             continue;
         };
         let is_coupled = point.kind == PointKind::Coupled;
@@ -191,14 +181,9 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
 }
 
 /// "no vessel or coupled point is called `platform`; there is `semi`", with the near one first.
-fn nothing_driven<'a>(
-    name: &str,
-    coupled: impl Iterator<Item = &'a str> + Clone,
-    vessels: impl Iterator<Item = &'a str> + Clone,
-) -> String {
-    let known: Vec<&str> = vessels.chain(coupled).collect();
+fn nothing_driven(name: &str, known: &[&str]) -> String {
     let what = "vessel or coupled point";
-    match known[..] {
+    match *known {
         [] => {
             format!("no {what} is called `{name}`, and there is none: nothing is moved by a host")
         }

@@ -1,13 +1,12 @@
 //! Friction and shape of the seabed.
 
 use super::{Findings, quantity, rules};
-use crate::scene::{DepthGrid, LineModel, LineType, Scene, Seabed};
+use crate::scene::{DepthGrid, LineModel, Scene, Seabed};
 
 /// Most soundings.
 const SOUNDINGS_MAX: usize = 4_000_000;
 
 pub(super) fn check_seabed(scene: &Scene, seabed: &Seabed, findings: &mut Findings) {
-    let beam = |(_, kind): &(&String, &LineType)| kind.model == LineModel::Beam;
     rules! { findings, "seabed";
         "file" if seabed.file.is_some() && seabed.slope.is_none() && seabed.grid.is_none() =>
             "the soundings of a file must be written out here: give them as `grid`";
@@ -15,12 +14,11 @@ pub(super) fn check_seabed(scene: &Scene, seabed: &Seabed, findings: &mut Findin
     if let Some(grid) = &seabed.grid {
         check_grid(grid, findings);
     }
-    if let Some((name, _)) = scene.line_types.iter().find(beam) {
-        rules! { findings, "seabed";
-            "" if !seabed.is_level() =>
-                "line type {name:?} is a beam, and beams are modelled over a level seabed only: use the cable model, whose lines may bend \
-                 too, or a level seabed";
-        }
+    let beam = scene.type_of_beams(|kind| kind.model == LineModel::Beam);
+    rules! { findings, "seabed";
+        "" given name = beam.filter(|_| !seabed.is_level()) =>
+            "line type {name:?} is a beam, and beams are modelled over a level seabed only: use the cable model, whose lines may bend \
+             too, or a level seabed";
     }
 }
 

@@ -3,7 +3,7 @@
 use super::seabed::check_seabed;
 use super::{Bounds, Findings, quantity, rules};
 use crate::scene::water::SPEED;
-use crate::scene::{Current, Integrator, LineModel, LineType, Scene};
+use crate::scene::{Current, LineType, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     rules! { findings, "";
@@ -40,17 +40,11 @@ fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
     if let (None, Some(rows)) = (velocity, profile) {
         check_profile(rows, findings);
     }
-    let all_beams = scene.solver.integrator == Integrator::Beam;
-    let beam = |(_, line_type): &(&String, &LineType)| {
-        let drags = line_type.drag_normal.is_some() || line_type.drag_tangential.is_some();
-        (all_beams || line_type.model == LineModel::Beam) && drags
-    };
-    if let Some((name, _)) = scene.line_types.iter().find(beam) {
-        let problem = format!(
+    let drags = |line_type: &LineType| line_type.drag_normal.is_some() || line_type.drag_tangential.is_some();
+    rules! { findings, at;
+        "" given name = scene.type_of_beams(drags) =>
             "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend \
-             too, or leave out the current or the drag coefficients"
-        );
-        findings.say(at, problem);
+             too, or leave out the current or the drag coefficients";
     }
 }
 

@@ -2,9 +2,7 @@
 
 use super::{Findings, quantity, rules};
 use crate::scene::table::Table;
-use crate::scene::{
-    Integrator, LineModel, Point, PointKind, Scene, Sea, SpectrumKind, WaveComponents, Waves,
-};
+use crate::scene::{Integrator, Point, PointKind, Scene, Sea, SpectrumKind, WaveComponents, Waves};
 
 pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
     let at = "water.waves";
@@ -90,36 +88,23 @@ fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
 
 /// Lines that cannot be modelled in water that moves: what moves it, as the beginning of a sentence, and alone.
 fn check_lines(scene: &Scene, at: &str, [moves, source]: [&str; 2], findings: &mut Findings) {
-    if scene.solver.integrator == Integrator::QuasiStatic {
-        let problem = format!(
-            "{moves} no line that is quasi-static: take a dynamic integrator such as \"auto\", or leave {source} out"
-        );
-        return findings.say(at, problem);
-    }
-    let all_beams = scene.solver.integrator == Integrator::Beam;
-    let beam = scene.line_types.iter().find(|(_, line_type)| {
-        let wet = line_type.diameter.is_some();
-        wet && (all_beams || line_type.model == LineModel::Beam)
-    });
-    if let Some((name, _)) = beam {
-        let problem = format!(
+    let still = scene.solver.integrator == Integrator::QuasiStatic;
+    let beam = scene.type_of_beams(|line_type| line_type.diameter.is_some());
+    let ends_beam = |point: &Point| {
+        let mut lines = scene.lines.iter().filter(|line| scene.is_beam(line));
+        lines.any(|line| line.joins(&point.name))
+    };
+    let wet = scene
+        .free_points()
+        .find(|point| is_wet(point) && ends_beam(point));
+    rules! { findings, at;
+        "" if still =>
+            "{moves} no line that is quasi-static: take a dynamic integrator such as \"auto\", or leave {source} out";
+        "" given name = beam.filter(|_| !still) =>
             "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend too, or \
-             leave out {source}"
-        );
-        return findings.say(at, problem);
-    }
-    let beams = || scene.lines.iter().filter(|line| scene.is_beam(line));
-    let wet = scene.points.iter().find(|point| {
-        point.kind == PointKind::Free
-            && is_wet(point)
-            && beams().any(|line| line.from == point.name || line.to == point.name)
-    });
-    if let Some(point) = wet {
-        let problem = format!(
+             leave out {source}";
+        "" given point = wet.filter(|_| !still && beam.is_none()) =>
             "point {:?} is in the water at the end of a beam, and beams are modelled in still water only: use the cable model, or leave out \
-             {source} or the point's volume and drag area",
-            point.name
-        );
-        findings.say(at, problem);
+             {source} or the point's volume and drag area", point.name;
     }
 }

@@ -14,7 +14,8 @@ pub(super) fn check(findings: &mut Findings, at: &str, line: &Line, scene: &Scen
     if let Some(path) = &winch.path {
         check_path(findings, &format!("{at}.path"), path, winch, line);
     }
-    if let Some(problem) = misplaced(line, scene).or_else(|| unserved(line, scene)) {
+    let mut refusals = refusals(line, winch, scene).into_iter();
+    if let Some((_, problem)) = refusals.find(|(holds, _)| *holds) {
         findings.say(at, problem);
     }
 }
@@ -36,50 +37,54 @@ fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Wi
     }
 }
 
-/// Returns the refusal of the place of the winch.
-fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
-    let winch = line.winch.as_ref()?;
-    if winch.end == LineEnd::A {
-        return Some("a winch is at end \"b\": write the line the other way round");
-    }
-    let point = scene.point(&line.to);
-    if point.is_some_and(|point| point.kind == PointKind::Free) {
-        return Some(
-            "a winch stands on a point that forces do not move: fixed, coupled, prescribed or on a vessel",
-        );
-    }
-    let parts = line
+/// Conditions under which a winch cannot be where it is, or is not modelled, each with its refusal.
+fn refusals(line: &Line, winch: &Winch, scene: &Scene) -> [(bool, &'static str); 9] {
+    let is_moved = scene
+        .point(&line.to)
+        .is_some_and(|point| point.kind == PointKind::Free);
+    let breaks = line
         .failure
         .as_ref()
         .is_some_and(|failure| failure.at == LineEnd::B);
-    (parts || line.release == Some(LineEnd::B)).then_some(
-        "end B is on the winch, so that it can neither break off nor be released: leave one of them out",
-    )
-}
-
-/// Returns the refusal of a line or scene for which winches are not modelled.
-fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
-    if !matches!(scene.solver.integrator, Integrator::Auto | Integrator::Leapfrog) {
-        return Some("winches are modelled by the integrators \"leapfrog\" and \"auto\"");
-    }
-    if scene.waves().is_some() {
-        return Some("a line on a winch is not modelled in waves: leave out one of them");
-    }
-    if scene.has_host_flow() {
-        return Some(
-            "a winch changes the number of nodes, at which the host gives the flow of the water: leave out one of them",
-        );
-    }
-    if scene.meets_surface(line) {
-        return Some(
-            "a line on a winch does not come out of the water: say water.surface = false to have it under water throughout",
-        );
-    }
-    if matches!(line.initial, InitialShape::Nodes(_)) {
-        return Some("a line on a winch starts \"static\" or \"straight\"");
-    }
+    let is_served = matches!(scene.solver.integrator, Integrator::Auto | Integrator::Leapfrog);
     let other =
         |kind: &LineType| kind.model == LineModel::Beam || kind.bends() || kind.dynamic_stiffness.is_some();
-    let bends = scene.types_of(line).any(other);
-    bends.then_some("a line on a winch has neither bending stiffness nor a viscoelastic section")
+    [
+        (
+            winch.end == LineEnd::A,
+            "a winch is at end \"b\": write the line the other way round",
+        ),
+        (
+            is_moved,
+            "a winch stands on a point that forces do not move: fixed, coupled, prescribed or on a vessel",
+        ),
+        (
+            breaks || line.release == Some(LineEnd::B),
+            "end B is on the winch, so that it can neither break off nor be released: leave one of them out",
+        ),
+        (
+            !is_served,
+            "winches are modelled by the integrators \"leapfrog\" and \"auto\"",
+        ),
+        (
+            scene.waves().is_some(),
+            "a line on a winch is not modelled in waves: leave out one of them",
+        ),
+        (
+            scene.has_host_flow(),
+            "a winch changes the number of nodes, at which the host gives the flow of the water: leave out one of them",
+        ),
+        (
+            scene.meets_surface(line),
+            "a line on a winch does not come out of the water: say water.surface = false to have it under water throughout",
+        ),
+        (
+            matches!(line.initial, InitialShape::Nodes(_)),
+            "a line on a winch starts \"static\" or \"straight\"",
+        ),
+        (
+            scene.types_of(line).any(other),
+            "a line on a winch has neither bending stiffness nor a viscoelastic section",
+        ),
+    ]
 }

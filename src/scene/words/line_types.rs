@@ -4,9 +4,7 @@ use super::{given, significant};
 use crate::math::circle;
 use crate::scene::check::{number, quantity};
 use crate::scene::table::Table;
-use crate::scene::{
-    DAMPING_ELEMENTS, FibreLaw, Integrator, Line, LineModel, LineType, NUMERICAL_DAMPING_RATIO, Scene,
-};
+use crate::scene::{DAMPING_ELEMENTS, FibreLaw, Line, LineModel, LineType, NUMERICAL_DAMPING_RATIO, Scene};
 
 impl Scene {
     pub(super) fn line_type_in_words(&self, name: &str, line_type: &LineType) -> String {
@@ -35,9 +33,10 @@ impl Scene {
             let absent = left_out.filter_map(|(key, _)| key.rule.absence);
             parts.extend(absent.map(|effect| format!("no {effect}")));
         }
-        let all_beams = self.solver.integrator == Integrator::Beam;
-        let beam = line_type.model == LineModel::Beam || all_beams;
-        let model = if beam { "a beam: " } else { "" };
+        let model = match self.makes_beams(line_type) {
+            true => "a beam: ",
+            false => "",
+        };
         format!("{name}: {model}{}", parts.join(", "))
     }
 

@@ -96,8 +96,7 @@ impl Scene {
 
     /// The lines that are joined to a free point, through it and other free points.
     fn network_of(&self, point: &Point) -> Vec<&Line> {
-        let free = self.points.iter().filter(|point| point.kind == PointKind::Free);
-        let free: Vec<&str> = free.map(|point| point.name.as_str()).collect();
+        let free: Vec<&str> = self.free_points().map(|point| point.name.as_str()).collect();
         let mut joined = vec![point.name.as_str()];
         let (mut network, mut rest): (Vec<&Line>, Vec<&Line>) = (vec![], self.lines.iter().collect());
         loop {
@@ -118,8 +117,7 @@ impl Scene {
 
     /// Returns whether the water's surface acts on a free point.
     pub(super) fn surface_matters(&self) -> bool {
-        let mut free = self.points.iter().filter(|point| point.kind == PointKind::Free);
-        free.any(|point| self.radius(point).is_some())
+        self.free_points().any(|point| self.radius(point).is_some())
     }
 
     /// Radius of the sphere that represents a point in the water [m]; `None` where the water has no effect on it.
