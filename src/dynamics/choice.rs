@@ -21,7 +21,7 @@ use super::limit::{
     ExplicitLimit, axial_accuracy_step, end_shares, explicit_limit, free_point_limit, heave_step,
     jump_accuracy_step, point_accuracy_step, point_heave_step, transverse_period, transverse_step,
 };
-use crate::model::{Line, Model, Network};
+use crate::model::{Line, Model, Network, Role};
 use crate::scene::{Integrator, Reconstruction};
 
 /// Ratio to the transverse limit below which steps are not needed for accuracy: where axial waves are much faster
@@ -108,7 +108,9 @@ impl Choice {
             false => least_of_points(&|point| point_accuracy_step(model, point, tolerance)),
         };
         let of_jumps = match model.solver.input_reconstruction {
-            Reconstruction::Jump => least(&|line| jump_accuracy_step(line, tolerance)),
+            Reconstruction::Jump if follows_host(model, network) => {
+                least(&|line| jump_accuracy_step(line, tolerance))
+            }
             _ => f64::INFINITY,
         };
         let accurate = accurate
@@ -166,6 +168,18 @@ struct Steps {
     explicit: f64,
     axial: f64,
     implicit: f64,
+}
+
+/// Returns whether a host moves an end of the network's lines.
+fn follows_host(model: &Model, network: &Network) -> bool {
+    let lines = network.lines.iter();
+    let mut ends = lines.flat_map(|&line| model.lines[line].ends);
+    ends.any(|end| {
+        matches!(
+            model.points[end].role,
+            Role::Coupled { .. } | Role::Carried { .. }
+        )
+    })
 }
 
 /// Step of generalised-α without jumps of the ends [s]: one that resolves the free points, where generalised-α is a choice.

@@ -137,8 +137,8 @@ impl Scene {
         rules! { notes, "solver";
             "" if alone && solver.input_reconstruction != Reconstruction::Smooth =>
                 "nothing is coupled to a host: `input_reconstruction` changes nothing";
-            "" if rests && solver.negative_tension =>
-                "quasi-static, without damping: `negative_tension` changes nothing";
+            "" if rests && solver.negative_tension && !self.sections().any(bends) =>
+                "quasi-static, without damping and bending: `negative_tension` changes nothing";
             "" if rests && solver.time_step_max != usual.time_step_max =>
                 "quasi-static: `time_step_max` changes nothing";
             "" if self.all_beams() && solver.negative_tension =>
