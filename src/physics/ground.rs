@@ -44,17 +44,37 @@ pub enum Ground {
     Grid(Grid),
 }
 
-/// Heights through soundings on a grid of lines along x and y.
+/// Heights through soundings on a grid of lines along x and y. The cells include those between the edges and infinity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// x of the grid's lines [m], increasing.
-    x: Vec<f64>,
-    /// y of the grid's lines [m], increasing.
-    y: Vec<f64>,
-    /// Per cell, row by row along y: coefficients of the powers of the parts of the cell along x and along y [m].
+    /// Spans of the cells along x.
+    x: Vec<Span<f64>>,
+    /// Spans of the cells along y.
+    y: Vec<Span<f64>>,
+    /// Per cell, row by row along y: coefficients of the powers of the parts of the cell along x (columns) and along y (rows) [m].
     cells: Vec<[[f64; 4]; 4]>,
     /// Bound of the heights of the surface [m].
     highest: f64,
+}
+
+/// Extent of a cell along x or y. The spans of a grid cover all numbers, and no number is in two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Span<R> {
+    /// Least and greatest coordinate in the cell [m]; infinite outside the grid.
+    bounds: [R; 2],
+    /// Coordinate at which the part of the cell is 0 [m].
+    origin: R,
+    /// 1 over the width of the cell [1/m]; 0 outside the grid, where nothing changes.
+    per_width: R,
+}
+
+/// Surface in a cell of a grid, or in one in every lane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell<R> {
+    /// Extent along x and y.
+    spans: [Span<R>; 2],
+    /// Coefficients of the powers of the parts of the cell along x (columns) and along y (rows) [m].
+    powers: [[R; 4]; 4],
 }
 
 /// Height of a surface at a place, and its derivatives.
@@ -105,38 +125,9 @@ impl Ground {
     /// Penetration [m] and normal of [`Self::touch`] alone.
     #[inline]
     pub fn stand(&self, place: Vector3<f64>) -> (f64, Vector3<f64>) {
-        let (height, slope) = match self {
-            Ground::Plane { height, slope } => (height + slope[0] * place.x + slope[1] * place.y, *slope),
-            Ground::Grid(grid) => grid.level(place.x, place.y),
-        };
-        stand(height, slope, place)
-    }
-
-    /// [`Self::stand`] of four nodes.
-    #[inline(always)]
-    pub fn stand_of_four(&self, place: Vectors) -> (Lanes, Vectors) {
         match self {
-            Ground::Plane { height, slope } => {
-                let slope = slope.map(Lanes::splat);
-                let height = Lanes::splat(*height) + slope[0] * place.x + slope[1] * place.y;
-                stand(height, slope, place)
-            }
-            Ground::Grid(grid) => {
-                let (mut height, mut slope) = (Lanes::splat(0.0), [Lanes::splat(0.0); 2]);
-                for lane in 0..LANES {
-                    let level = grid.level(place.x[lane], place.y[lane]);
-                    (height[lane], [slope[0][lane], slope[1][lane]]) = level;
-                }
-                stand(height, slope, place)
-            }
-        }
-    }
-
-    /// Height that no point of the surface exceeds [m]; infinite on a plane.
-    pub fn highest(&self) -> f64 {
-        match self {
-            Ground::Plane { .. } => f64::INFINITY,
-            Ground::Grid(grid) => grid.highest,
+            Ground::Plane { height, slope } => stand_on_plane(*height, *slope, place),
+            Ground::Grid(grid) => grid.cell_at(place.x, place.y).stand(place),
         }
     }
 
@@ -190,107 +181,226 @@ impl Grid {
                 smooth_slopes,
             ),
         );
-        let mut grid = Grid {
-            x: x.to_vec(),
-            y: y.to_vec(),
-            cells: Vec::with_capacity(cells(x) * cells(y)),
-            highest: highest(heights),
-        };
         let mut nodes = Vec::with_capacity(x.len() * y.len()); // h [m], h_x [-], h_y [-], h_xy [1/m]
         for j in 0..y.len() {
             for i in 0..x.len() {
                 let twist = 0.5 * (xy[i][j] + yx[j][i]);
-                let corners = grid.corners(heights, [i, j]);
+                let corners = corners([x, y], heights, [i, j]);
                 let [hx, hy, hxy] = limit(&corners, [hx[j][i], hy[i][j], twist]);
                 nodes.push([heights[j][i], hx, hy, hxy]);
             }
         }
-        for (j, i) in (0..cells(y)).flat_map(|j| (0..cells(x)).map(move |i| (j, i))) {
-            grid.cells.push(grid.cell_of(&nodes, [i, j]));
-        }
-        Some(grid)
+        let cells = ends(y).flat_map(|rows| ends(x).map(move |columns| [columns, rows]));
+        Some(Grid {
+            cells: cells.map(|ends| powers([x, y], &nodes, ends)).collect(),
+            x: spans(x),
+            y: spans(y),
+            highest: highest(heights),
+        })
     }
 
-    /// The cells around a node.
-    fn corners(&self, heights: &[Vec<f64>], [i, j]: [usize; 2]) -> Vec<Corner> {
-        let adjacent = |line: &[f64], at: usize| -> Vec<(usize, f64)> {
-            let known = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
-            let known = known.filter(|other| *other < line.len());
-            let found: Vec<_> = known
-                .map(|other| (other, (line[other] - line[at]) / 3.0))
-                .collect();
-            if found.is_empty() { vec![(at, 0.0)] } else { found }
-        };
-        let mut corners = Vec::with_capacity(4);
-        for (other_i, reach_x) in adjacent(&self.x, i) {
-            for (other_j, reach_y) in adjacent(&self.y, j) {
-                let soundings = [(i, j), (other_i, j), (i, other_j), (other_i, other_j)];
-                let change = soundings.map(|(i, j)| heights[j][i]).map(|z| z - heights[j][i]);
-                let (low, high) = change
-                    .into_iter()
-                    .fold((0.0_f64, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
-                let margin = EXCURSION_MAX * (high - low);
-                corners.push(Corner {
-                    reach: [reach_x, reach_y],
-                    bounds: [low - margin, high + margin],
-                });
-            }
-        }
-        corners
+    /// Height that no point of the surface exceeds [m].
+    pub fn highest(&self) -> f64 {
+        self.highest
     }
 
-    /// Height at a place [m], and its slopes [-].
+    /// Surface in the cell around a place [m].
     #[inline]
-    fn level(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
-        let (along, across) = (Place::of(&self.x, x), Place::of(&self.y, y));
-        let ([value, slope, _], [v, w, _]) = (along.powers(), across.powers());
-        let rows = self
-            .cell(&along, &across)
-            .map(|row| [dot(&row, &v), dot(&row, &w)]);
-        let column = |of: usize| rows.map(|row| row[of]);
-        (
-            dot(&column(0), &value),
-            [dot(&column(0), &slope), dot(&column(1), &value)],
-        )
+    fn cell_at(&self, x: f64, y: f64) -> Cell<f64> {
+        let (i, j) = (place(&self.x, x), place(&self.y, y));
+        Cell {
+            spans: [self.x[i], self.y[j]],
+            powers: self.cells[j * self.x.len() + i],
+        }
+    }
+
+    /// Puts the cells of four nodes at a place [m] into `cells`, where these are other ones. The result depends on the place alone.
+    #[inline(always)]
+    pub fn find_cells(&self, place: Vectors, cells: &mut Cell<Lanes>) {
+        if cells.excess(place).any_positive() {
+            self.renew_cells(place, cells);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn renew_cells(&self, place: Vectors, cells: &mut Cell<Lanes>) {
+        let excess = cells.excess(place);
+        for lane in (0..LANES).filter(|&lane| excess[lane] > 0.0) {
+            cells.set(lane, &self.cell_at(place.x[lane], place.y[lane]));
+        }
     }
 
     fn relief(&self, x: f64, y: f64) -> Relief {
-        let (along, across) = (Place::of(&self.x, x), Place::of(&self.y, y));
-        let (by_x, by_y) = (along.powers(), across.powers());
-        let cell = self.cell(&along, &across);
-        let sum = |p: usize, q: usize| dot(&cell.map(|row| dot(&row, &by_y[q])), &by_x[p]);
+        let cell = self.cell_at(x, y);
+        let [by_x, by_y] = [cell.spans[0].powers(x), cell.spans[1].powers(y)];
+        let sum = |p: usize, q: usize| dot(&cell.powers.map(|row| dot(&row, &by_x[p])), &by_y[q]);
         Relief {
             height: sum(0, 0),
             slope: [sum(1, 0), sum(0, 1)],
             curvature: [sum(2, 0), sum(1, 1), sum(0, 2)],
         }
     }
+}
 
-    /// Coefficients of the powers along x (rows) and y (columns) [m] of a cell.
-    fn cell(&self, along: &Place, across: &Place) -> [[f64; 4]; 4] {
-        self.cells[across.cell * cells(&self.x) + along.cell]
-    }
-
-    /// The cell between the lines `i` and `i + 1` along x and `j` and `j + 1` along y, from h [m], h_x [-], h_y [-] and h_xy [1/m] of the points.
-    fn cell_of(&self, nodes: &[[f64; 4]], [i, j]: [usize; 2]) -> [[f64; 4]; 4] {
-        let next = |line: &[f64], at: usize| (at + 1).min(line.len() - 1);
-        let ([i1, j1], columns) = ([next(&self.x, i), next(&self.y, j)], self.x.len());
-        let (width, depth) = (self.x[i1] - self.x[i], self.y[j1] - self.y[j]);
-        // Hermite data along y of the values and of the slopes along x, each as a cubic
-        let along_y = |i: usize, [value, slope]: [usize; 2]| {
-            let [low, high] = [j, j1].map(|j| nodes[j * columns + i]);
-            cubic([low[value], depth * low[slope], high[value], depth * high[slope]])
-        };
-        let [v0, v1] = [i, i1].map(|i| along_y(i, [0, 2]));
-        let [s0, s1] = [i, i1].map(|i| along_y(i, [1, 3]));
-        let by_power = [0, 1, 2, 3].map(|q| cubic([v0[q], width * s0[q], v1[q], width * s1[q]]));
-        std::array::from_fn(|p| by_power.map(|of_power| of_power[p]))
+impl<R: Real> Cell<R> {
+    /// Penetration [m] and unit normal of a node at a place [m] in the cell.
+    #[inline(always)]
+    pub fn stand<V: RealVector<Real = R>>(&self, place: V) -> (R, V) {
+        let ([x, y, _], [along, across]) = (place.components(), &self.spans);
+        let (u, v) = (along.part(x), across.part(y));
+        let [a, b, c, d] = &self.powers;
+        let rows = [horner(a, u), horner(b, u), horner(c, u), horner(d, u)];
+        let [height, by_y] = horner(&[rows[0][0], rows[1][0], rows[2][0], rows[3][0]], v);
+        let by_x = ((rows[3][1] * v + rows[2][1]) * v + rows[1][1]) * v + rows[0][1];
+        stand(height, [by_x * along.per_width, by_y * across.per_width], place)
     }
 }
 
-/// Number of cells along a line of places.
-fn cells(line: &[f64]) -> usize {
-    (line.len() - 1).max(1)
+impl Cell<Lanes> {
+    /// Cells that contain no place.
+    pub fn nowhere() -> Cell<Lanes> {
+        let [zero, least, most] = [0.0, f64::NEG_INFINITY, f64::INFINITY].map(Lanes::splat);
+        let span = Span {
+            bounds: [most, least],
+            origin: zero,
+            per_width: zero,
+        };
+        Cell {
+            spans: [span; 2],
+            powers: [[zero; 4]; 4],
+        }
+    }
+
+    /// > 0 where a place [m] is outside the cell.
+    #[inline(always)]
+    fn excess(&self, place: Vectors) -> Lanes {
+        let [x, y] = &self.spans;
+        let along = (x.bounds[0] - place.x).max(place.x - x.bounds[1]);
+        let across = (y.bounds[0] - place.y).max(place.y - y.bounds[1]);
+        along.max(across)
+    }
+
+    /// Sets the cell of a lane.
+    fn set(&mut self, lane: usize, cell: &Cell<f64>) {
+        for (span, of) in self.spans.iter_mut().zip(&cell.spans) {
+            (span.bounds[0][lane], span.bounds[1][lane]) = (of.bounds[0], of.bounds[1]);
+            (span.origin[lane], span.per_width[lane]) = (of.origin, of.per_width);
+        }
+        let powers = self.powers.as_flattened_mut().iter_mut();
+        powers
+            .zip(cell.powers.as_flattened())
+            .for_each(|(power, of)| power[lane] = *of);
+    }
+}
+
+impl<R: Real> Span<R> {
+    /// Part of the cell before a coordinate [-].
+    #[inline(always)]
+    fn part(&self, place: R) -> R {
+        (place - self.origin) * self.per_width
+    }
+}
+
+impl Span<f64> {
+    /// Powers of the part of the cell before a coordinate, and their first and second derivatives [1/m, 1/m²].
+    fn powers(&self, place: f64) -> [[f64; 4]; 3] {
+        let (t, d) = (self.part(place), self.per_width);
+        [
+            [1.0, t, t * t, t * t * t],
+            [0.0, d, 2.0 * t * d, 3.0 * t * t * d],
+            [0.0, 0.0, 2.0 * d * d, 6.0 * t * d * d],
+        ]
+    }
+}
+
+/// Value of a cubic with these coefficients of the powers of `t`, and its slope.
+#[inline(always)]
+fn horner<R: Real>(&[a, b, c, d]: &[R; 4], t: R) -> [R; 2] {
+    let top = d * t;
+    let upper = top + c;
+    let lower = upper * t + b;
+    [lower * t + a, (top + upper) * t + lower]
+}
+
+/// Lines on both sides of the cells along a line of places: one outside the edges of the grid.
+fn ends(line: &[f64]) -> impl Iterator<Item = [usize; 2]> + Clone {
+    let last = line.len() - 1;
+    (0..=line.len()).map(move |i| [i.saturating_sub(1), i.min(last)])
+}
+
+/// Spans of the cells along a line of places.
+fn spans(line: &[f64]) -> Vec<Span<f64>> {
+    let last = line.len() - 1;
+    let span = |[low, high]: [usize; 2]| Span {
+        bounds: [
+            line[low],
+            if high == last {
+                line[high]
+            } else {
+                line[high].next_down()
+            },
+        ],
+        origin: line[low],
+        per_width: if low == high {
+            0.0
+        } else {
+            1.0 / (line[high] - line[low])
+        },
+    };
+    let mut spans: Vec<Span<f64>> = ends(line).map(span).collect();
+    spans[0].bounds = [f64::NEG_INFINITY, line[0].next_down()];
+    spans[last + 1].bounds = [line[last].next_up(), f64::INFINITY];
+    if last == 0 {
+        spans[0].bounds[1] = line[0];
+    }
+    spans
+}
+
+/// Number of the span with a coordinate [m]; the first for none.
+fn place(spans: &[Span<f64>], coordinate: f64) -> usize {
+    spans.partition_point(|span| span.bounds[1] < coordinate)
+}
+
+/// The cells around a node.
+fn corners([x, y]: [&[f64]; 2], heights: &[Vec<f64>], [i, j]: [usize; 2]) -> Vec<Corner> {
+    let adjacent = |line: &[f64], at: usize| -> Vec<(usize, f64)> {
+        let known = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
+        let known = known.filter(|other| *other < line.len());
+        let found: Vec<_> = known
+            .map(|other| (other, (line[other] - line[at]) / 3.0))
+            .collect();
+        if found.is_empty() { vec![(at, 0.0)] } else { found }
+    };
+    let mut corners = Vec::with_capacity(4);
+    for (other_i, reach_x) in adjacent(x, i) {
+        for (other_j, reach_y) in adjacent(y, j) {
+            let soundings = [(i, j), (other_i, j), (i, other_j), (other_i, other_j)];
+            let change = soundings.map(|(i, j)| heights[j][i]).map(|z| z - heights[j][i]);
+            let (low, high) = change
+                .into_iter()
+                .fold((0.0_f64, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
+            let margin = EXCURSION_MAX * (high - low);
+            corners.push(Corner {
+                reach: [reach_x, reach_y],
+                bounds: [low - margin, high + margin],
+            });
+        }
+    }
+    corners
+}
+
+/// Coefficients of the powers of the parts of a cell between lines along x and along y [m], from h [m], h_x [-], h_y [-] and h_xy [1/m] of the points.
+fn powers([x, y]: [&[f64]; 2], nodes: &[[f64; 4]], [[i, i1], [j, j1]]: [[usize; 2]; 2]) -> [[f64; 4]; 4] {
+    let (width, depth) = (x[i1] - x[i], y[j1] - y[j]);
+    // Hermite data along y of the values and of the slopes along x, each as a cubic
+    let along_y = |i: usize, [value, slope]: [usize; 2]| {
+        let [low, high] = [j, j1].map(|j| nodes[j * x.len() + i]);
+        cubic([low[value], depth * low[slope], high[value], depth * high[slope]])
+    };
+    let [v0, v1] = [i, i1].map(|i| along_y(i, [0, 2]));
+    let [s0, s1] = [i, i1].map(|i| along_y(i, [1, 3]));
+    [0, 1, 2, 3].map(|q| cubic([v0[q], width * s0[q], v1[q], width * s1[q]]))
 }
 
 /// Coefficients of the powers of the part t of a cell, from value and slope at both its ends.
@@ -312,6 +422,13 @@ fn highest(heights: &[Vec<f64>]) -> f64 {
         soundings().fold(f64::NEG_INFINITY, f64::max),
     ];
     high + EXCURSION_MAX * (high - low)
+}
+
+/// Penetration [m] and unit normal of a node at a place [m] over or under a plane of this height above the origin [m] and slope [-].
+#[inline(always)]
+pub fn stand_on_plane<V: RealVector>(height: f64, slope: [f64; 2], place: V) -> (V::Real, V) {
+    let ([x, y, _], slope) = (place.components(), slope.map(V::Real::splat));
+    stand(V::Real::splat(height) + slope[0] * x + slope[1] * y, slope, place)
 }
 
 /// Penetration [m] and unit normal of a node at a place [m] over or under a surface of this height [m] and slope [-].
@@ -364,56 +481,6 @@ fn limit(corners: &[Corner], [hx, hy, hxy]: [f64; 3]) -> [f64; 3] {
         rest.part(hxy * at.reach[0] * at.reach[1])
     });
     [hx, hy, twist * hxy]
-}
-
-/// Place of a coordinate among the lines of a grid.
-struct Place {
-    cell: usize,
-    /// Part of the cell before the coordinate [-].
-    part: f64,
-    /// 1 over the width of the cell [1/m]; 0 outside the grid, where nothing changes.
-    per_width: f64,
-}
-
-impl Place {
-    #[inline(always)]
-    fn of(line: &[f64], place: f64) -> Place {
-        let (first, last) = (line[0], line[line.len() - 1]);
-        let outside = |cell: usize, part: f64| Place {
-            cell,
-            part,
-            per_width: 0.0,
-        };
-        if place.is_nan() || place < first || line.len() == 1 {
-            return outside(0, 0.0);
-        }
-        if place > last {
-            return outside(cells(line) - 1, 1.0);
-        }
-        // soundings are mostly evenly spaced
-        let guess = ((place - first) / (last - first) * cells(line) as f64) as usize;
-        let mut cell = guess.min(cells(line) - 1);
-        if place < line[cell] || place > line[cell + 1] {
-            cell = line.partition_point(|known| *known <= place).min(line.len() - 1) - 1;
-        }
-        let per_width = 1.0 / (line[cell + 1] - line[cell]);
-        Place {
-            cell,
-            part: (place - line[cell]) * per_width,
-            per_width,
-        }
-    }
-
-    /// Powers of the part, and their first and second derivatives [1/m, 1/m²].
-    #[inline(always)]
-    fn powers(&self) -> [[f64; 4]; 3] {
-        let (t, d) = (self.part, self.per_width);
-        [
-            [1.0, t, t * t, t * t * t],
-            [0.0, d, 2.0 * t * d, 3.0 * t * t * d],
-            [0.0, 0.0, 2.0 * d * d, 6.0 * t * d * d],
-        ]
-    }
 }
 
 #[cfg(test)]
@@ -536,6 +603,31 @@ mod tests {
                     let inside = h >= low - margin && h <= high + margin;
                     assert!(inside, "round {round}: {h} m between {low} and {high} m");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn four_nodes_that_wander_over_kept_cells_stand_as_each_alone() {
+        let ground = hilly();
+        let Ground::Grid(grid) = &ground else {
+            unreachable!()
+        };
+        let mut random = Random::new(8);
+        let mut cells = Cell::nowhere();
+        let mut places = [Vector3::zeros(); LANES];
+        for round in 0..4000 {
+            for place in &mut places {
+                *place += Vector3::from_fn(|_, _| 4.0 * random.unit() - 2.0);
+                place.x = place.x.clamp(-20.0, 50.0);
+                place.y = place.y.clamp(-15.0, 40.0);
+            }
+            places[round % LANES].x = X[round / 3 % X.len()]; // on a line between cells
+            let four = Vectors::new(places);
+            grid.find_cells(four, &mut cells);
+            let (below, normal) = cells.stand(four);
+            for (lane, place) in places.into_iter().enumerate() {
+                assert_eq!((below[lane], normal.get(lane)), ground.stand(place), "{place}");
             }
         }
     }

@@ -23,6 +23,7 @@
 use super::layout::{ContactArrays, Layout, SeabedArrays};
 use super::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
+use crate::physics::ground::{Ground, stand_on_plane};
 use crate::physics::seabed::Part;
 
 /// Contact of nodes with the seabed in a step.
@@ -230,29 +231,89 @@ impl ContactArrays {
 }
 
 impl SeabedArrays {
-    /// Finds the depths of all rows of nodes whose contact begins at `lift` [m] above the seabed, and the normals there. A row above the highest place of
-    /// the seabed, whose neighbours are so too, gets a bound of its penetration and no normal.
+    /// Finds the depths of all rows of nodes whose contact begins at `lift` [m] above the seabed, and the normals there. A row above the highest
+    /// place of the soundings, whose neighbours are so too, gets a bound of its penetration and no normal.
     #[inline(always)]
     fn find_depths(&mut self, lift: &[Lanes], [position, velocity]: [&[Vectors]; 2], step: Step) {
-        let highest = Lanes::splat(self.seabed.ground.highest());
-        let drift = Lanes::splat(step.drift);
-        let bound = |at: usize| highest + lift[at] - position[at].z;
-        let reaches = |at: usize| (bound(at) + drift * velocity[at].dot(velocity[at]).sqrt()).any_positive();
-        let last = lift.len() - 1;
-        let mut near = [false, reaches(0), reaches(1)];
-        for at in 0..=last {
-            if near.contains(&true) {
-                let (below, normal) = self.seabed.ground.stand_of_four(position[at]);
-                self.normal.store(normal, at);
-                self.penetration.store(below + lift[at], at);
-                self.rise.store(normal.dot(velocity[at]), at);
-            } else {
-                self.normal.store(Vectors::zero(), at);
-                self.penetration.store(bound(at), at);
-                self.rise.store(Lanes::splat(0.0), at);
+        let rows = lift.len();
+        let mut depths = DepthRows {
+            normal: self.normal.rows_mut(rows - 2),
+            penetration: self.penetration.rows_mut(rows - 2),
+            rise: self.rise.rows_mut(rows - 2),
+        };
+        let grid = match &self.seabed.ground {
+            Ground::Plane { height, slope } => {
+                for at in 0..rows {
+                    let (below, normal) = stand_on_plane(*height, *slope, position[at]);
+                    depths.write(at, [below + lift[at], normal.dot(velocity[at])], normal);
+                }
+                return;
             }
-            near = [near[1], near[2], at + 2 <= last && reaches(at + 2)];
+            Ground::Grid(grid) => grid,
+        };
+        let above = Above {
+            highest: Lanes::splat(grid.highest()),
+            square: Lanes::splat(step.drift * step.drift),
+            lift,
+            position,
+            velocity,
+        };
+        let cells = &mut self.cells[..rows];
+        let mut near = [false, above.reached(0), above.reached(1)];
+        for at in 0..rows {
+            if near.contains(&true) {
+                grid.find_cells(position[at], &mut cells[at]);
+                let (below, normal) = cells[at].stand(position[at]);
+                depths.write(at, [below + lift[at], normal.dot(velocity[at])], normal);
+            } else {
+                depths.write(at, [above.bound(at), Lanes::splat(0.0)], Vectors::zero());
+            }
+            near = [near[1], near[2], at + 2 < rows && above.reached(at + 2)];
         }
+    }
+}
+
+/// Depths of the nodes and normals of the seabed, row by row.
+struct DepthRows<'a> {
+    normal: &'a mut [Vectors],
+    penetration: &'a mut [Lanes],
+    rise: &'a mut [Lanes],
+}
+
+impl DepthRows<'_> {
+    /// Writes penetration [m], rise [m/s] and normal of a row.
+    #[inline(always)]
+    fn write(&mut self, at: usize, [penetration, rise]: [Lanes; 2], normal: Vectors) {
+        self.normal[at] = normal;
+        (self.penetration[at], self.rise[at]) = (penetration, rise);
+    }
+}
+
+/// Nodes beneath or above the height that no place of the soundings exceeds.
+struct Above<'a> {
+    /// That height [m].
+    highest: Lanes,
+    /// Square of the drift of a step [s²].
+    square: Lanes,
+    /// Height above the seabed at which contact begins [m].
+    lift: &'a [Lanes],
+    position: &'a [Vectors],
+    velocity: &'a [Vectors],
+}
+
+impl Above<'_> {
+    /// Bound of the penetration of a row of nodes [m].
+    #[inline(always)]
+    fn bound(&self, at: usize) -> Lanes {
+        self.highest + self.lift[at] - self.position[at].z
+    }
+
+    /// Returns whether a node of a row may come to the height within a step.
+    #[inline(always)]
+    fn reached(&self, at: usize) -> bool {
+        let (bound, velocity) = (self.bound(at), self.velocity[at]);
+        let way = self.square * velocity.dot(velocity);
+        bound.max(way - bound * bound).any_positive()
     }
 }
 

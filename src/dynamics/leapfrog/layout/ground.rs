@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::Layout;
-use crate::math::lanes::Vectors;
+use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striping::{Column, Field, Striping};
 use crate::model::{Contact, Seabed};
 use crate::physics::friction::Friction;
-use crate::physics::ground::Ground;
+use crate::physics::ground::{Cell, Ground};
 use crate::physics::seabed::Part;
 
 /// Contact with the seabed.
@@ -35,6 +35,8 @@ pub struct ContactArrays {
 #[derive(Debug, Clone)]
 pub struct SeabedArrays {
     pub seabed: Arc<Seabed>,
+    /// Cells of the soundings under the nodes, row by row, each kept until a node leaves it; none on a plane.
+    pub cells: Vec<Cell<Lanes>>,
     /// Stiffness along the seabed of a node that sticks [N/m]; 0 without friction.
     pub stick: Column,
     /// Friction on the nodes in the last step [N].
@@ -56,6 +58,10 @@ impl ContactArrays {
         ContactArrays {
             seabed: seabed.map(|seabed| SeabedArrays {
                 seabed: seabed.clone(),
+                cells: match seabed.ground {
+                    Ground::Plane { .. } => Vec::new(),
+                    Ground::Grid(_) => vec![Cell::nowhere(); striping.rows() + 2],
+                },
                 stick: keep(&contact.stick),
                 friction: Field::zeros(striping),
                 normal: Field::zeros(striping),
