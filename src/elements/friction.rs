@@ -12,7 +12,7 @@
 //!
 //! Source: the return mapping of Coulomb friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::contact::{Bearing, Stand};
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
@@ -152,10 +152,10 @@ impl<'a> Resting<'a> {
             after: [self.bearing.stiffness_after, self.bearing.damping_after].map(|slope| slope * across),
         };
         if let Some(rub) = &self.rub {
-            let axes = Axes::new(normal, rub.tangent);
+            let axes = Axes::unit(normal, rub.tangent);
             let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
             let normal_force = rub.normal_force.unwrap_or(seabed.force);
-            let limits = rub.limit * Vector2::from(rub.friction.limits(axes.share, normal_force));
+            let limits = rub.limit * rub.friction.limits(&axes, normal_force);
             let held = node_friction(wanted, [1.0, 1.0].into(), limits);
             let slope = held.slope(limits);
             let grows = match rub.normal_force {

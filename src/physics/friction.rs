@@ -9,11 +9,14 @@
 //! with s the part of the line's tangent that lies in the plane: a line that stands on the seabed is across it all around. Inside the
 //! ellipse nothing slides. On it the line slides in the direction of greatest dissipation, v_i ∝ −f_i/D_i², so that
 //! the friction is D_a against a line dragged along its axis, D_b across.
-//! With the force f* that would hold a node, and the compliance W_i of sliding to force along the axes,
+//! With the velocity v⁰ at which a node would slide without friction, and the compliance C_i of sliding to force along the axes,
 //!
 //! ```text
-//! f_i = f*_i W_i D_i²/(W_i D_i² + γ),   γ ≥ 0 such that f lies in the ellipse.
+//! f_i = −v⁰_i m_i² N/(C_i m_i² N + γ),   v_i = v⁰_i γ/(C_i m_i² N + γ),   m_i = D_i/N,   γ ≥ 0 such that f lies in the ellipse.
 //! ```
+//!
+//! A node sticks with γ = 0. The force that would hold it, −v⁰_i/C_i, need not be known, and neither need the sign of v⁰: its square suffices, which
+//! axes of any length give without a root.
 //!
 //! Source: maximal dissipation for anisotropic friction, Michałowski & Mróz (1978), Archives of Mechanics 30, 259-276; γ by the
 //! iteration of Moré & Sorensen (1983), SIAM J. Sci. Stat. Comput. 4, 553-572. Valid for a seabed that keeps its shape: no embedment.
@@ -31,14 +34,16 @@ pub struct Friction {
     pub transverse: f64,
 }
 
-/// Axes in the plane of the seabed.
+/// Axes in the plane of the seabed, of the same length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axes<V: RealVector = Vector3<f64>> {
-    /// Along the line [-].
+    /// Along the line.
     pub along: V,
-    /// Across the line [-].
+    /// Across the line.
     pub across: V,
-    /// Part s of the line's tangent that lies in the plane [-].
+    /// Square of their length.
+    pub square: V::Real,
+    /// Square of the part s of the line's tangent that lies in the plane [-].
     pub share: V::Real,
 }
 
@@ -46,32 +51,37 @@ pub struct Axes<V: RealVector = Vector3<f64>> {
 const STANDING: f64 = 1e-9;
 /// Nodes closer to the ellipse than this slide: rounding of their places must not decide [-].
 const BORDER: f64 = 1e-7;
+/// Error of the size of the ellipse whose correction takes γ to the last digit [-]: that of the next one is its square.
+const NEAR: f64 = 1e-8;
 /// Iterations for γ.
 const ITERATIONS_MAX: usize = 30;
 
 impl<V: RealVector> Axes<V> {
-    /// Axes of a line along the unit vector `tangent` on a seabed with the unit normal `normal`.
+    /// Axes of a line along a vector of any length on a seabed with the unit normal `normal`; `inverse_square` is 1 over the square of that length.
+    /// The axes are as long as the part of the vector in the plane; those of a line that stands on the seabed have another length.
     #[inline(always)]
-    pub fn new(normal: V, tangent: V) -> Axes<V> {
+    pub fn new(normal: V, line: V, inverse_square: V::Real) -> Axes<V> {
         let [zero, one] = [0.0, 1.0].map(V::Real::splat);
-        let flat = tangent - normal.scaled(normal.inner(tangent));
-        let share = flat.inner(flat).sqrt();
-        let lies = share - V::Real::splat(STANDING);
-        let mut along = flat.scaled(lies.choose(share, one).recip());
+        let mut along = line - normal.scaled(normal.inner(line));
+        let mut square = along.inner(along);
+        let share = square * inverse_square;
+        let lies = share - V::Real::splat(STANDING * STANDING);
         if (zero - lies).any_positive() {
             let leans = normal.components()[0].abs() - V::Real::splat(0.7);
             let level = choose(leans, V::of([zero, one, zero]), V::of([one, zero, zero]));
             let level = normal.crossed(level);
-            along = choose(lies, along, level.scaled(level.inner(level).sqrt().recip()));
+            along = choose(lies, along, level);
+            square = lies.choose(square, level.inner(level));
         }
         Axes {
             along,
             across: normal.crossed(along),
+            square,
             share,
         }
     }
 
-    /// The vector of components along the axes, in their unit [-].
+    /// The vector of components along the axes, over their length.
     #[inline(always)]
     pub fn combine(&self, [along, across]: [V::Real; 2]) -> V {
         self.along.scaled(along) + self.across.scaled(across)
@@ -79,6 +89,18 @@ impl<V: RealVector> Axes<V> {
 }
 
 impl Axes {
+    /// Unit axes of a line along the unit vector `tangent` on a seabed with the unit normal `normal`.
+    pub fn unit(normal: Vector3<f64>, tangent: Vector3<f64>) -> Axes {
+        let axes = Axes::new(normal, tangent, 1.0);
+        let along = axes.along * axes.square.sqrt().recip();
+        Axes {
+            along,
+            across: normal.cross(&along),
+            square: 1.0,
+            share: axes.share,
+        }
+    }
+
     /// Components of a vector along the axes, in its unit [-].
     pub fn components(&self, vector: &Vector3<f64>) -> Vector2<f64> {
         Vector2::new(self.along.dot(vector), self.across.dot(vector))
@@ -96,97 +118,78 @@ impl Friction {
         self.axial.max(self.transverse)
     }
 
-    /// Semi-axes of the ellipse [N] along and across a line of which a part `share` [-] lies in the plane, under a
-    /// normal force [N].
+    /// Squares of the semi-axes of the ellipse over the normal force [-], along and across a line; `share` is the square of the part of its tangent
+    /// that lies in the plane [-].
     #[inline(always)]
-    pub fn limits<R: Real>(&self, share: R, normal_force: R) -> [R; 2] {
+    pub fn squares<R: Real>(&self, share: R) -> [R; 2] {
         let one = R::splat(1.0);
-        let square = share * share;
-        let lying = (square - one).choose(one, square);
+        let lying = (share - one).choose(one, share);
         let [axial, transverse] = [self.axial, self.transverse].map(|part| R::splat(part * part));
-        let along = lying * axial + (one - lying) * transverse;
-        [
-            along.sqrt() * normal_force,
-            R::splat(self.transverse) * normal_force,
-        ]
+        [lying * axial + (one - lying) * transverse, transverse]
+    }
+
+    /// Semi-axes of the ellipse [N] along and across a line with these axes, under a normal force [N].
+    pub fn limits(&self, axes: &Axes, normal_force: f64) -> Vector2<f64> {
+        Vector2::from(self.squares(axes.share)).map(|square| square.sqrt() * normal_force)
     }
 }
 
-/// Friction from the force that would hold a node.
+/// Friction at a node along and across the line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slide<R> {
-    /// Along and across the line [N].
-    pub force: [R; 2],
+    /// Friction against the velocity without it, over that velocity [N s/m, or kg for impulses].
+    pub grip: [R; 2],
+    /// Part of that velocity which is left [-]; 0 where the node sticks.
+    pub left: [R; 2],
     /// Positive where the node slides.
     pub slides: R,
-    /// γ of nodes that slide, in the unit of W D² [N² m/N, N² m/(N s)].
+    /// γ of nodes that slide [m/s].
     pub multiplier: R,
 }
 
-/// Terms of the ellipse: those of the force that acts along axes with friction, times W D, and W D².
-#[derive(Clone, Copy)]
-struct Ellipse<R> {
-    scaled: [R; 2],
-    stiffness: [R; 2],
-}
-
-impl<R: Real> Ellipse<R> {
-    /// Force over the semi-axis i, and 1/(W D² + γ).
-    #[inline(always)]
-    fn part(&self, i: usize, gamma: R) -> [R; 2] {
-        let softness = (self.stiffness[i] + gamma)
-            .max(R::splat(f64::MIN_POSITIVE))
-            .recip();
-        [self.scaled[i] * softness, softness]
-    }
-
-    /// Square of the force over the semi-axes, and minus half its slope with γ.
-    #[inline(always)]
-    fn size(&self, gamma: R) -> [R; 2] {
-        let ([a, soft_a], [b, soft_b]) = (self.part(0, gamma), self.part(1, gamma));
-        [a * a + b * b, a * a * soft_a + b * b * soft_b]
-    }
-}
-
-/// Friction at a node that `holding` [N] would hold, within the ellipse of the semi-axes `limits` [N].
+/// Friction at a node that would slide without it. Along and across the line are given the squares of the velocities [m²/s²], compliances
+/// [m/(N s), or 1/kg for impulses] and squares of the semi-axes over the normal force [-].
 #[inline(always)]
-pub fn slide<R: Real>(holding: [R; 2], compliance: [R; 2], limits: [R; 2]) -> Slide<R> {
+pub fn slide<R: Real>(velocity: [R; 2], compliance: [R; 2], squares: [R; 2], normal_force: R) -> Slide<R> {
     let [zero, one] = [0.0, 1.0].map(R::splat);
-    let rough = [limits[0].choose(one, zero), limits[1].choose(one, zero)];
-    let acting = [rough[0] * holding[0], rough[1] * holding[1]];
-    let yields = [compliance[0] * limits[0], compliance[1] * limits[1]]; // W D
-    let ellipse = Ellipse {
-        scaled: [acting[0] * yields[0], acting[1] * yields[1]],
-        stiffness: [yields[0] * limits[0], yields[1] * limits[1]],
-    };
-    // the ellipse without quotients: (h_a D_b)² + (h_b D_a)² over (D_a D_b)²
-    let axes = [limits[0].choose(limits[0], one), limits[1].choose(limits[1], one)];
-    let (a, b, both) = (acting[0] * axes[1], acting[1] * axes[0], axes[0] * axes[1]);
-    let outside = a * a + b * b - R::splat((1.0 - BORDER) * (1.0 - BORDER)) * both * both;
-    let mut gamma = zero;
-    let mut force = acting;
-    if outside.any_positive() {
-        for _ in 0..ITERATIONS_MAX {
-            let [size, slope] = ellipse.size(gamma);
-            let excess = size.sqrt() - one;
-            let open = outside.choose(excess.abs() - R::splat(4.0 * f64::EPSILON), zero);
-            if !open.any_positive() {
-                break;
-            }
-            let change = size * excess * slope.max(R::splat(f64::MIN_POSITIVE)).recip();
-            gamma = open.choose((gamma + change).max(zero), gamma);
+    let firm = [squares[0] * normal_force, squares[1] * normal_force];
+    let yields = [compliance[0] * firm[0], compliance[1] * firm[1]]; // C m² N
+    let (a, b) = (yields[0].choose(yields[0], one), yields[1].choose(yields[1], one));
+    let weights = [velocity[0] * squares[0], velocity[1] * squares[1]];
+    let both = a * b;
+    let outside =
+        weights[0] * b * b + weights[1] * a * a - R::splat((1.0 - BORDER) * (1.0 - BORDER)) * both * both;
+    let (mut gamma, mut open) = (zero, outside);
+    for _ in 0..ITERATIONS_MAX {
+        if !open.any_positive() {
+            break;
         }
-        let kept = [0, 1].map(|i| ellipse.part(i, gamma)[1] * ellipse.stiffness[i] * acting[i]);
-        force = [
-            outside.choose(kept[0], force[0]),
-            outside.choose(kept[1], force[1]),
-        ];
+        // Newton's method on 1/|f/D|, as a function of γ nearly a straight line, with one root and one quotient that do not wait for each other
+        let (p, q) = (a + gamma, b + gamma);
+        let (along, across) = (weights[0] * q * q, weights[1] * p * p);
+        let slope = (along * q + across * p).max(R::splat(f64::MIN_POSITIVE));
+        let square = along + across;
+        let excess = square.sqrt() - p * q;
+        let change = square * excess * slope.recip();
+        gamma = open.choose((gamma + change).max(zero), gamma);
+        open = open.choose(excess.abs() - R::splat(NEAR) * p * q, zero);
     }
+    let (p, q) = (a + gamma, b + gamma);
+    let softness = (p * q).recip();
+    let over = [q * softness, p * softness];
+    let left = [
+        yields[0].choose(gamma * over[0], one),
+        yields[1].choose(gamma * over[1], one),
+    ];
     // without friction along an axis any force slides
-    let unheld = (holding[0] - acting[0]).abs().max((holding[1] - acting[1]).abs());
+    let free = [
+        yields[0].choose(zero, velocity[0]),
+        yields[1].choose(zero, velocity[1]),
+    ];
     Slide {
-        force,
-        slides: outside.max(unheld),
+        grip: [firm[0] * over[0], firm[1] * over[1]],
+        left,
+        slides: outside.max(free[0].max(free[1])),
         multiplier: gamma,
     }
 }
@@ -200,16 +203,16 @@ pub struct NodeFriction {
     pub multiplier: Option<f64>,
 }
 
-/// Friction of one node by [`slide`].
+/// Friction of one node that `holding` [N] would hold, within the ellipse of the semi-axes `limits` [N], by [`slide`].
 pub fn node_friction(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64>) -> NodeFriction {
-    let Slide {
-        force,
-        slides,
-        multiplier,
-    } = slide::<f64>(holding.into(), compliance.into(), limits.into());
+    let (speed, squares) = (holding.component_mul(&compliance), limits.component_mul(&limits));
+    let velocity = speed.component_mul(&speed);
+    let found = slide::<f64>(velocity.into(), compliance.into(), squares.into(), 1.0);
+    let slides = found.slides > 0.0;
+    let force = Vector2::from(found.grip).component_mul(&speed);
     NodeFriction {
-        force: force.into(),
-        multiplier: (slides > 0.0).then_some(multiplier),
+        force: if slides { force } else { holding },
+        multiplier: slides.then_some(found.multiplier),
     }
 }
 
@@ -310,16 +313,10 @@ mod tests {
             axial: 0.4,
             transverse: 0.7,
         };
-        let axes = Axes::new(Vector3::z(), Vector3::z());
-        assert_relative_eq!(
-            Vector2::from(friction.limits(axes.share, 10.0)),
-            Vector2::new(7.0, 7.0)
-        );
-        let lying = Axes::new(Vector3::z(), Vector3::y());
-        assert_relative_eq!(
-            Vector2::from(friction.limits(lying.share, 10.0)),
-            Vector2::new(4.0, 7.0)
-        );
+        let axes = Axes::unit(Vector3::z(), Vector3::z());
+        assert_relative_eq!(friction.limits(&axes, 10.0), Vector2::new(7.0, 7.0));
+        let lying = Axes::unit(Vector3::z(), Vector3::y());
+        assert_relative_eq!(friction.limits(&lying, 10.0), Vector2::new(4.0, 7.0));
         assert_relative_eq!(axes.along.dot(&Vector3::z()), 0.0);
     }
 }

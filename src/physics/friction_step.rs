@@ -10,10 +10,18 @@
 //! A node that sticks leaves with v_a = v_b = 0 to the last digit and does not drift. λ_n of the ellipse is that of a
 //! sticking node, which is exact where the line lies in the plane of the seabed.
 //!
+//! a is along the line's part in the plane, so that t has no part along b. In these axes W = M⁻¹ has a block of n and a with the determinant 1/(m_n m_t),
+//! and 1/m_n for b. With it v follows without M:
+//!
+//! ```text
+//! sticks    v_n = (W_aa u_n − W_na u_a + a/(m_n m_t))/(W_aa + b/(m_n m_t))
+//! smooth    λ_n = (a − b u_n)/(1 + b W_nn),   v_a = u_a + W_na λ_n,   to λ_a with the compliance (W_aa + b/(m_n m_t))/(1 + b W_nn)
+//! ```
+//!
 //! Source: backward Euler on Coulomb's law, as in Moreau (1988), Unilateral contact and dry friction in finite freedom
 //! dynamics, CISM 302; friction by [`super::friction`]. Stable for any stiffness; valid as `seabed` is.
 
-use super::friction::{Axes, Friction, slide};
+use super::friction::{Axes, Friction, Slide, slide};
 use super::slender::Slender;
 use crate::math::real::{Real, RealVector, choose};
 
@@ -22,8 +30,10 @@ use crate::math::real::{Real, RealVector, choose};
 pub struct Landing<V: RealVector> {
     /// Inverse mass across the line, and its excess along the line [1/kg].
     pub inverse_mass: Slender<V::Real>,
-    /// Direction t of the line [-].
-    pub tangent: V,
+    /// Vector along the line [m].
+    pub chord: V,
+    /// 1 over the square of its length [1/m²].
+    pub inverse_square: V::Real,
     /// Normal n of the seabed [-].
     pub normal: V,
     /// Impulse a of the seabed's spring and damper on a node that does not leave it [N s].
@@ -43,60 +53,126 @@ pub struct Landed<V: RealVector> {
     pub pushed: V::Real,
 }
 
+/// Inverse mass W of a node in the axes of the seabed under it.
+#[derive(Debug, Clone, Copy)]
+pub struct Footing<V: RealVector> {
+    /// Axes in the plane.
+    pub axes: Axes<V>,
+    /// 1 over the square of their length.
+    pub inverse_square: V::Real,
+    /// W_aa and W_bb along and across the line [1/kg].
+    pub yields: [V::Real; 2],
+    /// W_na over the length of the axes, and times that length [1/kg].
+    pub coupling: [V::Real; 2],
+    /// Determinant of the block of n and a [1/kg²].
+    pub determinant: V::Real,
+}
+
+impl<V: RealVector> Footing<V> {
+    /// Footing of an inverse mass [1/kg] of a line along a vector of any length, 1 over the square of its length being `inverse_square`.
+    #[inline(always)]
+    pub fn new(inverse: Slender<V::Real>, normal: V, line: V, inverse_square: V::Real) -> Footing<V> {
+        let Slender { across, excess } = inverse;
+        let axes = Axes::new(normal, line, inverse_square);
+        let (square, lying) = (axes.square.recip(), line.inner(axes.along));
+        let along = excess * inverse_square * lying; // b (t·A) t
+        let lean = along * normal.inner(line);
+        Footing {
+            axes,
+            inverse_square: square,
+            yields: [across + along * lying * square, across],
+            coupling: [lean * square, lean],
+            determinant: across * (across + excess),
+        }
+    }
+
+    /// 1 over W_aa + b/(m_n m_t) [kg] of nodes on a seabed that resists with `resistance` b [kg].
+    #[inline(always)]
+    pub fn stuck(&self, resistance: V::Real) -> V::Real {
+        (self.yields[0] + self.determinant * resistance).recip()
+    }
+
+    /// Velocity at which a sticking node leaves the seabed [m/s], with `free` [m/s] without contact under the impulse `spring` [N s], from [`Self::stuck`].
+    #[inline(always)]
+    pub fn sinking(&self, free: V, normal: V, spring: V::Real, stuck: V::Real) -> V::Real {
+        let [rise, along] = [normal.inner(free), self.axes.along.inner(free)];
+        (self.yields[0] * rise - self.coupling[0] * along + self.determinant * spring) * stuck
+    }
+
+    /// Friction of a node that would slide at the components `sliding` [m/s, times the length of the axes] without it.
+    #[inline(always)]
+    pub fn slide(
+        &self,
+        sliding: [V::Real; 2],
+        along: V::Real,
+        friction: &Friction,
+        push: V::Real,
+    ) -> Slide<V::Real> {
+        let [a, b] = sliding;
+        let velocity = [a * a * self.inverse_square, b * b * self.inverse_square];
+        let squares = friction.squares(self.axes.share);
+        slide(velocity, [along, self.yields[1]], squares, push)
+    }
+
+    /// Vector of components [times the length of the axes], each times a factor.
+    #[inline(always)]
+    pub fn combine(&self, [a, b]: [V::Real; 2], factors: [V::Real; 2]) -> V {
+        let scale = self.inverse_square;
+        self.axes
+            .combine([a * factors[0] * scale, b * factors[1] * scale])
+    }
+}
+
 impl<V: RealVector> Landing<V> {
     /// Motion after the step of a node that would have the velocity `free` [m/s] without seabed.
     #[inline(always)]
     pub fn solve(&self, free: V, friction: Option<&Friction>) -> Landed<V> {
-        let one = V::Real::splat(1.0);
         let (spring, resistance) = (self.spring, self.resistance);
+        let Slender { across, excess } = self.inverse_mass;
         let rise = self.normal.inner(free);
-        let response = self.inverse_mass.times(self.normal, self.tangent);
-        let push = (spring - resistance * rise) * (one + resistance * self.normal.inner(response)).recip();
-        let landed = Landed {
+        let lean = self.normal.inner(self.chord);
+        let along = excess * self.inverse_square * lean;
+        let response = self.normal.scaled(across) + self.chord.scaled(along);
+        let yields = across + along * lean; // W_nn
+        let softness = (V::Real::splat(1.0) + resistance * yields).recip();
+        let push = (spring - resistance * rise) * softness;
+        let smooth = Landed {
             velocity: choose(push, free + response.scaled(push), free),
             friction: V::of([V::Real::splat(0.0); 3]),
             pushed: push,
         };
         match friction {
-            Some(friction) if landed.pushed.any_positive() => self.rub(free, friction, landed),
-            _ => landed,
+            Some(friction) if push.any_positive() => self.rub((free, friction), [yields, softness], smooth),
+            _ => smooth,
         }
     }
 
-    /// The same with friction, where the seabed pushes a node that sticks; `smooth` is the motion without.
+    /// The same with friction, where the seabed pushes a node that sticks; `smooth` is the motion without, `yields` W_nn and `softness` 1/(1 + b W_nn).
     #[inline(always)]
-    fn rub(&self, free: V, friction: &Friction, smooth: Landed<V>) -> Landed<V> {
-        let (spring, resistance) = (self.spring, self.resistance);
-        let Slender { across: m, excess } = self.inverse_mass.inverted();
-        let axes = Axes::new(self.normal, self.tangent);
-        let upright = self.normal.inner(self.tangent);
-        let lying = axes.along.inner(self.tangent);
-        let momentum = Slender { across: m, excess }.times(free, self.tangent);
-        let driven = self.normal.inner(momentum) + spring;
-        let softness = (m + excess * upright * upright + resistance).recip();
-        let push = spring - resistance * driven * softness; // of a node that sticks
-        let coupling = excess * upright * lying;
-        let along = m + excess * lying * lying - coupling * coupling * softness;
-        let drive = axes.along.inner(momentum) - coupling * driven * softness;
-        let zero = V::Real::splat(0.0);
-        let holding = [zero - drive, zero - m * axes.across.inner(free)];
-        let compliance = [along.recip(), self.inverse_mass.across];
-        let slide = slide(holding, compliance, friction.limits(axes.share, push));
-        let slid = [0, 1].map(|i| {
-            let moved = (slide.force[i] - holding[i]) * compliance[i];
-            slide.slides.choose(moved, zero)
-        });
-        let sinking = (driven - coupling * slid[0]) * softness;
-        let pushes = smooth
-            .pushed
-            .choose(push.choose(spring - resistance * sinking, zero), zero);
+    fn rub(
+        &self,
+        (free, friction): (V, &Friction),
+        [yields, softness]: [V::Real; 2],
+        smooth: Landed<V>,
+    ) -> Landed<V> {
+        let (zero, spring, resistance) = (V::Real::splat(0.0), self.spring, self.resistance);
+        let footing = Footing::new(self.inverse_mass, self.normal, self.chord, self.inverse_square);
+        let hard = footing.yields[0] + footing.determinant * resistance;
+        let sinking = footing.sinking(free, self.normal, spring, hard.recip());
+        let push = spring - resistance * sinking; // of a node that sticks
+        let sliding = [
+            footing.axes.along.inner(free) + footing.coupling[1] * smooth.pushed,
+            footing.axes.across.inner(free),
+        ];
+        let found = footing.slide(sliding, hard * softness, friction, push);
+        let rise = self.normal.inner(free) - found.grip[0] * sliding[0] * footing.coupling[0];
+        let pressed = (spring - resistance * rise) * softness;
+        let pushes = smooth.pushed.choose(push.choose(pressed, zero), zero);
+        let velocity = footing.combine(sliding, found.left) + self.normal.scaled(rise + yields * pressed);
+        let against = [zero - found.grip[0], zero - found.grip[1]];
         Landed {
-            velocity: choose(
-                pushes,
-                axes.combine(slid) + self.normal.scaled(sinking),
-                smooth.velocity,
-            ),
-            friction: choose(pushes, axes.combine(slide.force), smooth.friction),
+            velocity: choose(pushes, velocity, smooth.velocity),
+            friction: choose(pushes, footing.combine(sliding, against), smooth.friction),
             pushed: smooth.pushed,
         }
     }
@@ -110,10 +186,13 @@ mod tests {
 
     use crate::math::lanes::{LANES, Lanes, Vectors};
 
+    const CHORD: Vector3<f64> = Vector3::new(0.9, 0.2, 0.15);
+
     fn landing() -> Landing<Vector3<f64>> {
         Landing {
             inverse_mass: Slender::inverse([120.0, 100.0]),
-            tangent: Vector3::new(0.9, 0.2, 0.15).normalize(),
+            chord: CHORD,
+            inverse_square: 1.0 / CHORD.norm_squared(),
             normal: Vector3::z(),
             spring: 10.0,
             resistance: 85.0,
@@ -127,7 +206,7 @@ mod tests {
 
     /// Impulse of the seabed excluding friction [N s].
     fn push(node: &Landing<Vector3<f64>>, free: Vector3<f64>, landed: &Landed<Vector3<f64>>) -> Vector3<f64> {
-        let mass = node.inverse_mass.inverted().matrix(node.tangent);
+        let mass = node.inverse_mass.inverted().matrix(node.chord.normalize());
         mass * (landed.velocity - free) - landed.friction
     }
 
@@ -157,7 +236,7 @@ mod tests {
         let (node, free) = (landing(), Vector3::new(0.4, -0.3, -0.05));
         let turn = Rotation3::from_euler_angles(0.3, -0.8, 1.2);
         let turned = Landing {
-            tangent: turn * node.tangent,
+            chord: turn * node.chord,
             normal: turn * node.normal,
             ..node
         };
@@ -202,7 +281,8 @@ mod tests {
                 across: Lanes::splat(node.inverse_mass.across),
                 excess: Lanes::splat(node.inverse_mass.excess),
             },
-            tangent: each(&|_| node.tangent),
+            chord: each(&|_| node.chord),
+            inverse_square: Lanes::splat(node.inverse_square),
             normal: each(&|_| node.normal),
             spring: Lanes::splat(node.spring),
             resistance: Lanes::splat(node.resistance),

@@ -371,7 +371,7 @@ pub(super) struct Sliding {
 
 impl Sliding {
     pub(super) fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
-        let Axes { along, across, .. } = Axes::new(normal, normal);
+        let Axes { along, across, .. } = Axes::unit(normal, normal);
         let axes = [along, across];
         let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
         // A point on a rail yields along that alone: the rest is held, and must not be divided by.

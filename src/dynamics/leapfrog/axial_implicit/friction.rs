@@ -9,8 +9,15 @@
 //! sticks    v = v_n n                                v_n = (n·M u + a + Δt n·pull)/(n·M n + b): of rank one itself
 //! ```
 //!
-//! a and b are those of [`crate::dynamics::leapfrog::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows of the impulse that would stop it
-//! ([`crate::physics::friction`]); the step is repeated until states and friction hold. The first assumption follows in the same way from the velocities that
+//! a and b are those of [`crate::dynamics::leapfrog::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows
+//! ([`crate::physics::friction`]) at the velocity along the seabed that it would have without, leaving the seabed as fast as the pass found: with the inverse
+//! mass W in the axes of [`Footing`] and d the determinant of its block of n and a,
+//!
+//! ```text
+//! v⁰_a = u_a + (d Δt pull_a + W_na (v_n − u_n))/W_nn,   to λ_a with the compliance d/W_nn;   v⁰_b = u_b + W_bb Δt pull_b
+//! ```
+//!
+//! The step is repeated until states and friction hold. The first assumption follows in the same way from the velocities that
 //! the nodes would have under the tensions expected from t_n, without friction. Without friction nodes slide with λ_t = 0.
 
 use super::AxialLine;
@@ -18,7 +25,8 @@ use super::rows::{NodeRow, Sizes, under};
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::real::choose;
-use crate::physics::friction::{Axes, Friction, slide};
+use crate::physics::friction::Friction;
+use crate::physics::friction_step::Footing;
 use crate::physics::slender::Slender;
 
 /// Change of friction that requires another pass, over the greater of the push of the seabed and the greatest tension [-].
@@ -32,49 +40,77 @@ pub(super) struct SeabedRow {
     sticks: Lanes,
     /// Normal n of the seabed [-].
     normal: Vectors,
-    /// Inverse mass off the seabed [1/kg].
+    /// Inverse mass off the seabed [1/kg], W n, and 1/(1 + b W_nn) [-].
     inverse: Slender<Lanes>,
-    /// λ_t of nodes that slide [N s].
+    response: Vectors,
+    softness: Lanes,
+    /// What friction needs besides.
+    rough: RoughRow,
+    /// λ_t [N s].
     friction: Vectors,
 }
 
-impl SeabedRow {
-    /// Nodes off a seabed with a normal, with an inverse mass [1/kg].
+/// Inverse mass of a row of nodes on a seabed with friction.
+#[derive(Debug, Clone, Copy)]
+struct RoughRow {
+    footing: Footing<Vectors>,
+    /// 1/W_nn [kg].
+    upright: Lanes,
+    /// 1/(W_aa + b d) [kg].
+    stuck: Lanes,
+}
+
+impl RoughRow {
+    /// Nodes with an inverse mass [1/kg] along a tangent, of which `yields` is W_nn, on a seabed with a normal and a resistance b [kg].
     #[inline(always)]
-    fn off(normal: Vectors, inverse: Slender<Lanes>) -> SeabedRow {
-        let off = Lanes::splat(-1.0);
+    fn new(
+        inverse: Slender<Lanes>,
+        [normal, tangent]: [Vectors; 2],
+        [yields, resistance]: [Lanes; 2],
+    ) -> RoughRow {
+        let footing = Footing::new(inverse, normal, tangent, Lanes::splat(1.0));
+        RoughRow {
+            upright: yields.recip(),
+            stuck: footing.stuck(resistance),
+            footing,
+        }
+    }
+}
+
+impl SeabedRow {
+    /// Nodes without a seabed.
+    pub(super) fn new() -> SeabedRow {
+        let ([zero, off], none) = ([0.0, -1.0].map(Lanes::splat), Vectors::zero());
+        let inverse = Slender {
+            across: zero,
+            excess: zero,
+        };
         SeabedRow {
             slides: off,
             sticks: off,
-            normal,
+            normal: none,
             inverse,
-            friction: Vectors::zero(),
+            response: none,
+            softness: zero,
+            rough: RoughRow::new(inverse, [none; 2], [zero; 2]),
+            friction: none,
         }
     }
 
-    /// Nodes without a seabed.
-    pub(super) fn new() -> SeabedRow {
-        let zero = Lanes::splat(0.0);
-        SeabedRow::off(
-            Vectors::zero(),
-            Slender {
-                across: zero,
-                excess: zero,
-            },
-        )
-    }
-
-    /// Impulse of friction in the pass that gave the nodes a velocity [m/s] under an impulse of the segments [N s].
+    /// Puts nodes that may touch a seabed with a normal off it.
     #[inline(always)]
-    fn needed(&self, node: &NodeRow, velocity: Vectors) -> Vectors {
-        let moving = choose(self.slides, self.friction, Vectors::zero());
-        if !self.sticks.any_positive() {
-            return moving;
+    fn approach(&mut self, node: &NodeRow, normal: Vectors, has_friction: bool) {
+        let inverse = Slender {
+            across: node.across,
+            excess: node.excess,
+        };
+        let response = inverse.times(normal, node.tangent);
+        let (yields, resistance) = (normal.dot(response), node.contact.resistance);
+        (self.normal, self.inverse, self.response) = (normal, inverse, response);
+        self.softness = (Lanes::splat(1.0) + resistance * yields).recip();
+        if has_friction {
+            self.rough = RoughRow::new(inverse, [normal, node.tangent], [yields, resistance]);
         }
-        let mass = self.inverse.inverted();
-        let momentum = mass.times(velocity - node.fall, node.tangent) - node.impulse;
-        let holding = momentum - self.normal.scale(self.normal.dot(momentum));
-        choose(self.sticks, holding, moving)
     }
 
     /// Revises states and friction from a velocity [m/s], under an impulse of the greatest tension [N s]; positive where they change.
@@ -86,65 +122,73 @@ impl SeabedRow {
         friction: Option<&Friction>,
         greatest: Lanes,
     ) -> Lanes {
-        let [on, off] = [1.0, -1.0].map(Lanes::splat);
+        let [zero, on, off] = [0.0, 1.0, -1.0].map(Lanes::splat);
         let rise = self.normal.dot(velocity);
         let pushes = node.contact.push(rise).where_positive(node.free);
-        let before = *self;
+        let before = [self.slides, self.sticks];
         (self.slides, self.sticks) = (pushes.choose(on, off), off);
-        let mut changed = Lanes::splat(0.0);
-        if let (Some(friction), true) = (friction, pushes.any_positive()) {
-            let push = node.contact.push(rise);
-            let needed = before.needed(node, velocity);
-            let (axes, mass) = (Axes::new(self.normal, node.tangent), self.inverse.inverted());
-            let along = mass.across + mass.excess * axes.share * axes.share;
-            let yields = [along.recip(), self.inverse.across];
-            let sliding = [axes.along.dot(velocity), axes.across.dot(velocity)];
-            let holding = [
-                axes.along.dot(needed) - sliding[0] * along,
-                axes.across.dot(needed) - sliding[1] * mass.across,
-            ];
-            let found = slide(holding, yields, friction.limits(axes.share, push));
-            let moves = pushes.choose(found.slides, off);
-            self.slides = moves.choose(on, off);
-            self.sticks = moves.choose(off, pushes.choose(on, off));
-            self.friction = choose(moves, axes.combine(found.force), self.friction);
-            let step = self.friction - before.friction;
-            let more = step.dot(step).sqrt() - Lanes::splat(FRICTION_TOLERANCE) * push.max(greatest);
-            changed = more.where_positive(moves);
+        let mut changed = zero;
+        if let Some(friction) = friction {
+            let (old, mut moves) = (self.friction, off);
+            self.friction = Vectors::zero();
+            if pushes.any_positive() {
+                let (slides, found) = self.rub(node, rise, friction, pushes);
+                moves = pushes.choose(slides, off);
+                self.slides = moves.choose(on, off);
+                self.sticks = moves.choose(off, pushes.choose(on, off));
+                self.friction = choose(pushes, found, self.friction);
+            }
+            let step = self.friction - old;
+            let allowed = Lanes::splat(FRICTION_TOLERANCE) * pushes.max(greatest);
+            changed = (step.dot(step) - allowed * allowed).where_positive(moves);
         }
-        let flips = off * (self.slides * before.slides).min(self.sticks * before.sticks);
+        let flips = off * (self.slides * before[0]).min(self.sticks * before[1]);
         changed.max(flips)
+    }
+
+    /// Friction on nodes that leave the seabed at `rise` [m/s] under the impulse `push` of the seabed [N s]; positive where they slide.
+    #[inline(always)]
+    fn rub(&self, node: &NodeRow, rise: Lanes, friction: &Friction, push: Lanes) -> (Lanes, Vectors) {
+        let RoughRow { footing, upright, .. } = &self.rough;
+        let axes = &footing.axes;
+        let sunk = rise - self.normal.dot(node.fall);
+        let pulled = footing.determinant * axes.along.dot(node.impulse) + footing.coupling[1] * sunk;
+        let sliding = [
+            axes.along.dot(node.fall) + pulled * *upright,
+            axes.across.dot(node.fall) + footing.yields[1] * axes.across.dot(node.impulse),
+        ];
+        let found = footing.slide(sliding, footing.determinant * *upright, friction, push);
+        let against = Lanes::splat(-1.0);
+        let grip = [against * found.grip[0], against * found.grip[1]];
+        (found.slides, footing.combine(sliding, grip))
     }
 }
 
 impl NodeRow {
     /// Puts the seabed into the equations of the nodes.
     #[inline(always)]
-    fn settle_on(&mut self, seabed: &SeabedRow) {
-        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
-        (self.across, self.excess) = (seabed.inverse.across, seabed.inverse.excess);
-        (self.held, self.loose) = (zero, self.fall);
-        if !seabed.slides.max(seabed.sticks).any_positive() {
+    fn settle_on(&mut self, seabed: &SeabedRow, has_friction: bool) {
+        let (zero, slides) = (Lanes::splat(0.0), seabed.slides);
+        let (spring, resistance) = (self.contact.spring, self.contact.resistance);
+        let (inverse, normal) = (seabed.inverse, seabed.normal);
+        let mut fall = self.fall;
+        if has_friction {
+            fall = fall + inverse.times(seabed.friction, self.tangent);
+        }
+        let push = (spring - resistance * normal.dot(fall)) * seabed.softness;
+        self.held = (resistance * seabed.softness).where_positive(slides);
+        self.loose = choose(slides, fall + seabed.response.scale(push), self.fall);
+        self.response = seabed.response;
+        if !has_friction {
             return;
         }
-        let (inverse, normal) = (seabed.inverse, seabed.normal);
-        let (spring, resistance) = (self.contact.spring, self.contact.resistance);
-        // sliding
-        let response = inverse.times(normal, self.tangent);
-        let fall = self.fall + inverse.times(seabed.friction, self.tangent);
-        let share = (one + resistance * normal.dot(response)).recip();
-        let push = (spring - resistance * normal.dot(fall)) * share;
-        // sticking
-        let mass = inverse.inverted();
-        let softness = (normal.dot(mass.times(normal, self.tangent)) + resistance).recip();
-        let momentum = normal.dot(mass.times(self.fall, self.tangent)) + spring;
-        let (slides, sticks) = (seabed.slides, seabed.sticks);
-        self.across = sticks.choose(zero, self.across);
-        self.excess = sticks.choose(zero, self.excess);
-        self.held = sticks.choose(zero - softness, (resistance * share).where_positive(slides));
-        self.response = choose(sticks, normal, response);
-        let slid = choose(slides, fall + response.scale(push), self.fall);
-        self.loose = choose(sticks, normal.scale(momentum * softness), slid);
+        let (sticks, RoughRow { footing, stuck, .. }) = (seabed.sticks, seabed.rough);
+        let sinking = footing.sinking(self.fall, normal, spring, stuck);
+        self.across = sticks.choose(zero, inverse.across);
+        self.excess = sticks.choose(zero, inverse.excess);
+        self.held = sticks.choose(zero - footing.determinant * stuck, self.held);
+        self.response = choose(sticks, normal, self.response);
+        self.loose = choose(sticks, normal.scale(sinking), self.loose);
     }
 }
 
@@ -156,22 +200,27 @@ impl AxialLine {
         let (Some(contact), Some(seabed)) = (&line.contact, line.seabed()) else {
             return;
         };
+        let has_friction = seabed.seabed.friction.is_some();
         for at in line.rows() {
             let (node, row) = (
                 &mut self.kernel.rows.nodes[at - 1],
                 &mut self.kernel.seabed[at - 1],
             );
-            let (normal, velocity) = (seabed.normal.load(at), line.velocity.load(at));
+            let off = Lanes::splat(-1.0);
             node.contact = contact.over_step(at, sizes.kick);
-            let inverse = Slender {
-                across: node.across,
-                excess: node.excess,
-            };
-            *row = SeabedRow::off(normal, inverse);
-            row.slides = node.contact.push(normal.dot(velocity)).where_positive(node.free);
-            node.settle_on(row);
+            (row.slides, row.sticks, row.friction) = (off, off, Vectors::zero());
+            if !node.contact.resistance.any_positive() {
+                continue;
+            }
+            let normal = seabed.normal.load(at);
+            row.approach(node, normal, has_friction);
+            let pushes = node.contact.push(normal.dot(line.velocity.load(at)));
+            row.slides = pushes.where_positive(node.free).choose(Lanes::splat(1.0), off);
+            if row.slides.any_positive() {
+                node.settle_on(row, has_friction);
+            }
         }
-        if self.layout.friction().is_some() {
+        if has_friction {
             let greatest = self.expect_tensions(sizes);
             self.seabed_holds(greatest, sizes);
         }
@@ -204,9 +253,12 @@ impl AxialLine {
                 &mut self.kernel.rows.nodes[at - 1],
                 &mut self.kernel.seabed[at - 1],
             );
+            if !node.contact.resistance.any_positive() {
+                continue;
+            }
             let change = seabed.revise(node, line.velocity_before.load(at), friction, greatest);
             if change.any_positive() {
-                node.settle_on(seabed);
+                node.settle_on(seabed, friction.is_some());
             }
             changed = changed.max(change);
         }
@@ -216,13 +268,13 @@ impl AxialLine {
     /// Keeps the friction of the step for the state.
     #[inline(always)]
     pub(super) fn keep_friction(&mut self, step: Step) {
+        if self.layout.friction().is_none() {
+            return;
+        }
         let per_kick = Lanes::splat(1.0 / step.kick);
         for at in self.layout.rows() {
-            let needed = self.kernel.seabed[at - 1].needed(
-                &self.kernel.rows.nodes[at - 1],
-                self.layout.velocity_before.load(at),
-            );
-            self.layout.set_friction(at, needed.scale(per_kick));
+            let friction = self.kernel.seabed[at - 1].friction;
+            self.layout.set_friction(at, friction.scale(per_kick));
         }
     }
 }

@@ -15,7 +15,6 @@ use crate::dynamics::leapfrog::layout::{
 };
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
-use crate::math::real::choose;
 use crate::model::Seabed;
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::DragCoefficients;
@@ -105,6 +104,7 @@ impl NullaryFnOnce for Drift<'_> {
 #[derive(Clone, Copy)]
 struct Sizes {
     kick: Lanes,
+    per_kick: Lanes,
     extrapolation: Lanes,
 }
 
@@ -304,24 +304,20 @@ impl NodeRows<'_> {
         if !resistance.any_positive() {
             return none;
         }
-        let inverse = self.inverse_mass[at];
         let excess = self.water.excess.get(at).copied().unwrap_or(Lanes::splat(0.0));
         let landing = Landing {
             inverse_mass: Slender {
-                across: inverse,
+                across: self.inverse_mass[at],
                 excess,
             },
-            tangent: by.chord.scale(inverse_norm(by.chord.dot(by.chord))),
+            chord: by.chord,
+            inverse_square: by.inverse_square,
             normal: self.contact.normal[at],
             spring: sizes.kick * self.contact.spring[at] * interior,
             resistance: sizes.kick * resistance,
         };
         let landed = landing.solve(free, seabed.friction.as_ref());
-        let friction = landed.friction.scale(sizes.kick.recip());
-        (
-            choose(interior, landed.velocity, free),
-            choose(interior, friction, Vectors::zero()),
-        )
+        (landed.velocity, landed.friction.scale(sizes.per_kick))
     }
 }
 
@@ -373,6 +369,7 @@ impl ExplicitLine {
     fn sweep<const AROUND: u8, const UNDER: u8>(&mut self, step: &Step, drift: f64) {
         let sizes = Sizes {
             kick: Lanes::splat(step.kick),
+            per_kick: Lanes::splat(1.0 / step.kick),
             extrapolation: Lanes::splat(step.extrapolation),
         };
         let mut swept = self.cut();
@@ -383,6 +380,12 @@ impl ExplicitLine {
         let line = &mut self.layout;
         std::mem::swap(&mut line.velocity, &mut line.velocity_before);
     }
+}
+
+/// 1 over the square of a chord [1/m²].
+#[inline(always)]
+fn inverse_square(chord: Vectors) -> Lanes {
+    (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).recip()
 }
 
 /// Rows of a line.
@@ -405,7 +408,7 @@ impl Swept<'_> {
             let (moving, nodes) = (&mut self.moving, &self.nodes);
             let velocity = moving.velocity[at];
             let chord = moving.position[at + 1] - moving.position[at - 1];
-            let inverse_square = (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).recip();
+            let inverse_square = inverse_square(chord);
             let change = velocity - moving.velocity_before[at];
             let mut now = velocity + change.scale(sizes.extrapolation);
             moving.inverse_square[at] = inverse_square;
@@ -433,12 +436,17 @@ impl Swept<'_> {
             let (moving, nodes) = (&mut self.moving, &self.nodes);
             let (here, velocity) = (moving.position[at], moving.velocity[at]);
             let pull = moving.pull[at];
+            let chord = moving.position[at + 1] - low;
+            let inverse_square = match AROUND {
+                around::DRY if UNDER == under::ROUGH => inverse_square(chord),
+                _ => moving.inverse_square[at],
+            };
             let mut by = Kicking {
                 pull: pull - pull_low,
                 resistance: moving.resistance[at],
                 froude_krylov: Vectors::zero(),
-                chord: moving.position[at + 1] - low,
-                inverse_square: moving.inverse_square[at],
+                chord,
+                inverse_square,
             };
             if AROUND == around::FLOWING && nodes.waves.is_some() {
                 by.froude_krylov = moving.froude_krylov[at];
