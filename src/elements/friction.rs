@@ -44,12 +44,12 @@ pub struct Resting<'a> {
     /// Velocity [m/s].
     pub velocity: Vector3<f64>,
     /// Friction, where there is any.
-    pub rub: Option<Rub<'a>>,
+    pub slip: Option<Slip<'a>>,
 }
 
 /// Friction of a node.
 #[derive(Debug, Clone, Copy)]
-pub struct Rub<'a> {
+pub struct Slip<'a> {
     /// The law.
     pub friction: &'a Friction,
     /// Direction of the line; any unit vector for a point.
@@ -104,7 +104,7 @@ impl<'a> Resting<'a> {
             } else {
                 Vector3::zeros()
             },
-            rub: friction.map(|(friction, anchor)| Rub {
+            slip: friction.map(|(friction, anchor)| Slip {
                 friction,
                 tangent: node_tangent(&state.position, i),
                 anchor: *anchor,
@@ -118,11 +118,11 @@ impl<'a> Resting<'a> {
     /// Contact with a case's parts of the stiffness and the limit of friction, and the normal force `pressed` [N] where the case keeps it constant.
     fn at_rest(self, case: &StaticCase, pressed: f64) -> Resting<'a> {
         Resting {
-            rub: self.rub.map(|rub| Rub {
+            slip: self.slip.map(|slip| Slip {
                 limit: case.limit,
-                stick: case.stick * rub.stick,
+                stick: case.stick * slip.stick,
                 normal_force: case.keeps_pressure.then_some(pressed),
-                ..rub
+                ..slip
             }),
             ..self
         }
@@ -151,14 +151,14 @@ impl<'a> Resting<'a> {
             damping: [-normal * by_velocity.transpose(), Matrix3::zeros()],
             after: [self.bearing.stiffness_after, self.bearing.damping_after].map(|slope| slope * across),
         };
-        if let Some(rub) = &self.rub {
-            let axes = Axes::unit(normal, rub.tangent);
-            let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
-            let normal_force = rub.normal_force.unwrap_or(seabed.force);
-            let limits = rub.limit * rub.friction.limits(&axes, normal_force);
+        if let Some(slip) = &self.slip {
+            let axes = Axes::unit(normal, slip.tangent);
+            let wanted = slip.stick * axes.components(&(slip.anchor - self.place));
+            let normal_force = slip.normal_force.unwrap_or(seabed.force);
+            let limits = slip.limit * slip.friction.limits(&axes, normal_force);
             let held = node_friction(wanted, [1.0, 1.0].into(), limits);
             let slope = held.slope(limits);
-            let grows = match rub.normal_force {
+            let grows = match slip.normal_force {
                 None => axes.vector(&(held.force - slope * wanted)) / seabed.force,
                 Some(_) => Vector3::zeros(),
             };
@@ -167,7 +167,7 @@ impl<'a> Resting<'a> {
                 + across * (slope.m21 * along + slope.m22 * across).transpose();
             push.friction = axes.vector(&held.force);
             push.force += push.friction;
-            push.stiffness[1] = rub.stick * sheared - grows * by_place.transpose();
+            push.stiffness[1] = slip.stick * sheared - grows * by_place.transpose();
             push.damping[1] = -grows * by_velocity.transpose();
         }
         push
@@ -243,7 +243,7 @@ pub fn resting_point<'a>(
         normal_after: touch.normal,
         place,
         velocity,
-        rub: friction.map(|(friction, anchor)| Rub {
+        slip: friction.map(|(friction, anchor)| Slip {
             friction,
             tangent: Vector3::z(), // a point is across all around
             anchor,
@@ -512,7 +512,7 @@ mod tests {
             normal_after: touch.normal,
             place,
             velocity,
-            rub: slid.map(|slid| Rub {
+            slip: slid.map(|slid| Slip {
                 friction: &ROUGH,
                 tangent: Vector3::new(0.8, 0.5, 0.1).normalize(),
                 anchor: under - slid,

@@ -142,14 +142,16 @@ impl<V: RealVector> Landing<V> {
             pushed: push,
         };
         match friction {
-            Some(friction) if push.any_positive() => self.rub((free, friction), [yields, softness], smooth),
+            Some(friction) if push.any_positive() => {
+                self.with_friction((free, friction), [yields, softness], smooth)
+            }
             _ => smooth,
         }
     }
 
     /// The same with friction, where the seabed pushes a node that sticks; `smooth` is the motion without, `yields` W_nn and `softness` 1/(1 + b W_nn).
     #[inline(always)]
-    fn rub(
+    fn with_friction(
         &self,
         (free, friction): (V, &Friction),
         [yields, softness]: [V::Real; 2],

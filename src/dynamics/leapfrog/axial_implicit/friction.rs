@@ -132,7 +132,7 @@ impl SeabedRow {
             let (old, mut moves) = (self.friction, off);
             self.friction = Vectors::zero();
             if pushes.any_positive() {
-                let (slides, found) = self.rub(node, rise, friction, pushes);
+                let (slides, found) = self.friction_on(node, rise, friction, pushes);
                 moves = pushes.choose(slides, off);
                 self.slides = moves.choose(on, off);
                 self.sticks = moves.choose(off, pushes.choose(on, off));
@@ -148,7 +148,7 @@ impl SeabedRow {
 
     /// Friction on nodes that leave the seabed at `rise` [m/s] under the impulse `push` of the seabed [N s]; positive where they slide.
     #[inline(always)]
-    fn rub(&self, node: &NodeRow, rise: Lanes, friction: &Friction, push: Lanes) -> (Lanes, Vectors) {
+    fn friction_on(&self, node: &NodeRow, rise: Lanes, friction: &Friction, push: Lanes) -> (Lanes, Vectors) {
         let RoughRow { footing, upright, .. } = &self.rough;
         let axes = &footing.axes;
         let sunk = rise - self.normal.dot(node.fall);
