@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::scene::{Line, MotionPath, Point, Scene, Vessel};
 
-use super::{Discretisation, Mesh, Networks, elements_of};
+use super::{Discretisation, Mesh, Networks, elements_of, short_sections};
 
 /// Distance that makes no difference between two networks [m].
 const SAME_PLACE: f64 = 1e-3;
@@ -68,6 +68,13 @@ impl Kinds {
         };
         let meshes: Vec<Mesh> = (0..networks.lines.len()).map(mesh).collect();
         let mut whole = networks.with_elements(scene, &elements_of(&meshes));
+        for (lines, &first) in networks.lines.iter().zip(&self.first) {
+            for (&line, of_kind) in lines.iter().zip(&networks.lines[first]) {
+                if let Some(tried) = self.lines.iter().position(|kept| kept == of_kind) {
+                    short_sections::take_over(&mut whole, line, &found.scene, tried);
+                }
+            }
+        }
         whole.solver.integrator = found.scene.solver.integrator;
         whole.solver.time_step_max = found.scene.solver.time_step_max;
         Discretisation {

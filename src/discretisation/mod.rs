@@ -39,6 +39,7 @@ mod history;
 mod kinds;
 mod rest;
 mod search;
+mod short_sections;
 
 use std::borrow::Cow;
 
@@ -263,6 +264,7 @@ pub fn at_rest(scene: &Scene) -> Result<(Option<Discretisation>, Simulation), si
 fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     let mut search = Search::new(scene, &Model::new(scene).ok()?, networks)?;
     let mut meshes = search.meshes()?;
+    search.refine_short_sections(&meshes);
     let start = |scene: &Scene| Simulation::new(scene).ok();
     if let Some(simulation) = start(&networks.with_elements(scene, &elements_of(&meshes))) {
         rest::refine(scene, networks, &mut meshes, &simulation, start);
@@ -330,6 +332,10 @@ pub fn finest(scene: &Scene, found: &[Discretisation]) -> Option<Scene> {
         elements[network] = of_network.max().unwrap_or(1);
     }
     let mut finest = networks.with_elements(scene, &elements);
+    for line in 0..scene.lines.len() {
+        let others = found.iter();
+        others.for_each(|other| short_sections::take_over(&mut finest, line, &other.scene, line));
+    }
     let solvers = || found.iter().map(|other| &other.scene.solver);
     if solvers().all(|solver| solver.integrator == first.integrator) {
         finest.solver.integrator = first.integrator;

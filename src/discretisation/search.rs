@@ -1,7 +1,7 @@
 //! The meshes, integrator and step of a scene, by trial runs.
 
 use super::history::History;
-use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial};
+use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial, elements_of, short_sections};
 use crate::dynamics::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use crate::model::{Line, Model, Role};
 use crate::scene::{Integrator, MotionPath, Scene};
@@ -65,10 +65,10 @@ struct Ladder {
 
 /// Result of one run for the lines of a network.
 #[derive(Debug, Clone)]
-struct Run {
+pub(super) struct Run {
     elements: usize,
     /// Lengths of the elements of every line [m].
-    lengths: Vec<Vec<f64>>,
+    pub(super) lengths: Vec<Vec<f64>>,
     /// History of every line after the start.
     histories: Vec<History>,
 }
@@ -291,6 +291,39 @@ impl<'a> Search<'a> {
             .collect()
     }
 
+    /// Doubles the elements of sections that are one element on all levels, until their error and that of the mesh are within the tolerance together.
+    pub(super) fn refine_short_sections(&mut self, meshes: &[Mesh]) -> Option<()> {
+        let elements = elements_of(meshes);
+        let ladders = self.ladders.iter();
+        let runs = ladders.filter_map(|ladder| Some((&ladder.lines[..], ladder.runs.last()?)));
+        let short = runs.flat_map(|(lines, run)| short_sections::in_run(&self.scene, lines, run));
+        let short: Vec<(usize, usize)> = short.collect();
+        if short.is_empty() {
+            return None;
+        }
+        let mut run = self.run(&self.at_level(&elements)).ok()??;
+        for doubling in 1..=short_sections::DOUBLINGS {
+            let finer = short_sections::with_elements(&self.scene, &short, 1 << doubling);
+            let coarse = std::mem::replace(&mut self.scene, finer);
+            let finer = self.run(&self.at_level(&elements));
+            let Ok(Some(finer)) = finer else {
+                self.scene = coarse;
+                return None;
+            };
+            let networks = self.ladders.iter().zip(meshes);
+            let within = networks.map(|(ladder, mesh)| {
+                let [run, finer] = [&run, &finer].map(|record| ladder.part(mesh.elements, record));
+                smooth_error(&run, &finer).hypot(mesh.error) <= self.scene.solver.tolerance
+            });
+            if within.fold(true, |all, one| all && one) {
+                self.scene = coarse;
+                break;
+            }
+            run = finer;
+        }
+        Some(())
+    }
+
     /// Longest axial-implicit step whose error on a coarse mesh is small [s], none where explicit steps cost less; the longest step allowed where steps
     /// are fully implicit.
     fn coarse_step(&mut self) -> Option<f64> {
@@ -308,7 +341,7 @@ impl<'a> Search<'a> {
             let finer = self.run(&self.with_step(&elements, 0.5 * step)).ok()??;
             let errors = self.ladders.iter().map(|ladder| {
                 let [run, finer] = [&run, &finer].map(|record| ladder.part(COARSE, record));
-                step_error(&run, &finer)
+                smooth_error(&run, &finer)
             });
             if errors.fold(0.0, f64::max) <= FINER * self.scene.solver.tolerance {
                 return Some(step);
@@ -345,7 +378,7 @@ impl<'a> Search<'a> {
             .zip(elements)
             .filter_map(|(ladder, elements)| {
                 let same = ladder.runs.iter().find(|run| run.elements == elements)?;
-                Some(step_error(same, &ladder.part(elements, &record)))
+                Some(smooth_error(same, &ladder.part(elements, &record)))
             });
         errors.fold(0.0, f64::max) / most
     }
@@ -588,8 +621,8 @@ pub(super) fn driven(model: &Model, line: usize) -> usize {
     usize::from(!moved(0) || moved(1))
 }
 
-/// Error of a run by its steps [-], by comparison with one with half of them: it falls with their square.
-fn step_error(run: &Run, halved: &Run) -> f64 {
+/// Error of a run [-] that falls with the square of its steps or elements, by comparison with one with half of them.
+fn smooth_error(run: &Run, halved: &Run) -> f64 {
     4.0 / 3.0 * distance(run, halved)
 }
 

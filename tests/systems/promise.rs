@@ -308,6 +308,28 @@ fn cable_between_floats() -> Scene {
     .scene()
 }
 
+/// A taut rope of polyester between two lengths of chain that are short beside it.
+fn deep_polyester() -> Scene {
+    draft(
+        "water.density = 1025.0
+        seabed = { depth = 2000.0, stiffness = 3.0e6, damping = 3.0e5 }
+        line_types.chain = { mass = 113.35, diameter = 0.0766, axial_stiffness = 7.5e8, axial_damping = 2.0e6, drag_normal = 2.0,
+          drag_tangential = 0.4, added_mass_normal = 0.8, added_mass_tangential = 0.25 }
+        line_types.polyester = { mass = 38.0, diameter = 0.22, axial_stiffness = 2.0e8, damping_ratio = 0.05, drag_normal = 1.2,
+          drag_tangential = 0.02, added_mass_normal = 1.0 }
+        motion.fairlead = { x = [[4.0, 14.0]], z = [[2.0, 10.0]], ramp = 20.0 }
+        output = { duration = 132.0, interval = 0.05 }",
+    )
+    .fixed("anchor", [1800.0, 0.0, -2000.0])
+    .coupled("fairlead", [0.0, 0.0, -15.0])
+    .sections(
+        "leg",
+        ["anchor", "fairlead"],
+        &[("chain", 150.0, None), ("polyester", 2400.0, None), ("chain", 100.0, None)],
+    )
+    .scene()
+}
+
 /// Tensions of every line at the end that moves, over the second half of a run [N].
 fn tensions(scene: &Scene) -> Vec<Vec<f64>> {
     let mut simulation = following(&discretised(scene));
@@ -338,17 +360,21 @@ fn errors_of_lines(name: &str, scene: &Scene, tolerance: f64) -> Vec<f64> {
     for line in &mut fine.lines {
         line.elements = Some(3 * line.elements.or(settled.scene.solver.elements).unwrap());
     }
-    let (found, exact) = (tensions(&chosen), tensions(&fine));
-    let lines = found.iter().zip(&exact);
+    let errors = errors_between(&tensions(&chosen), &tensions(&fine));
+    println!("{name}, {tolerance}: {elements:?} elements, {errors:.4?}");
+    errors
+}
+
+/// RMS error of every tension over the standard deviation of the right one [-].
+fn errors_between(found: &[Vec<f64>], exact: &[Vec<f64>]) -> Vec<f64> {
+    let lines = found.iter().zip(exact);
     let errors = lines.map(|(own, right)| {
         let mean = right.iter().sum::<f64>() / right.len() as f64;
         let square = |values: f64, x: f64| values + x * x;
         let wrong = own.iter().zip(right).map(|(a, b)| a - b).fold(0.0, square);
         (wrong / right.iter().map(|b| b - mean).fold(0.0, square)).sqrt()
     });
-    let errors = errors.collect();
-    println!("{name}, {tolerance}: {elements:?} elements, {errors:.4?}");
-    errors
+    errors.collect()
 }
 
 #[test]
@@ -381,6 +407,30 @@ fn cables_that_bend_keep_the_stated_error() {
             let errors = errors_of_lines(name, &scene, tolerance);
             assert!(errors[0] <= tolerance, "{name}, {tolerance}: {errors:?}");
         }
+    }
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn sections_that_are_short_beside_a_line_keep_the_stated_error() {
+    let scene = deep_polyester();
+    let mut fine = scene.clone();
+    fine.solver.tolerance = 5e-4;
+    for (section, elements) in fine.lines[0].sections.iter_mut().zip([12, 60, 12]) {
+        section.elements = Some(elements);
+    }
+    let exact = tensions(&fine);
+    for tolerance in [0.02, 0.005] {
+        let mut chosen = scene.clone();
+        chosen.solver.tolerance = tolerance;
+        let found = discretised(&chosen);
+        let elements = found.lines[0].sections.iter().map(|section| section.elements);
+        let errors = errors_between(&tensions(&chosen), &exact);
+        println!(
+            "{tolerance}: {:?} elements, {errors:.4?}",
+            elements.collect::<Vec<_>>()
+        );
+        assert!(errors[0] <= tolerance, "{tolerance}: {errors:?}");
     }
 }
 

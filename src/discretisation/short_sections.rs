@@ -1,0 +1,63 @@
+//! Sections that are too short for a second element on every mesh level.
+//!
+//! Such a section is the same on all levels, whose runs then say nothing about its error: on 2400 m of polyester rope between 150 and 100 m of chain
+//! 5 to 20 elements agree within 0.1 %, and are all off by 0.9 %. On the mesh found, the run is repeated with twice the elements in these
+//! sections, of which 4/3 of the distance is their error, until that is small enough.
+
+use super::search::Run;
+use crate::scene::Scene;
+
+/// Doublings of the elements of short sections, at most [-].
+pub(super) const DOUBLINGS: u32 = 3;
+
+/// Part of a line that is rounding of its arc lengths [-].
+const ROUNDING: f64 = 1e-9;
+
+/// Open sections of a line of several that are one element in a mesh of these lengths [m], by line and section.
+fn of_line(scene: &Scene, line: usize, lengths: &[f64]) -> Vec<(usize, usize)> {
+    let sections = &scene.lines[line].sections;
+    if sections.len() < 2 {
+        return Vec::new();
+    }
+    let tiny = ROUNDING * lengths.iter().sum::<f64>();
+    let starts = lengths
+        .iter()
+        .scan(0.0, |s, length| Some(std::mem::replace(s, *s + length)));
+    let elements: Vec<(f64, f64)> = starts.zip(lengths.iter().copied()).collect();
+    let mut start = 0.0;
+    let mut found = Vec::new();
+    for (index, section) in sections.iter().enumerate() {
+        let is_section =
+            |&(s, length): &(f64, f64)| (s - start).abs() < tiny && (length - section.length).abs() < tiny;
+        if section.elements.is_none() && elements.iter().any(is_section) {
+            found.push((line, index));
+        }
+        start += section.length;
+    }
+    found
+}
+
+/// Sections with one element in the run of the finest level of a network, by line and section.
+pub(super) fn in_run(scene: &Scene, lines: &[usize], run: &Run) -> Vec<(usize, usize)> {
+    let lines = lines.iter().zip(&run.lengths);
+    lines
+        .flat_map(|(&line, lengths)| of_line(scene, line, lengths))
+        .collect()
+}
+
+/// The scene with elements in some of its sections.
+pub(super) fn with_elements(scene: &Scene, sections: &[(usize, usize)], elements: usize) -> Scene {
+    let mut scene = scene.clone();
+    for &(line, section) in sections {
+        scene.lines[line].sections[section].elements = Some(elements);
+    }
+    scene
+}
+
+/// Gives sections that are left open the elements of the same sections of another line, where these are more.
+pub(super) fn take_over(scene: &mut Scene, line: usize, from: &Scene, other: usize) {
+    let sections = scene.lines[line].sections.iter_mut();
+    for (own, found) in sections.zip(&from.lines[other].sections) {
+        own.elements = own.elements.max(found.elements);
+    }
+}
