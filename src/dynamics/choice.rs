@@ -107,12 +107,7 @@ impl Choice {
             true => least(&|line| axial_accuracy_step(line, tolerance)),
             false => least_of_points(&|point| point_accuracy_step(model, point, tolerance)),
         };
-        let of_jumps = match model.solver.input_reconstruction {
-            Reconstruction::Jump if follows_host(model, network) => {
-                least(&|line| jump_accuracy_step(line, tolerance))
-            }
-            _ => f64::INFINITY,
-        };
+        let of_jumps = jump_step(model, network);
         let accurate = accurate
             .max(AXIAL_RESOLUTION_MIN * transverse_limit)
             .min(transverse_limit)
@@ -170,16 +165,21 @@ struct Steps {
     implicit: f64,
 }
 
-/// Returns whether a host moves an end of the network's lines.
-fn follows_host(model: &Model, network: &Network) -> bool {
-    let lines = network.lines.iter();
-    let mut ends = lines.flat_map(|&line| model.lines[line].ends);
-    ends.any(|end| {
+/// Step that resolves the axial waves of jumps at the ends that a host moves [s]; infinite without jumps.
+fn jump_step(model: &Model, network: &Network) -> f64 {
+    let lines = || network.lines.iter().map(|&line| &model.lines[line]);
+    let follows = |end: usize| {
         matches!(
             model.points[end].role,
             Role::Coupled { .. } | Role::Carried { .. }
         )
-    })
+    };
+    let jumps = model.solver.input_reconstruction == Reconstruction::Jump;
+    if !jumps || !lines().flat_map(|line| line.ends).any(follows) {
+        return f64::INFINITY;
+    }
+    let steps = lines().map(|line| jump_accuracy_step(line, model.solver.tolerance));
+    steps.fold(f64::INFINITY, f64::min)
 }
 
 /// Step of generalised-α without jumps of the ends [s]: one that resolves the free points, where generalised-α is a choice.
