@@ -292,36 +292,38 @@ impl<'a> Search<'a> {
     }
 
     /// Doubles the elements of sections that are one element on all levels, until their error and that of the mesh are within the tolerance together.
-    pub(super) fn refine_short_sections(&mut self, meshes: &[Mesh]) -> Option<()> {
-        let elements = elements_of(meshes);
+    pub(super) fn refine_short_sections(&mut self, meshes: &[Mesh]) {
         let ladders = self.ladders.iter();
         let runs = ladders.filter_map(|ladder| Some((&ladder.lines[..], ladder.runs.last()?)));
         let short = runs.flat_map(|(lines, run)| short_sections::in_run(&self.scene, lines, run));
         let short: Vec<(usize, usize)> = short.collect();
         if short.is_empty() {
-            return None;
+            return;
         }
-        let mut run = self.run(&self.at_level(&elements)).ok()??;
+        let elements = elements_of(meshes);
+        let mut run = self.run(&self.at_level(&elements));
         for doubling in 1..=short_sections::DOUBLINGS {
             let finer = short_sections::with_elements(&self.scene, &short, 1 << doubling);
-            let coarse = std::mem::replace(&mut self.scene, finer);
+            let scene = std::mem::replace(&mut self.scene, finer);
             let finer = self.run(&self.at_level(&elements));
-            let Ok(Some(finer)) = finer else {
-                self.scene = coarse;
-                return None;
+            let too_coarse = match (&run, &finer) {
+                (Ok(Some(run)), Ok(Some(finer))) => !self.keeps_tolerance(meshes, [run, finer]),
+                _ => false,
             };
-            let networks = self.ladders.iter().zip(meshes);
-            let within = networks.map(|(ladder, mesh)| {
-                let [run, finer] = [&run, &finer].map(|record| ladder.part(mesh.elements, record));
-                smooth_error(&run, &finer).hypot(mesh.error) <= self.scene.solver.tolerance
-            });
-            if within.fold(true, |all, one| all && one) {
-                self.scene = coarse;
-                break;
+            if !too_coarse {
+                self.scene = scene;
+                return;
             }
             run = finer;
         }
-        Some(())
+    }
+
+    /// Returns whether meshes with the error of the first of two runs, of which the second has twice the elements where that error comes from, keep the tolerance.
+    fn keeps_tolerance(&self, meshes: &[Mesh], runs: [&Record; 2]) -> bool {
+        self.ladders.iter().zip(meshes).all(|(ladder, mesh)| {
+            let [coarse, fine] = runs.map(|record| ladder.part(mesh.elements, record));
+            smooth_error(&coarse, &fine).hypot(mesh.error) <= self.scene.solver.tolerance
+        })
     }
 
     /// Longest axial-implicit step whose error on a coarse mesh is small [s], none where explicit steps cost less; the longest step allowed where steps
