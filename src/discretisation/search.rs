@@ -318,7 +318,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns whether meshes with the error of the first of two runs, of which the second has twice the elements where that error comes from, keep the tolerance.
+    /// Returns whether meshes keep the tolerance with an error in addition to theirs: that of the first of two runs, of which the second has twice the elements
+    /// in some sections.
     fn keeps_tolerance(&self, meshes: &[Mesh], runs: [&Record; 2]) -> bool {
         self.ladders.iter().zip(meshes).all(|(ladder, mesh)| {
             let [coarse, fine] = runs.map(|record| ladder.part(mesh.elements, record));

@@ -1,4 +1,4 @@
-//! Sections that are too short for a second element on every mesh level.
+//! Sections that are one element on all mesh levels.
 //!
 //! Such a section is the same on all levels, whose runs then say nothing about its error: on 2400 m of polyester rope between 150 and 100 m of chain
 //! 5 to 20 elements agree within 0.1 %, and are all off by 0.9 %. On the mesh found, the run is repeated with twice the elements in these
@@ -10,10 +10,10 @@ use crate::scene::Scene;
 /// Doublings of the elements of short sections, at most [-].
 pub(super) const DOUBLINGS: u32 = 3;
 
-/// Part of a line that is rounding of its arc lengths [-].
+/// Rounding of arc lengths over the length of the line [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Open sections of a line of several that are one element in a mesh of these lengths [m], by line and section.
+/// Open sections that are one element of a mesh with these lengths [m], by line and section; none on a line of one section.
 fn of_line(scene: &Scene, line: usize, lengths: &[f64]) -> Vec<(usize, usize)> {
     let sections = &scene.lines[line].sections;
     if sections.len() < 2 {

@@ -46,7 +46,7 @@ pub(super) fn within<W: Write>(
     Ok(())
 }
 
-/// Attributes whose texts are made for them.
+/// Attributes with owned values.
 pub(super) fn texts<'a>(attributes: &'a [(&'a str, String)]) -> Vec<(&'a str, &'a str)> {
     let attributes = attributes.iter();
     attributes.map(|(key, text)| (*key, text.as_str())).collect()

@@ -111,7 +111,7 @@ fn parse(input: impl BufRead, of_units_file: &BTreeMap<String, String>) -> Resul
     Ok(table.moves(&rows))
 }
 
-/// Puts the line in front of a problem.
+/// Prefixes a problem with its line.
 fn on_line(line: usize) -> impl Fn(String) -> String {
     move |problem| format!(", line {line}: {problem}")
 }

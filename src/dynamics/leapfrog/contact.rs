@@ -232,7 +232,7 @@ impl ContactArrays {
 
 impl SeabedArrays {
     /// Finds the depths of all rows of nodes whose contact begins at `lift` [m] above the seabed, and the normals there. A row above the highest
-    /// place of the soundings, whose neighbours are so too, gets a bound of its penetration and no normal.
+    /// point of the surface, like its neighbours, gets a bound of its penetration and no normal.
     #[inline(always)]
     fn find_depths(&mut self, lift: &[Lanes], [position, velocity]: [&[Vectors]; 2], step: Step) {
         let rows = lift.len();
@@ -289,7 +289,7 @@ impl DepthRows<'_> {
     }
 }
 
-/// Nodes beneath or above the height that no place of the soundings exceeds.
+/// Test of nodes against the height that no point of the soundings exceeds.
 struct Above<'a> {
     /// That height [m].
     highest: Lanes,
@@ -308,7 +308,7 @@ impl Above<'_> {
         self.highest + self.lift[at] - self.position[at].z
     }
 
-    /// Returns whether a node of a row may come to the height within a step.
+    /// Returns whether a node of a row may reach that height within a step.
     #[inline(always)]
     fn reached(&self, at: usize) -> bool {
         let (bound, velocity) = (self.bound(at), self.velocity[at]);

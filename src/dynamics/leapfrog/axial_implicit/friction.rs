@@ -44,7 +44,7 @@ pub(super) struct SeabedRow {
     inverse: Slender<Lanes>,
     response: Vectors,
     softness: Lanes,
-    /// What friction needs besides.
+    /// Data of friction.
     rough: RoughRow,
     /// λ_t [N s].
     friction: Vectors,
@@ -97,7 +97,7 @@ impl SeabedRow {
         }
     }
 
-    /// Puts nodes that may touch a seabed with a normal off it.
+    /// Sets normal and inverse mass of nodes that may touch the seabed; they start off it.
     #[inline(always)]
     fn approach(&mut self, node: &NodeRow, normal: Vectors, has_friction: bool) {
         let inverse = Slender {
