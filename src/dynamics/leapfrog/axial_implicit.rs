@@ -358,16 +358,14 @@ impl AxialLine {
 
     /// Everything that a step finds before its tensions.
     #[inline(always)]
-    fn prepare<const CURRENT: bool, const SEABED: u8>(
-        &mut self,
-        step: Step,
-        ends: &[Vector3<f64>; 2],
-    ) -> Sizes {
+    fn prepare<const SEABED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2]) -> Sizes {
         self.choose_weights(step);
         let sizes = self.sizes(step);
         self.choose_springs(step, &sizes);
-        self.prepare_drag::<CURRENT>(step);
-        self.prepare_nodes::<CURRENT>(&sizes);
+        match self.kernel.rows.current.is_some() {
+            true => self.prepare_nodes::<true>(step, &sizes),
+            false => self.prepare_nodes::<false>(step, &sizes),
+        }
         self.prepare_ends(step, ends);
         self.layout.press_seabed(step);
         match SEABED {
@@ -470,8 +468,8 @@ trait Stage {
     /// Quantity that it finds.
     type Found;
 
-    /// Runs in water that moves or not, over a kind of seabed.
-    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) -> Self::Found;
+    /// Runs over a kind of seabed.
+    fn run<const SEABED: u8>(self, line: &mut AxialLine) -> Self::Found;
 }
 
 /// A stage for the vector unit of the machine.
@@ -484,13 +482,10 @@ impl<S: Stage> NullaryFnOnce for Run<'_, S> {
     fn call(self) -> S::Found {
         use under::{LEVEL, NOTHING, ROUGH};
         let Run(line, stage) = self;
-        match (line.kernel.rows.current.is_some(), line.seabed_under()) {
-            (false, NOTHING) => stage.run::<false, NOTHING>(line),
-            (false, LEVEL) => stage.run::<false, LEVEL>(line),
-            (false, _) => stage.run::<false, ROUGH>(line),
-            (true, NOTHING) => stage.run::<true, NOTHING>(line),
-            (true, LEVEL) => stage.run::<true, LEVEL>(line),
-            (true, _) => stage.run::<true, ROUGH>(line),
+        match line.seabed_under() {
+            NOTHING => stage.run::<NOTHING>(line),
+            LEVEL => stage.run::<LEVEL>(line),
+            _ => stage.run::<ROUGH>(line),
         }
     }
 }
@@ -505,9 +500,9 @@ impl Stage for Whole<'_> {
     type Found = usize;
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) -> usize {
+    fn run<const SEABED: u8>(self, line: &mut AxialLine) -> usize {
         let Whole { step, ends } = self;
-        let sizes = line.prepare::<CURRENT, SEABED>(step, ends);
+        let sizes = line.prepare::<SEABED>(step, ends);
         let mut passes = 0;
         loop {
             passes += 1;

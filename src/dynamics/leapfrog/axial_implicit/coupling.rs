@@ -447,8 +447,8 @@ impl Stage for Prepare<'_> {
     type Found = ();
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) {
-        line.prepare::<CURRENT, SEABED>(self.step, self.ends);
+    fn run<const SEABED: u8>(self, line: &mut AxialLine) {
+        line.prepare::<SEABED>(self.step, self.ends);
     }
 }
 
@@ -461,7 +461,7 @@ impl Stage for Tensions {
     type Found = ();
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) {
+    fn run<const SEABED: u8>(self, line: &mut AxialLine) {
         let sizes = line.sizes(self.step);
         if line.kernel.open.is_empty() {
             return;
@@ -480,7 +480,7 @@ impl Stage for Settle {
     type Found = bool;
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) -> bool {
+    fn run<const SEABED: u8>(self, line: &mut AxialLine) -> bool {
         let sizes = line.sizes(self.step);
         let before = match line.kernel.open.is_empty() {
             true => {
@@ -503,7 +503,7 @@ impl Stage for Finish<'_> {
     type Found = ();
 
     #[inline(always)]
-    fn run<const CURRENT: bool, const SEABED: u8>(self, line: &mut AxialLine) {
+    fn run<const SEABED: u8>(self, line: &mut AxialLine) {
         let sizes = line.sizes(self.step);
         line.finish::<SEABED>(self.step, self.ends, &sizes);
     }

@@ -165,7 +165,7 @@ impl AxialLine {
     /// Drag of the velocity relative to the water: across the line by the velocities extrapolated to t_n, along it by those of t_{n−½} and
     /// t_{n+½}, with the slope that it has where these are extrapolated to.
     #[inline(always)]
-    pub(super) fn prepare_drag<const CURRENT: bool>(&mut self, step: Step) {
+    fn prepare_drag<const CURRENT: bool>(&mut self, step: Step) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
         let Some(drag) = &line.drag else {
             return;
@@ -196,9 +196,10 @@ impl AxialLine {
         }
     }
 
-    /// Inverse masses, and the velocities that nodes would come to without tension and seabed.
+    /// Inverse masses, and the velocities that nodes would come to without tension and seabed, in water that moves or not.
     #[inline(always)]
-    pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, sizes: &Sizes) {
+    pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, step: Step, sizes: &Sizes) {
+        self.prepare_drag::<CURRENT>(step);
         let (line, last) = (&self.layout, self.layout.striping.rows());
         let (velocities, weight) = (line.velocity.rows(last), line.weight.rows(last));
         let (nodes, drawn) = (&mut self.kernel.rows.nodes[..last], line.drag.is_some());
