@@ -310,7 +310,7 @@ fn cable_between_floats() -> Scene {
     .scene()
 }
 
-/// A taut rope of polyester between two lengths of chain that are short beside it.
+/// A taut rope of polyester between two short lengths of chain.
 fn deep_polyester() -> Scene {
     draft(
         "water.density = 1025.0
@@ -457,7 +457,7 @@ fn light_lines_and_networks_keep_the_stated_error_with_and_without_waves() {
 
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
-fn sections_that_are_short_beside_a_line_keep_the_stated_error() {
+fn short_sections_keep_the_stated_error() {
     let scene = deep_polyester();
     let mut fine = scene.clone();
     fine.solver.tolerance = 5e-4;
