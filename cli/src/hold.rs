@@ -56,12 +56,20 @@ fn edited(text: &str, given: &Scene, held: &Scene) -> Option<(String, Vec<String
             keys.push(put(solver.as_table_like_mut()?, "solver", key, item));
         }
     }
-    for i in 0..held.lines.len() {
-        let [before, after] =
-            [&mut *before, &mut *after].map(|scene| line(scene.get_mut("lines")?, i)?.get("elements"));
-        if let Some(item) = changed(before, after) {
-            let line = line(document.get_mut("lines")?, i)?;
+    for (i, line) in held.lines.iter().enumerate() {
+        let scenes = [&mut *before, &mut *after];
+        let [old, new] = scenes.map(|scene| table_at(scene.get_mut("lines")?, i)?.get("elements"));
+        if let Some(item) = changed(old, new) {
+            let line = table_at(document.get_mut("lines")?, i)?;
             keys.push(put(line, &format!("lines[{i}]"), "elements", item));
+        }
+        for k in 0..line.sections.len() {
+            let scenes = [&mut *before, &mut *after];
+            let [old, new] = scenes.map(|scene| section(scene, [i, k])?.get("elements"));
+            if let Some(item) = changed(old, new) {
+                let at = format!("lines[{i}].sections[{k}]");
+                keys.push(put(section(&mut document, [i, k])?, &at, "elements", item));
+            }
         }
     }
     Some((document.to_string(), keys))
@@ -84,10 +92,16 @@ fn put(table: &mut dyn TableLike, at: &str, key: &str, item: &Item) -> String {
     assignment
 }
 
-/// Table of line `i`, in an array of tables or of inline tables.
-fn line(lines: &mut Item, i: usize) -> Option<&mut dyn TableLike> {
-    match lines {
+/// Table of section `k` of line `i` of a scene.
+fn section(scene: &mut DocumentMut, [i, k]: [usize; 2]) -> Option<&mut dyn TableLike> {
+    let line = table_at(scene.get_mut("lines")?, i)?;
+    table_at(line.get_mut("sections")?, k)
+}
+
+/// Table `i` of an array of tables or of inline tables.
+fn table_at(tables: &mut Item, i: usize) -> Option<&mut dyn TableLike> {
+    match tables {
         Item::ArrayOfTables(tables) => Some(tables.get_mut(i)?),
-        lines => Some(Array::get_mut(lines.as_array_mut()?, i)?.as_inline_table_mut()?),
+        tables => Some(Array::get_mut(tables.as_array_mut()?, i)?.as_inline_table_mut()?),
     }
 }

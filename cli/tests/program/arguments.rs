@@ -177,6 +177,40 @@ fn check_writes_the_discretisation_into_the_scene_and_a_run_is_the_same_without_
     );
 }
 
+/// A rope between two lengths of chain that are one element on all mesh levels.
+const ROPE_AND_CHAINS: &str = "\
+water.density = 1025.0
+line_types.chain = { mass = 113.35, diameter = 0.0766, axial_stiffness = 7.5e8, drag_normal = 2.0 }
+line_types.rope = { mass = 38.0, diameter = 0.22, axial_stiffness = 2.0e8, drag_normal = 1.2 }
+points = [
+    { name = \"anchor\", kind = \"fixed\", position = [1800.0, 0.0, -2000.0] },
+    { name = \"fairlead\", kind = \"coupled\", position = [0.0, 0.0, -15.0] },
+]
+motion.fairlead = { x = [[4.0, 14.0]], z = [[2.0, 10.0]], ramp = 20.0 }
+solver.tolerance = 0.005
+output = { duration = 60.0, interval = 0.1 }
+
+[[lines]]
+name = \"leg\"
+from = \"anchor\"
+to = \"fairlead\"
+sections = [{ type = \"chain\", length = 150.0 }, { type = \"rope\", length = 2400.0 }, { type = \"chain\", length = 100.0 }]
+";
+
+#[test]
+fn check_writes_the_elements_of_sections_too() {
+    let folder = folder_with(&[("scene.toml", ROPE_AND_CHAINS)]);
+    let before = folder.columns("run scene.toml -o out");
+    folder.shows(
+        "check scene.toml --write",
+        &[
+            "lines[0].sections[0].elements = 2",
+            "lines[0].sections[2].elements = 2",
+        ],
+    );
+    assert_eq!(folder.columns("run scene.toml -o out"), before);
+}
+
 #[test]
 fn check_writes_no_deck() {
     let folder = folder_with(&[("lines.txt", VERSION_1)]);
