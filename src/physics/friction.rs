@@ -51,7 +51,7 @@ pub struct Axes<V: RealVector = Vector3<f64>> {
 const STANDING: f64 = 1e-9;
 /// Nodes closer to the ellipse than this slide: rounding of their places must not decide [-].
 const BORDER: f64 = 1e-7;
-/// Error of the size of the ellipse whose correction takes γ to the last digit [-]: that of the next one is its square.
+/// Relative error of the size of the ellipse that one more correction of γ reduces to rounding [-]: each correction squares it.
 const NEAR: f64 = 1e-8;
 /// Iterations for γ.
 const ITERATIONS_MAX: usize = 30;

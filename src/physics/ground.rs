@@ -214,7 +214,7 @@ impl Grid {
         }
     }
 
-    /// Puts the cells of four nodes at a place [m] into `cells`, where these are other ones. The result depends on the place alone.
+    /// Updates `cells` to those of four nodes at a place [m]. The result depends on the place alone.
     #[inline(always)]
     pub fn find_cells(&self, place: Vectors, cells: &mut Cell<Lanes>) {
         if cells.excess(place).any_positive() {
@@ -272,7 +272,7 @@ impl Cell<Lanes> {
         }
     }
 
-    /// > 0 where a place [m] is outside the cell.
+    /// Positive where a place [m] is outside the cell.
     #[inline(always)]
     fn excess(&self, place: Vectors) -> Lanes {
         let [x, y] = &self.spans;
@@ -323,7 +323,7 @@ fn horner<R: Real>(&[a, b, c, d]: &[R; 4], t: R) -> [R; 2] {
     [lower * t + a, (top + upper) * t + lower]
 }
 
-/// Lines on both sides of the cells along a line of places: one outside the edges of the grid.
+/// Indices of the grid lines on both sides of every cell; the same one twice outside the edges of the grid.
 fn ends(line: &[f64]) -> impl Iterator<Item = [usize; 2]> + Clone {
     let last = line.len() - 1;
     (0..=line.len()).map(move |i| [i.saturating_sub(1), i.min(last)])
@@ -357,7 +357,7 @@ fn spans(line: &[f64]) -> Vec<Span<f64>> {
     spans
 }
 
-/// Number of the span with a coordinate [m]; the first for none.
+/// Index of the span that contains a coordinate [m]; 0 for NaN.
 fn place(spans: &[Span<f64>], coordinate: f64) -> usize {
     spans.partition_point(|span| span.bounds[1] < coordinate)
 }

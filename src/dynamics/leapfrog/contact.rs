@@ -312,8 +312,8 @@ impl Above<'_> {
     #[inline(always)]
     fn reached(&self, at: usize) -> bool {
         let (bound, velocity) = (self.bound(at), self.velocity[at]);
-        let way = self.square * velocity.dot(velocity);
-        bound.max(way - bound * bound).any_positive()
+        let drift_squared = self.square * velocity.dot(velocity);
+        bound.max(drift_squared - bound * bound).any_positive()
     }
 }
 
