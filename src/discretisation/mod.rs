@@ -24,10 +24,10 @@
 //! longest allowed down, as long as that is cheaper, and taken with the first step that keeps the error against the finest mesh; else
 //! steps are explicit.
 //!
-//! Where a line bends, or needs fully implicit steps for another reason, all networks are run with the integrators that the rules choose. The step of
-//! the trials and of the run is found in the same way, or extrapolated at first order from the last one tried. Short elements at clamps and touchdowns
-//! are the same on several levels, whose runs then say little about the error: levels with the same mesh count once, and a mesh whose e_j is small enough
-//! is compared with one more level, with e_j at least d(j, j+3).
+//! Where a line bends, or needs fully implicit steps for another reason, all networks are run with the integrators that the rules choose, on lines that bend
+//! in the longest stable steps. The step of the trials and of the run is found in the same way, or extrapolated at first order from the last one tried.
+//! Short elements at clamps and touchdowns are the same on several levels, whose runs then say little about the error: levels with the same mesh count
+//! once, and a mesh whose e_j is small enough is compared with one more level, with e_j at least d(j, j+3).
 //!
 //! The trials are bounded by their work, about a second of processor time, or a few seconds where steps are fully implicit; the bound is the same on every
 //! machine. Beyond it, the number of elements is extrapolated from the last one tried, with an error that falls as 1/n. Where the motion is not known, the

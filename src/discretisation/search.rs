@@ -41,7 +41,7 @@ pub(super) struct Search<'a> {
     from: usize,
     /// Results of every network.
     ladders: Vec<Ladder>,
-    /// True if a line needs fully implicit steps, for example because it bends. All networks are then run with the integrators that the rules choose.
+    /// True if a line may need fully implicit steps, for example because it bends. All networks are then run with the integrators that the rules choose.
     implicit: bool,
     /// Axial-implicit or fully implicit step whose error is small [s]; none where steps follow from the scene's integrator.
     step: Option<f64>,
@@ -71,6 +71,8 @@ pub(super) struct Run {
     pub(super) lengths: Vec<Vec<f64>>,
     /// History of every line after the start.
     histories: Vec<History>,
+    /// Longest step of any network [s].
+    step: f64,
 }
 
 /// Result of one run for all lines.
@@ -79,6 +81,8 @@ struct Record {
     lengths: Vec<Vec<f64>>,
     /// History of every line after the start.
     histories: Vec<History>,
+    /// Longest step of any network [s].
+    step: f64,
     /// Cost in explicit steps of an element [-].
     work: f64,
 }
@@ -102,6 +106,7 @@ impl Ladder {
             elements,
             lengths: lines().map(|&line| record.lengths[line].clone()).collect(),
             histories: lines().map(|&line| record.histories[line].clone()).collect(),
+            step: record.step,
         }
     }
 
@@ -203,7 +208,7 @@ impl<'a> Search<'a> {
             return None;
         }
         let times = MotionTimes::of(scene)?;
-        let implicit = needs_implicit_steps(model);
+        let implicit = may_need_implicit_steps(model);
         let output = &scene.output;
         let mut scene = scene.clone();
         scene.output.duration = output.duration.min(times.duration);
@@ -271,7 +276,7 @@ impl<'a> Search<'a> {
         self.step = self.coarse_step();
         let mut spent = self.climb(AIM * tolerance);
         while let Some(step) = self.step {
-            let excess = self.excess(step);
+            let (excess, step) = self.excess(step);
             if excess <= 1.0 {
                 break;
             }
@@ -357,9 +362,9 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Ratio of the error of an implicit step [s] to the part of the tolerance that it may take [-], on the meshes found, or else on the last ones assessed;
-    /// 0 where it cannot be determined.
-    fn excess(&mut self, step: f64) -> f64 {
+    /// Ratio of the error of implicit steps of at most `step` [s] to the part of the tolerance that it may take [-], on the meshes found, or else on the
+    /// last ones assessed, and the longest of these steps [s]; 0 where the error cannot be determined.
+    fn excess(&mut self, step: f64) -> (f64, f64) {
         let assessed = |ladder: &Ladder| ladder.trials.last().map(|trial| trial.elements);
         let elements = self
             .ladders
@@ -368,11 +373,16 @@ impl<'a> Search<'a> {
         let elements: Vec<usize> = elements.collect();
         let mut scene = self.at_level(&elements);
         if !self.implicit && scene.solver.integrator != Integrator::AxialImplicit {
-            return 0.0;
+            return (0.0, step);
         }
+        let same =
+            |ladder: &Ladder, elements: usize| ladder.runs.iter().position(|run| run.elements == elements);
+        let taken = self.ladders.iter().zip(&elements);
+        let taken = taken.filter_map(|(ladder, &elements)| Some(ladder.runs[same(ladder, elements)?].step));
+        let step = taken.reduce(f64::max).unwrap_or(step);
         scene.solver.time_step_max = 0.5 * step;
         let Ok(Some(record)) = self.run(&scene) else {
-            return 0.0;
+            return (0.0, step);
         };
         let most = FINER * self.scene.solver.tolerance;
         let errors = self
@@ -380,10 +390,10 @@ impl<'a> Search<'a> {
             .iter()
             .zip(elements)
             .filter_map(|(ladder, elements)| {
-                let same = ladder.runs.iter().find(|run| run.elements == elements)?;
+                let same = &ladder.runs[same(ladder, elements)?];
                 Some(smooth_error(same, &ladder.part(elements, &record)))
             });
-        errors.fold(0.0, f64::max) / most
+        (errors.fold(0.0, f64::max) / most, step)
     }
 
     /// Longest step of the trials [s].
@@ -525,6 +535,10 @@ impl<'a> Search<'a> {
             histories: (0..model.lines.len())
                 .map(|line| History::of(scene, model, line))
                 .collect(),
+            step: simulation
+                .choices()
+                .map(|choice| choice.longest)
+                .fold(0.0, f64::max),
             work: 0.0,
         };
         let output = &scene.output;
@@ -606,10 +620,10 @@ fn ladders(networks: &Networks, confirms: bool) -> Vec<Ladder> {
     lines.map(|lines| Ladder::new(lines, confirms)).collect()
 }
 
-/// Returns whether a line cannot take the steps of a leapfrog, though no beam.
-fn needs_implicit_steps(model: &Model) -> bool {
+/// Returns whether a line, though no beam, cannot take the steps of a leapfrog, or bends: short elements then cost less in fully implicit steps.
+fn may_need_implicit_steps(model: &Model) -> bool {
     let mut lines = model.lines.iter();
-    lines.any(|line| line.beam.is_none() && !line.serves_leapfrog())
+    lines.any(|line| line.beam.is_none() && (line.bending.is_some() || !line.serves_leapfrog()))
 }
 
 /// End of a line that is moved, 0 for A; B where both or none are.

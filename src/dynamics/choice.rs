@@ -13,8 +13,9 @@
 //! ½aΔt² at communication points (`input_reconstruction = "jump"`) starts axial waves there, which the steps then resolve: else they are not over
 //! when the host reads the force, which on a cable of 30 elements in steps of 10 ms was off by 6 % on the mean.
 //!
-//! Lines that bend, mix strain measures or have nodes without mass are integrated fully implicitly at any cost. Beams
-//! have a separate integrator.
+//! Lines that bend may cost least in fully implicit steps too: where elements are short their joints are as stiff as a tension of 4EI/l². Their steps,
+//! axial-implicit or fully implicit, are as long as they are stable: trials judge the error of these steps ([`crate::discretisation`]). Lines that mix
+//! strain measures, have nodes without mass or damped joints are integrated fully implicitly at any cost. Beams have a separate integrator.
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
@@ -95,7 +96,7 @@ impl Choice {
             .iter()
             .map(|&line| {
                 let (own, tension) = (&model.lines[line], SNAP_MARGIN * tension(line));
-                transverse_step(own, tension, end_shares(model, own))
+                transverse_step(own, tension + own.greatest_push(), end_shares(model, own))
             })
             .fold(f64::INFINITY, f64::min);
         let tolerance = model.solver.tolerance;
@@ -108,10 +109,13 @@ impl Choice {
             false => least_of_points(&|point| point_accuracy_step(model, point, tolerance)),
         };
         let of_jumps = jump_step(model, network);
-        let accurate = accurate
-            .max(AXIAL_RESOLUTION_MIN * transverse_limit)
-            .min(transverse_limit)
-            .min(of_jumps);
+        let accurate = match bends(model, network) {
+            true => transverse_limit,
+            false => accurate
+                .max(AXIAL_RESOLUTION_MIN * transverse_limit)
+                .min(transverse_limit),
+        };
+        let accurate = accurate.min(of_jumps);
         let longest = model.solver.time_step_max;
         let longest_axial = least(&heave_step)
             .min(least_of_points(&|point| point_heave_step(model, point)))
@@ -185,11 +189,17 @@ fn jump_step(model: &Model, network: &Network) -> f64 {
 /// Step of generalised-α without jumps of the ends [s]: one that resolves the free points, where generalised-α is a choice.
 fn implicit_step(model: &Model, network: &Network) -> f64 {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
-    let choosy = lines.all(Line::serves_leapfrog);
+    let choosy = lines.all(|line| line.serves_leapfrog() && line.bending.is_none());
     let points = network.free_points.iter().filter(|_| choosy);
     points
         .map(|&point| point_accuracy_step(model, point, model.solver.tolerance))
         .fold(model.solver.time_step_max, f64::min)
+}
+
+/// Returns whether a line of a network bends.
+fn bends(model: &Model, network: &Network) -> bool {
+    let mut lines = network.lines.iter();
+    lines.any(|&line| model.lines[line].bending.is_some())
 }
 
 fn choose(model: &Model, network: &Network, steps: &Steps, tension: &impl Fn(usize) -> f64) -> Integrator {
@@ -213,7 +223,7 @@ fn choose(model: &Model, network: &Network, steps: &Steps, tension: &impl Fn(usi
         (
             Integrator::GeneralisedAlpha,
             IMPLICIT_COST / steps.implicit,
-            joined || quick,
+            joined || quick || bends(model, network),
         ),
     ];
     let serving = rates.into_iter().filter(|&(_, _, serves)| serves);

@@ -39,7 +39,10 @@ use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
 use super::viscoelastic::ViscoelasticSegment;
-use crate::model::{End, Line, LineState, Model, Network, State, Surface, WaterAlong, WinchState, joint};
+use crate::model::{
+    End, Line, LineState, Model, Network, State, Surface, WaterAlong, WinchState, joint_of_segments,
+};
+use crate::physics::bending::Direction;
 use crate::physics::slender::Slender;
 
 pub use at_rest::work_at_rest;
@@ -222,10 +225,15 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
         energy.gravitational += lacking_energy(surface, &places);
     }
     if let Some(bending) = &line.bending {
-        let clamps = line.clamps(&state.points);
+        let clamps = line.ends.map(|point| state.points[point].before(lag));
+        let clamps = [line.clamp(End::A, &clamps[0]), line.clamp(End::B, &clamps[1])];
+        let segment = |i: usize| {
+            let chord = position(i + 1) - position(i);
+            Direction::new(chord, chord.norm())
+        };
         energy.bending = (0..=n)
             .filter(|&i| bending.joint[i] > 0.0)
-            .filter_map(|i| Some((i, joint(clamps, &shape.position, i)?)))
+            .filter_map(|i| Some((i, joint_of_segments(clamps, [i, n], segment)?)))
             .map(|(i, turn)| turn.energy(bending.joint[i], bending.rest[i]).energy)
             .sum();
     }

@@ -1,8 +1,8 @@
-//! Leapfrogs of lumped two-node segments: the integrators of cables without bending.
+//! Leapfrogs of lumped two-node segments: the integrators of cables.
 //!
 //! Positions live at t_n, velocities at t_{n−½}. A step of a network has the stages
 //!
-//! 1. tension of the segments at t_n, and ends that are released;
+//! 1. tension of the segments and forces of the joints at t_n, and ends that are released;
 //! 2. free points, which take the forces of the lines at them;
 //! 3. prescribed points, at t_{n+1};
 //! 4. velocities of the nodes at t_{n+½}, with water and seabed, and positions at t_{n+1}.
@@ -14,6 +14,7 @@ mod axial_implicit;
 mod balance;
 mod contact;
 mod explicit;
+mod joints;
 mod layout;
 mod network;
 mod point;

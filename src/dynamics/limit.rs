@@ -262,11 +262,11 @@ fn lone_rates(model: &Model, point: usize) -> f64 {
     attached.map(rate).fold(0.0, f64::max)
 }
 
-/// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure.
+/// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure; with the push P that joints are as stiff as, (EA + P)/l.
 fn stiffness(line: &Line, i: usize) -> f64 {
     let segments = &line.segments;
     let slope = expected_slope(&segments.law[i]);
-    segments.in_motion(i).0 * slope / segments.length[i]
+    (segments.in_motion(i).0 * slope + line.compression_max(i)) / segments.length[i]
 }
 
 /// Slope of a strain measure that the step limits assume [-].

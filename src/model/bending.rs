@@ -99,6 +99,12 @@ impl Line {
             .as_ref()
             .map_or(0.0, |bending| bending.compression_max[segment])
     }
+
+    /// The greatest push that any of its segments carries [N].
+    pub fn greatest_push(&self) -> f64 {
+        let pushes = self.bending.iter().flat_map(|bending| &bending.compression_max);
+        pushes.fold(0.0, |greatest, push| push.max(greatest))
+    }
 }
 
 impl Model {

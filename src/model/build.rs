@@ -768,7 +768,8 @@ fn check_integrator(scene: &Scene, lines: &[Line], network: &Network) -> Result<
     if let Some(&line) = network.lines.iter().find(|&&line| !lines[line].serves_leapfrog()) {
         let name = &lines[line].name;
         return refuse(format!(
-            "a leapfrog needs mass on every node, one strain measure and no bending stiffness along line \"{name}\""
+            "a leapfrog needs mass on every node and one strain measure along line \"{name}\"; where the line bends, engineering strain, no Rayleigh \
+             damping and no viscoelastic sections"
         ));
     }
     Ok(())

@@ -526,9 +526,18 @@ impl Line {
     /// bending stiffness.
     pub fn serves_leapfrog(&self) -> bool {
         self.uniform_law().is_some()
-            && self.bending.is_none()
+            && self
+                .bending
+                .as_ref()
+                .is_none_or(|bending| self.joints_serve_leapfrog(bending))
             && self.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
             && (self.surface.is_none() || self.nodes.mass.iter().all(|mass| *mass > 0.0))
+    }
+
+    /// Returns whether a leapfrog can take the joints of the line, and the push of its segments.
+    fn joints_serve_leapfrog(&self, bending: &Bending) -> bool {
+        let proportional = self.uniform_law() == Some(StretchLaw::Engineering);
+        proportional && self.segments.viscoelastic.is_none() && bending.damping.is_none()
     }
 
     /// Least mass of a node along any direction [kg]: in air where the line may pierce the water's surface.

@@ -152,6 +152,14 @@ impl PointState {
         }
     }
 
+    /// The point as its support was turned `lag` [s] ago.
+    pub fn before(self, lag: f64) -> PointState {
+        PointState {
+            orientation: UnitQuaternion::from_scaled_axis(-lag * self.spin) * self.orientation,
+            ..self
+        }
+    }
+
     /// The point there in its present motion, as if it were not accelerated.
     pub fn without_acceleration(self) -> PointState {
         PointState {

@@ -39,17 +39,18 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::math::circle;
+use crate::math::real::{Real, RealVector};
 
 /// |κb| below which the direction of a rest curvature fades [-].
 const REST_FADE: f64 = 1e-6;
 
 /// Direction of a segment, as used by the bending law.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Direction {
+pub struct Direction<V: RealVector = Vector3<f64>> {
     /// Unit vector q [-].
-    pub along: Vector3<f64>,
+    pub along: V,
     /// 1/l [1/m]; 0 for a direction that is prescribed.
-    pub per_length: f64,
+    pub per_length: V::Real,
 }
 
 /// Keeps coincident nodes from dividing by zero [m].
@@ -120,40 +121,67 @@ impl Hessian {
 
 /// Turn from one direction to the next.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn {
-    first: Direction,
-    second: Direction,
+pub struct Turn<V: RealVector = Vector3<f64>> {
+    first: Direction<V>,
+    second: Direction<V>,
     /// q₁·q₂.
-    cosine: f64,
-    /// 1 + c, kept off zero.
-    sum: f64,
+    cosine: V::Real,
+    /// 1/(1 + c), that sum kept off zero.
+    per_sum: V::Real,
     /// f = |κb|²/4.
-    square: f64,
+    square: V::Real,
     /// u₁ and u₂.
-    gradient: [Vector3<f64>; 2],
+    gradient: [V; 2],
 }
 
-impl Turn {
+impl<V: RealVector> Turn<V> {
     /// Turn from `first` to `second`.
     #[inline(always)]
-    pub fn new(first: Direction, second: Direction) -> Turn {
+    pub fn new(first: Direction<V>, second: Direction<V>) -> Turn<V> {
+        let real = V::Real::splat;
         let (q1, q2) = (first.along, second.along);
-        let rest = 0.5 * (q2 - q1).norm_squared(); // 1 − c
-        let cosine = 1.0 - rest;
-        let sum = (2.0 - rest).max(1e-9);
+        let turned = q2 - q1;
+        let rest = real(0.5) * turned.inner(turned); // 1 − c
+        let per_sum = (real(2.0) - rest).max(real(1e-9)).recip();
         Turn {
             first,
             second,
-            cosine,
-            sum,
-            square: rest / sum,
+            cosine: real(1.0) - rest,
+            per_sum,
+            square: rest * per_sum,
             gradient: [
-                first.per_length * (q2 - q1 + rest * q1),
-                second.per_length * (q1 - q2 + rest * q2),
+                (turned + q1.scaled(rest)).scaled(first.per_length),
+                (q2.scaled(rest) - turned).scaled(second.per_length),
             ],
         }
     }
 
+    /// Slopes of the energy with e₁ and e₂ [N] for a stiffness B [N m] and a rest bend k₀ [-].
+    #[inline(always)]
+    pub fn slope(&self, stiffness: V::Real, rest: V::Real) -> [V; 2] {
+        let [slope, _] = self.slopes(stiffness, rest);
+        self.gradient.map(|u| u.scaled(slope))
+    }
+
+    /// dW/dc and d²W/dc² [J].
+    #[inline(always)]
+    fn slopes(&self, stiffness: V::Real, rest: V::Real) -> [V::Real; 2] {
+        let real = V::Real::splat;
+        let d1 = real(-2.0) * self.per_sum * self.per_sum; // f'
+        let d2 = real(-2.0) * self.per_sum * d1; // f''
+        let twice = stiffness + stiffness;
+        if !rest.any_positive() {
+            return [twice * d1, twice * d2];
+        }
+        let per_root = (self.square + real(REST_FADE * REST_FADE)).sqrt().recip();
+        // W = 2B (f − k₀√f) + ½Bk₀²
+        let along = real(1.0) - real(0.5) * rest * per_root;
+        let across = real(0.25) * rest * per_root * per_root * per_root;
+        [twice * along * d1, twice * (along * d2 + across * d1 * d1)]
+    }
+}
+
+impl Turn {
     /// |κb| = 2 tan(φ/2) [-]: curvature times material length.
     pub fn bend(&self) -> f64 {
         2.0 * self.square.sqrt()
@@ -162,11 +190,10 @@ impl Turn {
     /// Energy and slopes for a stiffness B [N m] and a rest bend k₀ [-].
     #[inline(always)]
     pub fn energy(&self, stiffness: f64, rest: f64) -> Bend {
-        let [slope, _] = self.slopes(stiffness, rest);
         let bend = self.bend() - rest;
         Bend {
             energy: 0.5 * stiffness * bend * bend,
-            slope: self.gradient.map(|u| slope * u),
+            slope: self.slope(stiffness, rest),
         }
     }
 
@@ -175,25 +202,6 @@ impl Turn {
     pub fn moment_on_first(&self, stiffness: f64, rest: f64) -> Vector3<f64> {
         let [slope, _] = self.slopes(stiffness, rest);
         -slope * self.first.along.cross(&self.second.along)
-    }
-
-    /// dW/dc and d²W/dc² [J].
-    #[inline(always)]
-    fn slopes(&self, stiffness: f64, rest: f64) -> [f64; 2] {
-        let per_sum = 1.0 / self.sum;
-        let d1 = -2.0 * per_sum * per_sum; // f'
-        let d2 = -2.0 * per_sum * d1; // f''
-        if rest == 0.0 {
-            return [2.0 * stiffness * d1, 2.0 * stiffness * d2];
-        }
-        let root = (self.square + REST_FADE * REST_FADE).sqrt();
-        // W = 2B (f − k₀√f) + ½Bk₀²
-        let along = 1.0 - 0.5 * rest / root;
-        let across = 0.25 * rest / (root * root * root);
-        [
-            2.0 * stiffness * along * d1,
-            2.0 * stiffness * (along * d2 + across * d1 * d1),
-        ]
     }
 
     /// Exact second derivatives.
@@ -241,8 +249,8 @@ impl Turn {
     /// Slopes of k with e₁ and e₂ [1/m].
     #[inline(always)]
     fn bend_slopes(&self) -> [Matrix3<f64>; 2] {
-        let scale = (2.0 / self.sum).sqrt();
-        let growth = -0.5 * scale / self.sum * (self.second.along - self.first.along);
+        let scale = (2.0 * self.per_sum).sqrt();
+        let growth = -0.5 * scale * self.per_sum * (self.second.along - self.first.along);
         let [u1, u2] = self.gradient;
         [
             -scale * self.first.per_length * across(&self.first) + growth * u1.transpose(),

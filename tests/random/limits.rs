@@ -20,7 +20,7 @@ use moorline::model::End;
 use moorline::physics::catenary::is_laid_from_b;
 use moorline::scene::{
     Current, FlowSource, Friction, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath,
-    Point, PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Threads,
+    Point, PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Strain, Threads,
     TimeFunction, Water, WaveComponents, Waves,
 };
 use moorline::simulation::Simulation;
@@ -451,8 +451,11 @@ fn every_type(scene: &mut Scene, change: impl Fn(&mut LineType)) {
 
 fn without_bending_stiffness(base: &Base) -> Option<(Scene, Gap)> {
     let explicit = [Integrator::Leapfrog, Integrator::AxialImplicit];
-    if explicit.contains(&base.scene.solver.integrator) {
-        return None; // cables that bend are integrated implicitly
+    let serves = |kind: &LineType| {
+        kind.strain == Strain::Engineering && kind.rayleigh.is_none() && kind.axial_stiffness.is_some()
+    };
+    if explicit.contains(&base.scene.solver.integrator) && !base.scene.line_types.values().all(serves) {
+        return None; // joints with other springs are integrated implicitly
     }
     let bend = |scene: &mut Scene| every_type(scene, |kind| kind.bending_stiffness = Some(1e-12));
     limit(base, |_| {}, bend)

@@ -27,6 +27,9 @@ pub enum Resists {
     Torsion,
 }
 
+/// The axial law of springs that pull in proportion to their strain.
+const PROPORTIONAL: usize = 0;
+
 /// Choices that all parts of a scene share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
@@ -71,7 +74,7 @@ impl Plan {
         ]);
         let implicit = !matches!(integrator, Integrator::Leapfrog | Integrator::AxialImplicit);
         let resists = match dice.whole(0, 9) {
-            8 if implicit => Resists::Bending,
+            8 => Resists::Bending,
             9 => {
                 integrator = dice.pick(&[Integrator::Beam, Integrator::Auto]);
                 Resists::Torsion
@@ -85,7 +88,10 @@ impl Plan {
         let law = dice.whole(0, 9);
         Plan {
             wild,
-            law: (alike || law == 9).then_some(law),
+            law: match resists {
+                Resists::Bending if !implicit => Some(PROPORTIONAL),
+                _ => (alike || law == 9).then_some(law),
+            },
             poisson: dice.between(0.0, 0.5),
             size: dice.log(5.0, 2000.0),
             gravity,
@@ -102,6 +108,11 @@ impl Plan {
     /// Dice of a part of a tape.
     pub fn dice<'t>(&self, tape: &'t Tape, part: usize) -> Dice<'t> {
         tape.part(part, self.wild)
+    }
+
+    /// True where the scene names a leapfrog.
+    pub fn is_leapfrog(&self) -> bool {
+        matches!(self.integrator, Integrator::Leapfrog | Integrator::AxialImplicit)
     }
 
     /// The solver's settings.

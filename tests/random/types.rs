@@ -93,6 +93,8 @@ fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
         1 => kind.axial_damping = Some((stiffness * dice.log(1e-7, 0.3)).clamp(1e-15, 1e15)),
         2 => kind.axial_damping = Some(0.0),
         3 => kind.damping_ratio = Some(dice.size([1e-3, 2.0], [1e-15, 100.0])),
+        // a leapfrog takes no damped joints
+        _ if plan.resists == Resists::Bending && plan.is_leapfrog() => {}
         _ => {
             let ratio = dice.log(1e-3, 0.5);
             let frequency = dice.log(0.05, 5.0);
@@ -117,7 +119,8 @@ fn bending(dice: &mut Dice, plan: &Plan, kind: &mut LineType, diameter: f64) {
             kind.fibre_law = kind.fibres.map_or(FibreLaw::Linear, |_| law);
         }
         Resists::Bending => {
-            let stiffness = (rod * dice.log(1e-4, 1.0)).clamp(1e-15, 1e15);
+            let most = if plan.is_leapfrog() { 1e-3 } else { 1.0 };
+            let stiffness = (rod * dice.log(1e-4 * most, most)).clamp(1e-15, 1e15);
             kind.bending_stiffness = dice.pick(&[Some(stiffness), Some(stiffness), None]);
         }
         Resists::Torsion => {

@@ -62,6 +62,7 @@ use super::{ENDS, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
 use crate::dynamics::limit::{axial_frequency_squared, end_shares, transverse_step};
 use crate::math::lanes::Lanes;
+use crate::math::striping::Slot;
 use crate::model::{End, Kinematics, Line, LineState, Model, Network};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::AXIAL_RADIUS_MIN;
@@ -123,8 +124,10 @@ fn damping_rate(line: &Line) -> f64 {
 /// Scratch of the stages with implicit tension.
 #[derive(Debug, Clone)]
 pub struct AxialImplicit {
-    /// Longest step times √T [s √N].
+    /// Longest step times √(T + P) [s √N].
     transverse: f64,
+    /// Greatest P [N].
+    push_max: f64,
     /// Weights of the averaging, and those of the step.
     averaging: Weights,
     weights: Weights,
@@ -171,6 +174,7 @@ impl Kernel for AxialImplicit {
         let shares = end_shares(model, line);
         AxialImplicit {
             transverse: transverse_step(line, 1.0, shares),
+            push_max: line.greatest_push(),
             averaging,
             weights: averaging,
             frequency_squared: axial_frequency_squared(line, shares),
@@ -280,10 +284,13 @@ impl Kernel for AxialImplicit {
     ) -> (f64, ()) {
         let mut longest = choice.longest;
         for AxialImplicit {
-            transverse, tensions, ..
+            transverse,
+            push_max,
+            tensions,
+            ..
         } in network.lines.iter().map(|line| &line.kernel)
         {
-            let expected = SNAP_GROWTH * tensions[0];
+            let expected = SNAP_GROWTH * tensions[0] - (SNAP_GROWTH - 1.0) * push_max;
             // most limits exceed the whole communication step: no root or quotient is needed for those
             if length * length * expected > transverse * transverse {
                 longest = longest.min(transverse / expected.sqrt());
@@ -329,7 +336,8 @@ impl AxialLine {
         self.layout.renew_halo();
         for at in self.layout.rows() {
             let strain = self.layout.strain(at);
-            self.kernel.rows.segments[at - 1].history = [self.layout.elastic(at, strain); 3];
+            let segment = &mut self.kernel.rows.segments[at - 1];
+            segment.history = [self.layout.elastic(at, strain) + segment.push; 3];
         }
     }
 
@@ -338,6 +346,12 @@ impl AxialLine {
     fn run<S: Stage>(&mut self, stage: S) -> S::Found {
         let unit = self.layout.vector_unit;
         unit.dispatch(Run(self, stage))
+    }
+
+    /// Force of the joints, less the push that tensions are counted from, on the lower node of a segment [N].
+    fn shear(&self, at: Slot) -> Vector3<f64> {
+        let joints = self.layout.joints.as_ref();
+        joints.map_or(Vector3::zeros(), |joints| joints.shear.get(at))
     }
 
     /// Ends at prescribed points.
@@ -362,6 +376,7 @@ impl AxialLine {
         self.choose_weights(step);
         let sizes = self.sizes(step);
         self.choose_springs(step, &sizes);
+        self.layout.bend(1.0);
         match self.kernel.rows.current.is_some() {
             true => self.prepare_nodes::<true>(step, &sizes),
             false => self.prepare_nodes::<false>(step, &sizes),

@@ -1,4 +1,4 @@
-//! Explicit leapfrog: the default for cables without bending.
+//! Explicit leapfrog.
 //!
 //! The stages of a step of a line are
 //!

@@ -9,6 +9,7 @@ mod water;
 
 use nalgebra::Vector3;
 
+use super::joints::Joints;
 use super::step::Step;
 use super::surface::SurfaceNow;
 use super::{ENDS, EndMotion};
@@ -65,6 +66,8 @@ pub struct Layout {
     pub waves: Option<WaveArrays>,
     pub mass_damping: Option<Column>,
     pub contact: Option<ContactArrays>,
+    /// Joints, where the line bends.
+    pub joints: Option<Joints>,
     /// Memory of viscoelastic segments, where the line has any.
     pub viscoelastic: Option<ViscoelasticArrays>,
     /// The water's surface, where the line may pierce it.
@@ -138,6 +141,10 @@ impl Layout {
                 .contact
                 .as_ref()
                 .map(|contact| ContactArrays::new(contact, striping)),
+            joints: line
+                .bending
+                .as_ref()
+                .map(|bending| Joints::new(bending, striping)),
             viscoelastic,
             surface: SurfaceNow::new(line),
         })
@@ -317,7 +324,13 @@ impl Layout {
         } else {
             0.0
         };
-        total_tension(elastic, self.axial_damping[at] * rate, 0.0, self.negative_tension)
+        let least = self.joints.as_ref().map_or(0.0, |joints| 0.0 - joints.push[at]);
+        total_tension(
+            elastic,
+            self.axial_damping[at] * rate,
+            least,
+            self.negative_tension,
+        )
     }
 
     /// Energy of the half node at an end, of masses across and along the line [kg], that is released at t_n, and the kinetic part of it [J].
@@ -347,11 +360,25 @@ impl Layout {
         }
     }
 
-    /// Force of the springs of the segments on their lower nodes [N].
+    /// Least tension of the segments [N]: minus the push that they carry where the line bends.
+    #[inline(always)]
+    pub fn least_tension(&self, at: usize) -> Lanes {
+        let zero = Lanes::splat(0.0);
+        self.joints
+            .as_ref()
+            .map_or(zero, |joints| zero - joints.push.load(at))
+    }
+
+    /// Force of the springs of the segments, and of the joints, on their lower nodes [N].
     #[inline(always)]
     pub fn spring(&self, at: usize) -> Vectors {
         let (chord, inverse_l) = self.chord(at);
-        chord.scale(self.elastic(at, self.strain(at)).positive() * inverse_l)
+        let tension = self.elastic(at, self.strain(at)).max(self.least_tension(at));
+        let pull = chord.scale(tension * inverse_l);
+        match &self.joints {
+            Some(joints) => pull + joints.shear.load(at),
+            None => pull,
+        }
     }
 
     /// Strain of the segments [-].

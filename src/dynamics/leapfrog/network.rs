@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::ENDS;
+use super::joints::Clamp;
 use super::point;
 use super::step::Step;
 use super::{EndMotion, Kernel, LeapfrogLine};
@@ -239,6 +241,28 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
+    /// Turns the clamps of lines that bend to where their supports are at `t` [s], and sets the moments on the ends of these lines.
+    fn turn_clamps(&mut self, model: &Model, t: f64, held: &impl Fn(usize, f64) -> Kinematics) {
+        for (number, work) in self.lines.iter_mut().enumerate() {
+            let Some(joints) = &mut work.layout.joints else {
+                continue;
+            };
+            let line = &model.lines[self.line_numbers[number]];
+            joints.clamps = ENDS.map(|end| {
+                let support = match self.ends[number][end as usize].tie {
+                    Tie::Prescribed(point) => held(point, t),
+                    _ => Kinematics::default(),
+                };
+                let along = line.clamp(end, &PointState::held(&support));
+                Clamp {
+                    along: along.unwrap_or_else(Vector3::zeros),
+                    spin: support.spin,
+                }
+            });
+            joints.moments = model.end_moments(line, t);
+        }
+    }
+
     /// Finds the nodes at the water's surface before the first step.
     pub fn meet_surface(&mut self) {
         self.lines.iter_mut().for_each(LeapfrogLine::meet_surface);
@@ -253,6 +277,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         held: &impl Fn(usize, f64) -> Kinematics,
     ) -> usize {
         self.set_water(model, t);
+        self.turn_clamps(model, t, held);
         for (work, line) in self.numbered_lines() {
             if let Some(releases) = &model.lines[line].release {
                 work.release_ends(releases, t, step);

@@ -40,9 +40,10 @@ impl AxialLine {
             let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
             let after = 0.5 * step.drift;
             let way = after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
-            let pull = sign * self.kernel.rows.pull(segment);
+            let pull = sign * (self.kernel.rows.pull(segment) + self.shear(segment));
             balance.external_work += line.end_lack(end) * way.z - pull.dot(&way);
         }
+        balance.external_work += step.kick * self.layout.bending_power();
         self.balance = Some(balance);
         if self.layout.surface.is_some() {
             let held = ENDS.map(|end| !self.layout.is_open(end));
@@ -68,6 +69,10 @@ impl AxialLine {
         let segment = &self.kernel.rows.segments[at - 1];
         let [own, next] = self.both(at);
         let stretched = segment.tension * segment.direction.dot(next - own);
+        let stretched = match &self.layout.joints {
+            Some(joints) => stretched + joints.shear.load(at).dot(next - own),
+            None => stretched,
+        };
         Lanes::splat(0.0) - sizes.kick * (stretched + self.layout.weight.load(at) * own.z)
     }
 

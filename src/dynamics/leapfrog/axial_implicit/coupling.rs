@@ -373,7 +373,9 @@ impl AxialLine {
         if let (Some(current), true) = (current, layout.waves.is_some()) {
             share.froude_krylov = current.froude_krylov.get(lane);
         }
-        share.force = share.resistance + share.froude_krylov - layout.weight[at] * Vector3::z();
+        let (segment, sign) = layout.end_segment(end);
+        let bent = sign * self.shear(segment);
+        share.force = share.resistance + share.froude_krylov + bent - layout.weight[at] * Vector3::z();
         let damping = layout.mass_damping.as_ref().map(|damping| damping.load(at.row));
         share.mass = Slender::new(masses(damping)).matrix(tangent);
         if let Some(contact) = &layout.contact {

@@ -117,9 +117,10 @@ impl AxialLine {
             let row = &mut self.kernel.rows.segments[at - 1];
             let along = row.direction.dot(relative);
             let [last, before, _] = row.history;
+            let now = found.now + row.push;
             row.along = along;
-            row.history = [found.now, last, before];
-            row.margins[0] = found.now.min(last).min(before);
+            row.history = [now, last, before];
+            row.margins[0] = now.min(last).min(before);
             row.margins[1] = Lanes::splat(f64::INFINITY);
             let memory = row.all_remembered(sizes);
             row.elastic = found.ahead + memory;
@@ -218,7 +219,10 @@ impl AxialLine {
             let damping = line.mass_damping.as_ref().map(|d| d.load(at));
             node.invert(drawn, damping, sizes);
             node.fall(weight[at], [velocity, past], drawn, sizes);
-            node.froude_krylov(froude_krylov, velocity, damping, sizes);
+            node.press(froude_krylov, velocity, damping, sizes);
+            if let Some(joints) = &line.joints {
+                node.push(joints.force(at), sizes);
+            }
             node.loose = node.fall;
         }
     }
@@ -305,7 +309,7 @@ impl NodeRow {
 
     /// Adds what accelerated water presses with [N], and what damping by mass [N s/m] takes from `velocity` [m/s].
     #[inline(always)]
-    fn froude_krylov(
+    fn press(
         &mut self,
         froude_krylov: Option<Vectors>,
         velocity: Vectors,
@@ -318,9 +322,15 @@ impl NodeRow {
             force = Some(force.unwrap_or(Vectors::zero()) - taken);
         }
         if let Some(force) = force {
-            let along = self.tangent.scale(self.excess * self.tangent.dot(force));
-            self.fall = self.fall + (force.scale(self.across) + along).scale(sizes.kick);
+            self.push(force, sizes);
         }
+    }
+
+    /// Adds a force [N].
+    #[inline(always)]
+    fn push(&mut self, force: Vectors, sizes: &Sizes) {
+        let along = self.tangent.scale(self.excess * self.tangent.dot(force));
+        self.fall = self.fall + (force.scale(self.across) + along).scale(sizes.kick);
     }
 
     /// 1 where the level seabed pushes nodes that rise at `rise` [m/s], else −1.

@@ -89,8 +89,10 @@ pub(super) struct SegmentRow {
     /// Rows of the system in T̄ [N], and the rows after elimination.
     pub equations: Equations,
     pub eliminated: Eliminated,
-    /// T̄ [N].
+    /// T̄ + P [N].
     pub tension: Lanes,
+    /// P: the greatest push, from which tensions are counted [N].
+    pub push: Lanes,
 }
 
 impl SegmentRow {
@@ -117,6 +119,7 @@ impl SegmentRow {
             equations: Equations::unit(),
             eliminated: Eliminated::start(),
             tension: zero,
+            push: zero - line.least_tension(at),
         }
     }
 
@@ -191,7 +194,7 @@ impl SegmentRow {
     #[inline(always)]
     fn remembered(&self, pull: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let [mut share, weights @ ..] = sizes.weights;
-        let mut memory = Lanes::splat(0.0);
+        let mut memory = share * self.push;
         for (weight, tension) in weights.into_iter().zip(self.history) {
             let total = tension + pull;
             memory = memory + (weight * tension).where_positive(total);
@@ -203,9 +206,9 @@ impl SegmentRow {
     /// Part that the springs up to t_n have in T̄ where none of them pushes [N].
     #[inline(always)]
     pub(super) fn all_remembered(&self, sizes: &Sizes) -> Lanes {
-        let [_, h0, h1, h2] = sizes.weights;
+        let [b1, h0, h1, h2] = sizes.weights;
         let [now, last, before] = self.history;
-        h0 * now + h1 * last + h2 * before
+        b1 * self.push + h0 * now + h1 * last + h2 * before
     }
 
     /// Remembers the springs up to t_n with the damper at a stretching velocity [m/s].
@@ -400,7 +403,7 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// T̄ q of a segment [N].
+    /// (T̄ + P) q of a segment [N].
     pub(super) fn pull(&self, at: Slot) -> Vector3<f64> {
         let segment = &self.segments[at.row - 1];
         segment.tension[at.lane] * segment.direction.get(at.lane)

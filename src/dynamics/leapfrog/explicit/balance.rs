@@ -37,6 +37,7 @@ impl ExplicitLine {
             balance.work = balance.work + work;
             balance.water_work = balance.water_work + water_work;
             balance.springs = springs;
+            balance.external_work += step.kick * self.layout.bending_power();
         }
     }
 

@@ -50,6 +50,7 @@ impl NullaryFnOnce for Pull<'_> {
     #[inline(always)]
     fn call(self) {
         self.0.pull_segments();
+        self.0.pull_joints();
         self.0.layout.press_seabed(self.1);
     }
 }
@@ -186,10 +187,22 @@ impl ExplicitLine {
             let tension = total_tension(
                 elastic(line, at, strain),
                 damping,
-                Lanes::splat(0.0),
+                line.least_tension(at),
                 line.negative_tension,
             );
             self.kernel.pull.store(chord.scale(tension * inverse_l), at);
+        }
+    }
+
+    /// Adds the forces of the joints.
+    #[inline(always)]
+    fn pull_joints(&mut self) {
+        self.layout.bend(0.0);
+        if let Some(joints) = &self.layout.joints {
+            for at in self.layout.rows() {
+                let pull = self.kernel.pull.load(at) + joints.shear.load(at);
+                self.kernel.pull.store(pull, at);
+            }
         }
     }
 
