@@ -82,6 +82,8 @@ pub struct Mesh {
     pub error: f64,
     /// True if a trial was run on this mesh; false if it was extrapolated.
     pub tried: bool,
+    /// Elements of sections that are one element on all levels [-].
+    pub short_sections: usize,
     /// Reason for more elements than the motion or the rule requires, where there is one.
     pub rest: Option<Rest>,
 }
@@ -104,6 +106,7 @@ impl Mesh {
             elements: line_elements(tolerance).round() as usize,
             error: 0.0,
             tried: true,
+            short_sections: 1,
             rest: None,
         }
     }
@@ -125,7 +128,10 @@ impl Discretisation {
     pub fn in_words(&self) -> Vec<String> {
         let mut kinds: Vec<Vec<&Mesh>> = Vec::new();
         for mesh in &self.meshes {
-            let key = |mesh: &Mesh| (mesh.elements, mesh.tried, mesh.rest.map(|rest| rest.fewer));
+            let key = |mesh: &Mesh| {
+                let fewer = mesh.rest.map(|rest| rest.fewer);
+                (mesh.elements, mesh.tried, mesh.short_sections, fewer)
+            };
             match kinds.iter_mut().find(|kind| key(kind[0]) == key(mesh)) {
                 Some(kind) => kind.push(mesh),
                 None => kinds.push(vec![mesh]),
@@ -201,6 +207,12 @@ impl Discretisation {
                 tried.join(", ")
             ));
         }
+        if mesh.short_sections > 1 {
+            said.push(format!(
+                "{} elements in sections that are one element on coarse and fine meshes alike, of which these trials do not give the error",
+                mesh.short_sections
+            ));
+        }
         if let Some(rest) = mesh.rest {
             let [before, after] = rest.errors.map(rounded);
             said.push(format!(
@@ -264,7 +276,7 @@ pub fn at_rest(scene: &Scene) -> Result<(Option<Discretisation>, Simulation), si
 fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     let mut search = Search::new(scene, &Model::new(scene).ok()?, networks)?;
     let mut meshes = search.meshes()?;
-    search.refine_short_sections(&meshes);
+    search.refine_short_sections(&mut meshes);
     let start = |scene: &Scene| Simulation::new(scene).ok();
     if let Some(simulation) = start(&networks.with_elements(scene, &elements_of(&meshes))) {
         rest::refine(scene, networks, &mut meshes, &simulation, start);

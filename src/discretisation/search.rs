@@ -193,6 +193,7 @@ impl Ladder {
             elements,
             error,
             tried: self.found.is_some(),
+            short_sections: 1,
             rest: None,
         })
     }
@@ -296,8 +297,9 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// Doubles the elements of sections that are one element on all levels, until their error and that of the mesh are within the tolerance together.
-    pub(super) fn refine_short_sections(&mut self, meshes: &[Mesh]) {
+    /// Doubles the elements of sections that are one element on all levels, until their error and that of the mesh are within the tolerance together. Meshes
+    /// on which they are not in the end count as not tried.
+    pub(super) fn refine_short_sections(&mut self, meshes: &mut [Mesh]) {
         let ladders = self.ladders.iter();
         let runs = ladders.filter_map(|ladder| Some((&ladder.lines[..], ladder.runs.last()?)));
         let short = runs.flat_map(|(lines, run)| short_sections::in_run(&self.scene, lines, run));
@@ -305,31 +307,50 @@ impl<'a> Search<'a> {
         if short.is_empty() {
             return;
         }
+        let tolerance = self.scene.solver.tolerance;
         let elements = elements_of(meshes);
+        let mut errors: Vec<f64> = meshes.iter().map(|mesh| mesh.error).collect();
         let mut run = self.run(&self.at_level(&elements));
         for doubling in 1..=short_sections::DOUBLINGS {
             let finer = short_sections::with_elements(&self.scene, &short, 1 << doubling);
             let scene = std::mem::replace(&mut self.scene, finer);
             let finer = self.run(&self.at_level(&elements));
-            let too_coarse = match (&run, &finer) {
-                (Ok(Some(run)), Ok(Some(finer))) => !self.keeps_tolerance(meshes, [run, finer]),
-                _ => false,
+            let (Ok(Some(coarse)), Ok(Some(fine))) = (&run, &finer) else {
+                self.scene = scene;
+                break;
             };
-            if !too_coarse {
+            let parts = self.errors_of_short_sections(meshes, [coarse, fine]);
+            let with = |share: f64| {
+                let pairs = meshes.iter().zip(&parts);
+                pairs.map(move |(mesh, part)| if mesh.tried { mesh.error } else { 0.0 }.hypot(share * part))
+            };
+            if with(1.0).all(|error| error <= tolerance) {
                 self.scene = scene;
                 return;
             }
+            errors = with(0.25).collect();
             run = finer;
+            for mesh in meshes.iter_mut() {
+                if short.iter().any(|(line, _)| mesh.lines.contains(line)) {
+                    mesh.short_sections = 1 << doubling;
+                }
+            }
+        }
+        for (mesh, error) in meshes.iter_mut().zip(errors) {
+            if error > tolerance {
+                (mesh.error, mesh.tried) = (error.max(mesh.error), false);
+            }
         }
     }
 
-    /// Returns whether meshes keep the tolerance with an error in addition to theirs: that of the first of two runs, of which the second has twice the elements
-    /// in some sections.
-    fn keeps_tolerance(&self, meshes: &[Mesh], runs: [&Record; 2]) -> bool {
-        self.ladders.iter().zip(meshes).all(|(ladder, mesh)| {
+    /// Error of the first of two runs for the lines of every mesh, the second having twice the elements in some sections [-].
+    fn errors_of_short_sections(&self, meshes: &[Mesh], runs: [&Record; 2]) -> Vec<f64> {
+        let ladders = self.ladders.iter().zip(meshes);
+        let error = |(ladder, mesh): (&Ladder, &Mesh)| {
             let [coarse, fine] = runs.map(|record| ladder.part(mesh.elements, record));
-            smooth_error(&coarse, &fine).hypot(mesh.error) <= self.scene.solver.tolerance
-        })
+            smooth_error(&coarse, &fine)
+        };
+        ladders.map(error).collect()
     }
 
     /// Longest axial-implicit step whose error on a coarse mesh is small [s], none where explicit steps cost less; the longest step allowed where steps

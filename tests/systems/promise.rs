@@ -477,6 +477,20 @@ fn short_sections_keep_the_stated_error() {
         );
         assert!(errors[0] <= tolerance, "{tolerance}: {errors:?}");
     }
+    let words = |tolerance: f64| {
+        let mut chosen = scene.clone();
+        chosen.solver.tolerance = tolerance;
+        let found = discretisation::select(&chosen).unwrap();
+        [found.in_words(), found.shortfalls()].map(|words| words.join("\n"))
+    };
+    let [said, short] = words(0.005);
+    assert_says(
+        &said,
+        &["2 elements in sections that are one element on coarse and fine meshes alike"],
+    );
+    assert_eq!(short, "");
+    let [_, short] = words(2e-5);
+    assert_says(&short, &["more than solver.tolerance"]);
 }
 
 #[test]
