@@ -18,6 +18,9 @@
 //! hard the dampers are over a step: of second order, and no ringing of those that are. A row is off where the total would be negative. Eliminating v by
 //! the nodes' momentum leaves one scalar tridiagonal system in T̄.
 //!
+//! A segment of a line that bends pushes with up to P ([`super::joints`]). Its tensions are counted from −P: S, T and T̄ stand for what they are greater by,
+//! and −P q acts on the nodes with the forces of the joints. As the weights sum to one, nothing else changes.
+//!
 //! Springs whose tension is not proportional to strain are laid along the tangent of their curve where the segments are about to come to, and after each pass
 //! where they came to, until the tension there is that of the curve: along the tangent at t_n a rope that stiffens would be held, as it snaps taut, by the
 //! slope of its first pull.

@@ -59,7 +59,7 @@ impl Joints {
         }
     }
 
-    /// Force on the nodes of a row [N].
+    /// Forces of the segments before and after the nodes of a row on these [N].
     #[inline(always)]
     pub fn force(&self, at: usize) -> Vectors {
         self.shear.load(at) - self.shear.load(at - 1)
