@@ -19,7 +19,7 @@
 //! the nodes' momentum leaves one scalar tridiagonal system in T̄.
 //!
 //! A segment of a line that bends pushes with up to P ([`super::joints`]). Its tensions are counted from −P: S, T and T̄ stand for what they are greater by,
-//! and −P q acts on the nodes with the forces of the joints. As the weights sum to one, nothing else changes.
+//! and −P q acts on the nodes with the forces of the joints. As the weights sum to one, that is a spring of another length and nothing else.
 //!
 //! Springs whose tension is not proportional to strain are laid along the tangent of their curve where the segments are about to come to, and after each pass
 //! where they came to, until the tension there is that of the curve: along the tangent at t_n a rope that stiffens would be held, as it snaps taut, by the
@@ -340,7 +340,7 @@ impl AxialLine {
         for at in self.layout.rows() {
             let strain = self.layout.strain(at);
             let segment = &mut self.kernel.rows.segments[at - 1];
-            segment.history = [self.layout.elastic(at, strain) + segment.push; 3];
+            segment.history = [self.layout.elastic(at, strain) - self.layout.least_tension(at); 3];
         }
     }
 

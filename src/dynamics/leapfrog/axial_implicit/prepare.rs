@@ -117,10 +117,9 @@ impl AxialLine {
             let row = &mut self.kernel.rows.segments[at - 1];
             let along = row.direction.dot(relative);
             let [last, before, _] = row.history;
-            let now = found.now + row.push;
             row.along = along;
-            row.history = [now, last, before];
-            row.margins[0] = now.min(last).min(before);
+            row.history = [found.now, last, before];
+            row.margins[0] = found.now.min(last).min(before);
             row.margins[1] = Lanes::splat(f64::INFINITY);
             let memory = row.all_remembered(sizes);
             row.elastic = found.ahead + memory;
@@ -204,6 +203,7 @@ impl AxialLine {
         let (line, last) = (&self.layout, self.layout.striping.rows());
         let (velocities, weight) = (line.velocity.rows(last), line.weight.rows(last));
         let (nodes, drawn) = (&mut self.kernel.rows.nodes[..last], line.drag.is_some());
+        let joints = line.joints.as_ref();
         for at in line.rows() {
             let node = &mut nodes[at - 1];
             let velocity = velocities[at];
@@ -220,7 +220,7 @@ impl AxialLine {
             node.invert(drawn, damping, sizes);
             node.fall(weight[at], [velocity, past], drawn, sizes);
             node.press(froude_krylov, velocity, damping, sizes);
-            if let Some(joints) = &line.joints {
+            if let Some(joints) = joints {
                 node.push(joints.force(at), sizes);
             }
             node.loose = node.fall;

@@ -59,7 +59,7 @@ pub(super) fn pulled(law: &StretchLaw, strain: Lanes) -> [Lanes; 2] {
 /// Segments, each between its node and the one after.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SegmentRow {
-    /// Unstretched length L [m], EA/L [N/m] and BA/L [N s/m].
+    /// Length at which T̄ + P is 0 without stretching, the unstretched L where P is 0 [m], EA/L [N/m] and BA/L [N s/m].
     pub unstretched_length: Lanes,
     pub axial_stiffness: Lanes,
     pub axial_damping: Lanes,
@@ -91,8 +91,6 @@ pub(super) struct SegmentRow {
     pub eliminated: Eliminated,
     /// T̄ + P [N].
     pub tension: Lanes,
-    /// P: the greatest push, from which tensions are counted [N].
-    pub push: Lanes,
 }
 
 impl SegmentRow {
@@ -100,9 +98,11 @@ impl SegmentRow {
     pub(super) fn new(line: &Layout, at: usize) -> SegmentRow {
         let zero = Lanes::splat(0.0);
         let inverse = line.inverse_length.load(at);
+        let stiffness = line.axial_stiffness.load(at) * inverse;
+        let softness = (stiffness + Lanes::splat(f64::MIN_POSITIVE)).recip();
         SegmentRow {
-            unstretched_length: inverse.recip(),
-            axial_stiffness: line.axial_stiffness.load(at) * inverse,
+            unstretched_length: inverse.recip() + line.least_tension(at) * softness,
+            axial_stiffness: stiffness,
             axial_damping: line.axial_damping.load(at) * inverse,
             direction: Vectors::zero(),
             length: zero,
@@ -119,7 +119,6 @@ impl SegmentRow {
             equations: Equations::unit(),
             eliminated: Eliminated::start(),
             tension: zero,
-            push: zero - line.least_tension(at),
         }
     }
 
@@ -194,7 +193,7 @@ impl SegmentRow {
     #[inline(always)]
     fn remembered(&self, pull: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let [mut share, weights @ ..] = sizes.weights;
-        let mut memory = share * self.push;
+        let mut memory = Lanes::splat(0.0);
         for (weight, tension) in weights.into_iter().zip(self.history) {
             let total = tension + pull;
             memory = memory + (weight * tension).where_positive(total);
@@ -206,9 +205,9 @@ impl SegmentRow {
     /// Part that the springs up to t_n have in T̄ where none of them pushes [N].
     #[inline(always)]
     pub(super) fn all_remembered(&self, sizes: &Sizes) -> Lanes {
-        let [b1, h0, h1, h2] = sizes.weights;
+        let [_, h0, h1, h2] = sizes.weights;
         let [now, last, before] = self.history;
-        b1 * self.push + h0 * now + h1 * last + h2 * before
+        h0 * now + h1 * last + h2 * before
     }
 
     /// Remembers the springs up to t_n with the damper at a stretching velocity [m/s].
