@@ -6,12 +6,13 @@
 //! a solution that way, are chains of elements. Valid where motions are slow compared with the lowest natural period
 //! and drag is small compared with weight.
 //!
-//! A step is one equilibrium. It is halved where none is found.
+//! A step is one equilibrium. It is halved where none is found. Where an energy balance is asked for and the mean of the forces before and after a step gives
+//! too rough a work, equilibria between these are found for the balance alone.
 
 use nalgebra::Vector3;
 
 use super::StepError;
-use super::energy_balance::{Flow, work_at_rest};
+use super::energy_balance::{Flow, energy, work_at_rest};
 use crate::elements::{Counters, Workspace, copy_network};
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::statics::catenary_network::solve_network;
@@ -20,6 +21,12 @@ use crate::statics::{StaticsError, catenary_network};
 
 /// Parts that a step may be cut into by halving: six halvings.
 const PARTS_MAX: usize = 64;
+/// Halvings of a step for its energy flow, at most.
+const FLOW_HALVINGS: usize = 6;
+/// Energy of a step that may be unaccounted for, over its work [-].
+const OPEN_MAX: f64 = 0.1;
+/// Energy that rounding may bring, over what is stored [-].
+const ROUNDING: f64 = 1e-9;
 
 /// Network between two equilibria.
 struct Path<'a, K> {
@@ -61,7 +68,9 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
         match path.rest(&before, state, times, work) {
             Ok(()) => {
                 if model.energy_balance {
-                    flow.add(work_at_rest(model, path.network, [&before, state], times));
+                    let counters = work.counters;
+                    flow.add(path.flow([&before, state], times, FLOW_HALVINGS, work));
+                    work.counters = counters;
                 }
                 path.stop(&before, state, times[1] - times[0]);
                 copy_network(model, path.network, state, &mut before);
@@ -135,6 +144,25 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
                 state.lines[line].closed_form = None;
             }
         }
+    }
+
+    /// Flow of energy between two equilibria, by halves of the step where its error is large.
+    fn flow(&self, states: [&State; 2], times: [f64; 2], halvings: usize, work: &mut Workspace) -> Flow {
+        let mut flow = work_at_rest(self.model, self.network, states, times);
+        let [before, after] = states.map(|state| energy(self.model, self.network, state));
+        let open = after.at_rest() - before.at_rest() - flow.external_work + flow.dissipation;
+        let turnover = flow.external_work.abs() + flow.dissipation.abs();
+        let stored = after.at_rest() - after.gravitational + after.gravitational.abs();
+        if halvings == 0 || open.abs() <= OPEN_MAX * turnover + ROUNDING * stored {
+            return flow;
+        }
+        let (mut middle, half) = (states[0].clone(), 0.5 * (times[0] + times[1]));
+        if self.rest(states[0], &mut middle, [times[0], half], work).is_ok() {
+            self.stop(states[0], &mut middle, half - times[0]);
+            flow = self.flow([states[0], &middle], [times[0], half], halvings - 1, work);
+            flow.add(self.flow([&middle, states[1]], [half, times[1]], halvings - 1, work));
+        }
+        flow
     }
 
     /// Leaves the nodes at rest after a part of the step of `dt` [s]; free points keep the rate at which they moved, for the next guess.
