@@ -121,10 +121,13 @@ impl Simulation {
         Simulation::start(model, start::Shapes::Equilibrium)
     }
 
-    fn start(model: Model, shapes: start::Shapes) -> Result<Simulation, Error> {
+    fn start(mut model: Model, shapes: start::Shapes) -> Result<Simulation, Error> {
+        let begin = |model: &Model| start::begin(model, 0.0, Inputs::new(model), false, shapes);
+        let (mut snapshot, mut work) = begin(&model)?;
+        if start::stiffen_clamps(&mut model, &snapshot.state) {
+            (snapshot, work) = begin(&model)?;
+        }
         let model = Arc::new(model);
-        let inputs = Inputs::new(&model);
-        let (snapshot, work) = start::begin(&model, 0.0, inputs, false, shapes)?;
         let lines = model.lines.iter();
         Ok(Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),

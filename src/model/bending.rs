@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{End, Line, Model, PointState};
-use crate::physics::bending::{Direction, Turn, compression_max, in_series};
+use crate::physics::bending::{Direction, Turn, compression_max, in_series, of_clamp};
 
 /// Lumped bending stiffness: every node is a joint between the segments that meet there, a clamped end one between the clamp and
 /// its segment.
@@ -13,7 +13,7 @@ pub struct Bending {
     pub stiffness: Vec<f64>,
     /// B = EI/l̄ per node [N m]; 0 at hinges and pinned ends.
     pub joint: Vec<f64>,
-    /// Unstretched length l̄ of a joint [m].
+    /// Length l̄ of a joint [m]: that of the unstretched halves of its segments, and less at a clamp under tension.
     pub length: Vec<f64>,
     /// |κb| of the unstressed shape per node [-].
     pub rest: Vec<f64>,
@@ -62,6 +62,20 @@ impl Bending {
             clamps,
             stiffness,
         }
+    }
+
+    /// Sets the joint of the clamp at an end for the tension [N] and the unstretched length [m] of the segment there; returns whether there is one.
+    pub fn stiffen_clamp(&mut self, end: End, tension: f64, length: f64) -> bool {
+        let (node, segment) = match end {
+            End::A => (0, 0),
+            End::B => (self.joint.len() - 1, self.stiffness.len() - 1),
+        };
+        let is_clamped = self.joint[node] > 0.0;
+        if is_clamped {
+            self.joint[node] = of_clamp(self.stiffness[segment], length, tension);
+            self.length[node] = self.stiffness[segment] / self.joint[node];
+        }
+        is_clamped
     }
 
     /// Takes a shape of the line as the unstressed one.
@@ -167,6 +181,25 @@ mod tests {
         assert_eq!(bending.length, [0.5, 2.0, 2.5, 1.0]);
         assert!(bending.damping.is_none());
         assert_eq!(bending.compression_max[2], 0.0);
+    }
+
+    #[test]
+    fn tension_makes_the_joint_of_a_clamp_stiffer_and_its_length_shorter() {
+        let clamps = [None, Some(Vector3::x())];
+        let mut bending = Bending::new(&[1.0, 2.0], vec![4.0; 2], &[0.0; 2], clamps);
+        assert!(!bending.stiffen_clamp(End::A, 100.0, 1.0));
+        assert!(bending.stiffen_clamp(End::B, 0.0, 2.0));
+        assert_eq!(
+            (bending.joint[0], bending.joint[2], bending.length[2]),
+            (0.0, 4.0, 1.0)
+        );
+        bending.stiffen_clamp(End::B, 4.0, 2.0); // as long as √(EI/T) twice
+        assert_relative_eq!(
+            bending.joint[2],
+            2.0 * (2.0 + 2.0_f64.sqrt()),
+            max_relative = 1e-14
+        );
+        assert_relative_eq!(bending.joint[2] * bending.length[2], 4.0);
     }
 
     #[test]

@@ -12,7 +12,7 @@
 //! h(s) = min(h_section, h_other + G·distance to it, h_fine + G·distance to its place).
 //!
 //! A cable that bends follows a clamp, and lifts off the seabed, over √(EI/T): h_fine is half of that at the touchdown. At a clamp it follows from
-//! the tolerance: elements of h there have an error of the curvature of 0.125 h²T/EI.
+//! the tolerance: elements of h there have an error of the curvature of 0.02 h²T/EI where the tension varies.
 //!
 //! Sections with a given number of elements have elements of equal length, regardless of their neighbours; an open
 //! neighbour with longer elements adapts.

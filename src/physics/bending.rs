@@ -13,6 +13,16 @@
 //! Two directions that meet where stiffness changes bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂); B = 0 where one of
 //! them is a hinge. A clamp is a fixed direction.
 //!
+//! Under a tension T a line leaves a clamp in a bend of length λ = √(EI/T), M = EI Θ/λ at the angle Θ between the clamp and the line beyond. In
+//! a chain of equal segments of length l the directions approach that of the line beyond by a factor r from one to the next, r + 1/r = 2 + l²/λ², which is
+//! r = e^(−2x) with sinh x = l/2λ = u. The joints beyond the clamp act on it as a stiffness (EI/l)(1/r − 1) in series with its own, which makes M that
+//! of the line on every mesh if
+//!
+//! B = (2EI/l)/(1 − tanh ½x),   tanh ½x = u/(1 + √(1 + u²)):
+//!
+//! 2EI/l for short segments, which is half a segment, and √(EI T) for long ones. T is that at rest: where it becomes T', M misses by a
+//! part of 0.05 (l/λ)² ln(T'/T) where l < λ, of 0.15 ln(T'/T) at l = 2λ.
+//!
 //! A moment M on an end of a line turns its last segment, of the end-to-end vector e and direction q. A turn δθ = q ×
 //! δq across the line takes the work M·δθ = (M × q)·δe/l. M is therefore a couple of forces ± f on the segment's two
 //! nodes,
@@ -31,7 +41,7 @@
 //!
 //! Source: Bergou, Wardetzky, Robinson, Audoly & Grinspun (2008), Discrete Elastic Rods, ACM Trans. Graph. 27(3), eq. 1 and
 //! section 4.2 (κb and the bending energy); second derivatives, series stiffness, couple, fibres and zigzag derived
-//! here. The limit of compression corresponds to "segment Euler load" of OrcaFlex, there π²EI/l².
+//! here, as is B of a clamp. The limit of compression corresponds to "segment Euler load" of OrcaFlex, there π²EI/l².
 //! Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the energy is infinite. A
 //! rest curvature has a magnitude but no direction, as in a line that is free to twist: its force is not smooth where
 //! the line is straight.
@@ -325,6 +335,12 @@ pub fn in_series(halves: [(f64, f64); 2]) -> f64 {
     }
 }
 
+/// B [N m] of a clamp at the end of a chain of equal segments of a length [m] and EI [N m²] under a tension [N].
+pub fn of_clamp(stiffness: f64, length: f64, tension: f64) -> f64 {
+    let u = 0.5 * length * (tension / stiffness).sqrt();
+    2.0 * stiffness / length / (1.0 - u / (1.0 + (1.0 + u * u).sqrt()))
+}
+
 /// Greatest push [N] that a segment of a length [m] and EI [N m²] carries.
 pub fn compression_max(stiffness: f64, length: f64) -> f64 {
     4.0 * stiffness / (length * length)
@@ -479,6 +495,19 @@ mod tests {
     fn stiffness_in_series_is_that_of_a_uniform_line_and_nothing_at_a_hinge() {
         assert_relative_eq!(in_series([(0.5, 8.0), (0.5, 8.0)]), 16.0);
         assert_eq!(in_series([(0.5, 8.0), (0.5, 0.0)]), 0.0);
+    }
+
+    #[test]
+    fn a_clamp_on_a_chain_takes_the_moment_of_a_line_on_every_mesh() {
+        let (ei, tension, angle): (f64, f64, f64) = (7.0, 30.0, 0.01);
+        for length in [1e-3, 0.3, 1.0, 4.0] {
+            let square = length * length * tension / ei;
+            let r = 1.0 + 0.5 * square - (square + 0.25 * square * square).sqrt();
+            let (clamp, beyond) = (of_clamp(ei, length, tension), ei / length * (1.0 / r - 1.0));
+            let moment = angle / (1.0 / clamp + 1.0 / beyond);
+            assert_relative_eq!(moment, (ei * tension).sqrt() * angle, max_relative = 1e-9);
+        }
+        assert_relative_eq!(of_clamp(ei, 0.5, 0.0), 4.0 * ei);
     }
 
     #[test]

@@ -85,6 +85,23 @@ pub(super) fn begin(
     ))
 }
 
+/// Sets the joints of the clamps of lines at rest for the tension there; returns whether there are any.
+pub(super) fn stiffen_clamps(model: &mut Model, state: &State) -> bool {
+    let mut any = false;
+    for (line, shape) in model.lines.iter_mut().zip(&state.lines) {
+        if line.initial != InitialShape::Static || line.bending.is_none() {
+            continue;
+        }
+        for (end, segment) in [(End::A, 0), (End::B, line.segment_count() - 1)] {
+            let tension = reaction::tension(line, shape, segment, false).max(0.0);
+            let length = line.segments.length[segment];
+            let bending = line.bending.as_mut();
+            any |= bending.is_some_and(|bending| bending.stiffen_clamp(end, tension, length));
+        }
+    }
+    any
+}
+
 /// Every network in static equilibrium or, where all its lines have shapes of their own, on these, with its free points where the scene puts
 /// them. Quasi-static lines start on their catenaries; those that will move start where their elements are at rest.
 fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> Result<State, StaticsError> {

@@ -749,6 +749,35 @@ fn the_power_cable_rests_in_a_lazy_wave_and_stays_there() {
     assert!(drift < 1e-7, "{drift} m");
 }
 
+/// Moment at the hang-off of the power cable with `elements` elements in the last 90 m [N m], at rest and the greatest from 15 to 30 s.
+fn hang_off_moments(elements: usize) -> [f64; 2] {
+    let mut scene = shipped("power_cable");
+    scene.lines[0].sections[2].elements = Some(elements);
+    let mut cable = start(&scene);
+    let moment = |cable: &Simulation| cable.bending(0).unwrap().last().unwrap().moment;
+    let at_rest = moment(&cable);
+    cable.follow_scene().unwrap();
+    cable.advance(15.0).unwrap();
+    let moments = (0..300).map(|_| {
+        cable.advance(0.05).unwrap();
+        moment(&cable)
+    });
+    [at_rest, greatest(moments)]
+}
+
+#[test]
+fn the_moment_at_a_clamp_is_that_of_a_fine_mesh_with_elements_that_do_not_resolve_the_bend() {
+    let exact = hang_off_moments(900); // eight elements over the bend
+    for (elements, bounds) in [(180, [0.005, 0.005]), (90, [0.015, 0.005]), (45, [0.04, 0.01])] {
+        let moments = hang_off_moments(elements);
+        let errors = [0, 1].map(|which| moments[which] / exact[which] - 1.0);
+        assert!(
+            errors[0].abs() < bounds[0] && errors[1].abs() < bounds[1],
+            "{elements}: {errors:?}"
+        );
+    }
+}
+
 #[test]
 fn curvature_and_moment_are_outputs_of_lines_that_bend() {
     let scene = shipped("power_cable");

@@ -9,14 +9,14 @@ use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Catenary, FlatSeabed};
 use crate::scene::{self, PointKind, Scene, percent};
 
-/// Error of the curvature at a clamp times the square of the number n of elements over λ = √(EI/T) there [-].
-///
-/// With η = 1/n, a line that hangs off at an angle Θ from its clamp has segments at angles Θ + φ_i from it, φ_{i+1} = r φ_i with r + 1/r = 2 + η².
-/// The clamp's joint, twice as stiff as the others, gives M = (2EI/ηλ)(φ₁ + Θ) = (EI Θ/λ)(1 − η²/8 + …), whose limit is the beam's.
-const CURVATURE_ERROR: f64 = 0.125;
-/// Elements over √(EI/T) at a clamp, least and most [-]: with fewer than two the error grows faster than that.
-const CLAMP_ELEMENTS: [f64; 2] = [2.0, 20.0];
-/// The same at the touchdown, where the moment rises without a step [-].
+/// Error of the curvature at a clamp times the square of the number of elements over λ = √(EI/T) there [-], where the tension becomes 1.4 times that at
+/// rest ([`crate::physics::bending`]).
+const CURVATURE_ERROR: f64 = 0.02;
+/// Elements over √(EI/T) at a clamp, least and most [-].
+const CLAMP_ELEMENTS: [f64; 2] = [0.6, 8.0];
+/// Length of an element at a clamp over √(EI/T), up to which the curvature there is that of a line within some per cent [-].
+const CLAMP_LENGTH_MAX: f64 = 2.0;
+/// Elements over √(EI/T) at the touchdown, where the moment rises without a step [-].
 const TOUCHDOWN_ELEMENTS: f64 = 2.0;
 /// Length that is finely meshed at a clamp and around the touchdown, over √(EI/T) [-].
 const BENDS: f64 = 2.0;
@@ -330,7 +330,11 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
         let found = inside.map(|(_, length)| *length).fold(0.0, f64::max);
         let bend = wanted.bend;
         reasons += &format!(", {found:.4} m at {place}, where it bends over {bend:.4} m");
-        if found > bend {
+        let resolved = match wanted.place {
+            Place::Touchdown => bend,
+            Place::ClampA | Place::ClampB => CLAMP_LENGTH_MAX * bend,
+        };
+        if found > resolved {
             reasons += ": too long to resolve that";
         }
     }
