@@ -82,8 +82,8 @@ pub struct Mesh {
     pub error: f64,
     /// True if a trial was run on this mesh; false if it was extrapolated.
     pub tried: bool,
-    /// Elements of sections that are one element on all levels [-].
-    pub short_sections: usize,
+    /// Elements of sections that are one element on all levels [-]; none where their error could not be tried.
+    pub short_sections: Option<usize>,
     /// Reason for more elements than the motion or the rule requires, where there is one.
     pub rest: Option<Rest>,
 }
@@ -106,9 +106,14 @@ impl Mesh {
             elements: line_elements(tolerance).round() as usize,
             error: 0.0,
             tried: true,
-            short_sections: 1,
+            short_sections: Some(1),
             rest: None,
         }
+    }
+
+    /// Returns whether no trial of the mesh could be run.
+    fn is_unknown(&self) -> bool {
+        !self.tried && self.trials.is_empty()
     }
 }
 
@@ -158,23 +163,36 @@ impl Discretisation {
     }
 
     /// Returns a sentence for each mesh whose error is expected to exceed the tolerance: it was extrapolated, or it has the greatest number of
-    /// elements that is selected.
+    /// elements that is selected; and for each whose error, or that of its short sections, could not be tried.
     pub fn shortfalls(&self) -> Vec<String> {
         let tolerance = self.scene.solver.tolerance;
-        let short = self
-            .meshes
-            .iter()
-            .filter(|mesh| !mesh.tried && mesh.error > tolerance);
-        short
-            .map(|mesh| {
+        let of_mesh = |mesh: &Mesh| {
+            let coarse = (!mesh.tried && mesh.error > tolerance).then(|| {
                 format!(
                     "an error of about {:.2} % is expected with {} elements a line, more than solver.tolerance = {tolerance}; give `elements` \
                      for a finer mesh",
                     100.0 * mesh.error,
                     mesh.elements
                 )
-            })
-            .collect()
+            });
+            let unknown = match mesh.short_sections {
+                _ if mesh.is_unknown() => Some("this mesh"),
+                None => Some("sections that are one element long"),
+                Some(_) => None,
+            };
+            let unknown = unknown.map(|part| {
+                format!(
+                    "{}: the error of {part} is not known, as no trial of it could be run; compare with more `elements` there",
+                    self.names(&[mesh])
+                )
+            });
+            [coarse, unknown].into_iter().flatten()
+        };
+        self.meshes.iter().flat_map(of_mesh).collect()
+    }
+
+    fn needs_more_at_rest(&self) -> bool {
+        self.meshes.iter().any(|mesh| mesh.rest.is_some())
     }
 
     /// Names of the lines of networks of one kind.
@@ -207,11 +225,15 @@ impl Discretisation {
                 tried.join(", ")
             ));
         }
-        if mesh.short_sections > 1 {
-            said.push(format!(
-                "{} elements in sections that are one element on coarse and fine meshes alike, of which these trials do not give the error",
-                mesh.short_sections
-            ));
+        match mesh.short_sections {
+            Some(1) => {}
+            Some(elements) => said.push(format!(
+                "{elements} elements in sections that are one element on coarse and fine meshes alike, of which these trials do not give the error"
+            )),
+            None => said.push(
+                "these trials do not give the error of sections that are one element on coarse and fine meshes alike, and no others could be run"
+                    .to_string(),
+            ),
         }
         if let Some(rest) = mesh.rest {
             let [before, after] = rest.errors.map(rounded);
@@ -220,7 +242,12 @@ impl Discretisation {
                 mesh.elements, rest.fewer
             ));
         }
-        if !mesh.tried {
+        if mesh.is_unknown() {
+            said.push(format!(
+                "{} elements a line alone {target}: no trial of that could be run",
+                mesh.elements
+            ));
+        } else if !mesh.tried {
             said.push(format!(
                 "that is extrapolated, trials being bounded: about {} is expected",
                 rounded(mesh.error)
@@ -246,9 +273,13 @@ pub fn select(scene: &Scene) -> Option<Discretisation> {
 }
 
 fn tried(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
-    tried_in_motion(scene, networks).or_else(|| {
-        let simulation = Simulation::new(scene).ok()?;
-        Some(tried_at_rest(scene, networks, &simulation, Simulation::new)?.0)
+    let mut search = Search::new(scene, &Model::new(scene).ok()?, networks);
+    let in_motion = |search| tried_in_motion(scene, networks, search);
+    search.as_mut().and_then(in_motion).or_else(|| {
+        let (mut found, _) = without_trials(scene, networks, &Simulation::new(scene).ok()?, Simulation::new)?;
+        let moves = search.is_some();
+        found.meshes.iter_mut().for_each(|mesh| mesh.tried = !moves);
+        (moves || found.needs_more_at_rest()).then_some(found)
     })
 }
 
@@ -263,7 +294,8 @@ pub fn at_rest(scene: &Scene) -> Result<(Option<Discretisation>, Simulation), si
         return Ok((None, simulation));
     }
     let networks = Networks::new(scene, simulation.model());
-    match tried_at_rest(scene, &networks, &simulation, Simulation::at_rest) {
+    let found = without_trials(scene, &networks, &simulation, Simulation::at_rest);
+    match found.filter(|(found, _)| found.needs_more_at_rest()) {
         None => Ok((None, simulation)),
         Some((found, Some(refined))) => Ok((Some(found), refined)),
         Some((found, None)) => {
@@ -273,8 +305,7 @@ pub fn at_rest(scene: &Scene) -> Result<(Option<Discretisation>, Simulation), si
     }
 }
 
-fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
-    let mut search = Search::new(scene, &Model::new(scene).ok()?, networks)?;
+fn tried_in_motion(scene: &Scene, networks: &Networks, search: &mut Search) -> Option<Discretisation> {
     let mut meshes = search.meshes()?;
     search.refine_short_sections(&mut meshes);
     let start = |scene: &Scene| Simulation::new(scene).ok();
@@ -299,12 +330,12 @@ fn elements_of(meshes: &[Mesh]) -> Vec<usize> {
     meshes.iter().map(|mesh| mesh.elements).collect()
 }
 
-/// The scene with more elements than the rule gives, where it needs them at rest, and its simulation where that was started; `by_rule` is a
-/// simulation on the mesh of the rule.
-fn tried_at_rest(
+/// The scene with the mesh of the rule, or with more elements where it needs them at rest, and its simulation where that was started; `given` is
+/// a simulation on the mesh of the rule.
+fn without_trials(
     scene: &Scene,
     networks: &Networks,
-    by_rule: &Simulation,
+    given: &Simulation,
     start: fn(&Scene) -> Result<Simulation, simulation::Error>,
 ) -> Option<(Discretisation, Option<Simulation>)> {
     if scene.solver.integrator == Integrator::QuasiStatic {
@@ -312,8 +343,7 @@ fn tried_at_rest(
     }
     let mesh = |lines: &Vec<usize>| Mesh::by_rule(lines.clone(), scene.solver.tolerance);
     let mut meshes: Vec<Mesh> = networks.lines.iter().map(mesh).collect();
-    let refined = rest::refine(scene, networks, &mut meshes, by_rule, |scene| start(scene).ok());
-    meshes.iter().find_map(|mesh| mesh.rest)?;
+    let refined = rest::refine(scene, networks, &mut meshes, given, |scene| start(scene).ok());
     let found = Discretisation {
         scene: networks.with_elements(scene, &elements_of(&meshes)),
         meshes: networks.open(&meshes).cloned().collect(),

@@ -193,7 +193,7 @@ impl Ladder {
             elements,
             error,
             tried: self.found.is_some(),
-            short_sections: 1,
+            short_sections: Some(1),
             rest: None,
         })
     }
@@ -307,9 +307,10 @@ impl<'a> Search<'a> {
         if short.is_empty() {
             return;
         }
+        let has_short = |mesh: &&mut Mesh| short.iter().any(|(line, _)| mesh.lines.contains(line));
         let tolerance = self.scene.solver.tolerance;
         let elements = elements_of(meshes);
-        let mut errors: Vec<f64> = meshes.iter().map(|mesh| mesh.error).collect();
+        let mut errors = vec![f64::INFINITY; meshes.len()];
         let mut run = self.run(&self.at_level(&elements));
         for doubling in 1..=short_sections::DOUBLINGS {
             let finer = short_sections::with_elements(&self.scene, &short, 1 << doubling);
@@ -320,24 +321,27 @@ impl<'a> Search<'a> {
                 break;
             };
             let parts = self.errors_of_short_sections(meshes, [coarse, fine]);
-            let with = |share: f64| {
-                let pairs = meshes.iter().zip(&parts);
-                pairs.map(move |(mesh, part)| if mesh.tried { mesh.error } else { 0.0 }.hypot(share * part))
-            };
-            if with(1.0).all(|error| error <= tolerance) {
+            let of_levels = meshes
+                .iter()
+                .map(|mesh| if mesh.tried { mesh.error } else { 0.0 });
+            let pairs: Vec<(f64, f64)> = of_levels.zip(parts).collect();
+            if pairs.iter().all(|(error, part)| error.hypot(*part) <= tolerance) {
                 self.scene = scene;
                 return;
             }
-            errors = with(0.25).collect();
+            errors = pairs
+                .iter()
+                .map(|(error, part)| error.hypot(0.25 * part))
+                .collect();
             run = finer;
-            for mesh in meshes.iter_mut() {
-                if short.iter().any(|(line, _)| mesh.lines.contains(line)) {
-                    mesh.short_sections = 1 << doubling;
-                }
+            for mesh in meshes.iter_mut().filter(has_short) {
+                mesh.short_sections = Some(1 << doubling);
             }
         }
         for (mesh, error) in meshes.iter_mut().zip(errors) {
-            if error > tolerance {
+            if error.is_infinite() && has_short(&mesh) {
+                mesh.short_sections = None;
+            } else if error.is_finite() && error > tolerance {
                 (mesh.error, mesh.tried) = (error.max(mesh.error), false);
             }
         }

@@ -494,6 +494,22 @@ fn short_sections_keep_the_stated_error() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn a_mesh_of_which_no_trial_could_be_run_is_told() {
+    let mut scene = deep_polyester();
+    scene.lines[0].sections[1].length = 2498.0;
+    scene.lines[0].sections[2].length = 0.02; // axial waves cross it in a fraction of a millisecond
+    scene.line_types.get_mut("polyester").unwrap().damping_ratio = None;
+    scene.solver.tolerance = 0.002;
+    let found = discretisation::select(&scene).unwrap();
+    assert_says(&found.in_words().join("\n"), &["no trial of that could be run"]);
+    assert_says(
+        &found.shortfalls().join("\n"),
+        &["leg: the error of this mesh is not known"],
+    );
+}
+
+#[test]
 #[ignore = "writes tests/reference/promise.csv"]
 fn write_the_reference_work() {
     let mut text = format!(
