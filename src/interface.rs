@@ -328,23 +328,20 @@ impl Interface {
     /// Builds the table of a scene.
     ///
     /// # Errors
-    /// Two variables of one name, or a name that FMI cannot carry.
+    /// Two variables of one name.
     pub fn new(scene: &Scene, model: &Model, layout: Layout) -> Result<Interface, SceneError> {
         let mut variables = Vec::new();
         for (index, point) in scene.points.iter().enumerate() {
             if point.kind == PointKind::Coupled && point.on.is_none() {
-                check_name(&point.name, &format!("points[{index}].name"))?;
                 rows::body(&mut variables, Body::Point(index), &point.name);
                 coupling::push(&mut variables, scene, Body::Point(index), &point.name);
             }
         }
         for (index, vessel) in scene.vessels.iter().enumerate() {
-            check_name(&vessel.name, &format!("vessels[{index}].name"))?;
             rows::body(&mut variables, Body::Vessel(index), &vessel.name);
             coupling::push(&mut variables, scene, Body::Vessel(index), &vessel.name);
         }
         for (index, line) in scene.lines.iter().enumerate() {
-            check_name(&line.name, &format!("lines[{index}].name"))?;
             rows::controls(&mut variables, index, line);
         }
         for (index, line) in scene.lines.iter().enumerate() {
@@ -362,9 +359,6 @@ impl Interface {
             if reference_catenary(model, line).is_some() {
                 variables.extend(LineResult::OF_CATENARY.map(|result| result.row(index, &line.name)));
             }
-        }
-        for name in scene.line_types.keys() {
-            check_name(name, &format!("line_types.{name}"))?;
         }
         variables.extend(parameters::variables(scene));
         flow::push(&mut variables, model, layout);
@@ -477,30 +471,6 @@ impl Interface {
         }
         Ok(())
     }
-}
-
-/// Characters that neither XML nor FMI's naming conventions can carry.
-fn check_name(name: &str, at: &str) -> Result<(), SceneError> {
-    if name.is_empty() || name.trim() != name {
-        return Err(SceneError::new(
-            at,
-            format!("\"{name}\" cannot name a variable: it must not be empty nor begin or end with a space"),
-        ));
-    }
-    if let Some(bad) = name
-        .chars()
-        .find(|c| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'))
-    {
-        return Err(SceneError::new(
-            at,
-            format!(
-                "\"{}\" cannot name a variable: it holds the control character U+{:04X}",
-                name.escape_default(),
-                u32::from(bad)
-            ),
-        ));
-    }
-    Ok(())
 }
 
 fn check_unique(variables: &[Variable]) -> Result<(), SceneError> {
@@ -645,13 +615,5 @@ mod tests {
         let one = rows::row("a.b".into(), String::new(), Causality::Output, Unit::ONE, binding);
         let error = check_unique(&[one.clone(), one]).unwrap_err();
         assert!(error.to_string().starts_with("a.b: two variables"), "{error}");
-    }
-
-    #[test]
-    fn a_name_that_xml_cannot_carry_is_refused() {
-        for name in ["", " a", "a\tb", "a\u{1}"] {
-            assert!(check_name(name, "points[0].name").is_err(), "{name:?}");
-        }
-        assert!(check_name("Linie 1 ø", "points[0].name").is_ok());
     }
 }

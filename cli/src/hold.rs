@@ -4,7 +4,7 @@ use std::io::Write;
 
 use moorline::output::write_file;
 use moorline::scene::{LoadedScene, Scene, TOML};
-use toml_edit::{Array, DocumentMut, Item, TableLike};
+use toml_edit::{Array, DocumentMut, Item, RawString, TableLike};
 
 use crate::failure::Failure;
 
@@ -88,6 +88,16 @@ fn put(table: &mut dyn TableLike, at: &str, key: &str, item: &Item) -> String {
         value.decor_mut().clear();
     }
     let assignment = format!("{at}.{key} = {item}");
+    if table.get(key).is_none()
+        && let Some(last) = table.iter_mut().last().and_then(|(_, last)| last.as_value_mut())
+        && last
+            .decor()
+            .suffix()
+            .and_then(RawString::as_str)
+            .is_some_and(|after| after.trim().is_empty())
+    {
+        last.decor_mut().set_suffix(""); // in an inline table, the blank before the closing brace
+    }
     table.insert(key, item);
     assignment
 }

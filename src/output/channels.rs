@@ -73,7 +73,6 @@ fn source(channel: &Channel, model: &Model) -> Result<Source, String> {
         Ok(Source::Node { line, node, quantity })
     };
     match channel {
-        Channel::EndTension { line, end } => of_node(line, NodePlace::End(*end), Quantity::Tension),
         Channel::Node { line, node, quantity } => of_node(line, *node, *quantity),
         Channel::Point { point, quantity } => Ok(Source::Point {
             point: model

@@ -8,14 +8,7 @@ use super::Scene;
 /// Quantity that a channel writes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Channel {
-    /// `FairTen`, `AnchTen`: tension of the segment at an end of a line [N].
-    EndTension {
-        /// Name of the line.
-        line: String,
-        /// The end.
-        end: LineEnd,
-    },
-    /// `L1N10Px`: quantity of a node of a line.
+    /// `L1N10Px`: quantity of a node of a line. `FairTen1` and `AnchTen1` are the tension of the segment at end B and A.
     Node {
         /// Name of the line.
         line: String,
@@ -72,14 +65,8 @@ impl Channel {
         let number: usize = number.parse().map_err(|_| unknown())?;
         let line = format!("line{number}");
         match (what, rest) {
-            ("FAIRTEN", "") => Ok(Channel::EndTension {
-                line,
-                end: LineEnd::B,
-            }),
-            ("ANCHTEN", "") => Ok(Channel::EndTension {
-                line,
-                end: LineEnd::A,
-            }),
+            ("FAIRTEN", "") => Ok(Channel::end_tension(line, LineEnd::B)),
+            ("ANCHTEN", "") => Ok(Channel::end_tension(line, LineEnd::A)),
             ("L" | "LINE", rest) => {
                 let (node, rest) = node(rest).ok_or_else(unknown)?;
                 let quantity = quantity(rest).ok_or_else(unknown)?;
@@ -100,16 +87,21 @@ impl Channel {
         }
     }
 
+    fn end_tension(line: String, end: LineEnd) -> Channel {
+        Channel::Node {
+            line,
+            node: NodePlace::End(end),
+            quantity: Quantity::Tension,
+        }
+    }
+
     /// Returns whether a name is that of the tension of a line.
     pub(super) fn is_tension(name: &str) -> bool {
-        matches!(
-            Channel::parse(name),
-            Ok(Channel::EndTension { .. }
-                | Channel::Node {
-                    quantity: Quantity::Tension,
-                    ..
-                })
-        )
+        let quantity = match Channel::parse(name) {
+            Ok(Channel::Node { quantity, .. }) => Some(quantity),
+            _ => None,
+        };
+        quantity == Some(Quantity::Tension)
     }
 
     /// Checks that the scene has the line, point or node of the channel.
@@ -118,7 +110,6 @@ impl Channel {
     /// The line, point or node that the scene lacks.
     pub fn check(&self, scene: &Scene) -> Result<(), String> {
         match self {
-            Channel::EndTension { line, .. } => find_line(scene, line).map(|_| ()),
             Channel::Node { line, node, .. } => {
                 let line = find_line(scene, line)?;
                 match (node, line.element_count()) {
@@ -199,7 +190,7 @@ mod tests {
     fn the_names_that_decks_ask_for_are_understood() {
         let end = |name: &str, line: &str, end| {
             let line = line.to_string();
-            assert_eq!(Channel::parse(name), Ok(Channel::EndTension { line, end }));
+            assert_eq!(Channel::parse(name), Ok(Channel::end_tension(line, end)));
         };
         end("FairTen1", "line1", LineEnd::B);
         end("ANCHTEN12", "line12", LineEnd::A);

@@ -208,6 +208,11 @@ fn check_writes_the_elements_of_sections_too() {
             "lines[0].sections[2].elements = 2",
         ],
     );
+    let held = folder.read("scene.toml");
+    assert!(
+        held.contains("{ type = \"chain\", length = 150.0, elements = 2 }"),
+        "{held}"
+    );
     assert_eq!(folder.columns("run scene.toml -o out"), before);
 }
 
