@@ -338,7 +338,8 @@ pub fn in_series(halves: [(f64, f64); 2]) -> f64 {
 /// B [N m] of a clamp at the end of a chain of equal segments of a length [m] and EI [N m²] under a tension [N].
 pub fn of_clamp(stiffness: f64, length: f64, tension: f64) -> f64 {
     let u = 0.5 * length * (tension / stiffness).sqrt();
-    2.0 * stiffness / length / (1.0 - u / (1.0 + (1.0 + u * u).sqrt()))
+    let cosh = (1.0 + u * u).sqrt();
+    2.0 * stiffness / length * (1.0 + cosh) / (1.0 + 1.0 / (cosh + u)) // without the cancellation of 1 − tanh ½x
 }
 
 /// Greatest push [N] that a segment of a length [m] and EI [N m²] carries.
@@ -508,6 +509,7 @@ mod tests {
             assert_relative_eq!(moment, (ei * tension).sqrt() * angle, max_relative = 1e-9);
         }
         assert_relative_eq!(of_clamp(ei, 0.5, 0.0), 4.0 * ei);
+        assert_relative_eq!(of_clamp(1.0, 0.5, 1e24), 1e12, max_relative = 1e-11);
     }
 
     #[test]
