@@ -124,7 +124,8 @@ impl Simulation {
     fn start(mut model: Model, shapes: start::Shapes) -> Result<Simulation, Error> {
         let begin = |model: &Model| start::begin(model, 0.0, Inputs::new(model), false, shapes);
         let (mut snapshot, mut work) = begin(&model)?;
-        if start::stiffen_clamps(&mut model, &snapshot.state) {
+        let rests = |_: usize, line: &Line| line.initial == InitialShape::Static;
+        if start::stiffen_clamps(&mut model, &snapshot.state, rests) {
             (snapshot, work) = begin(&model)?;
         }
         let model = Arc::new(model);
@@ -153,6 +154,11 @@ impl Simulation {
         still.snapshot.inputs = Inputs::new(&self.model);
         make_still(Arc::make_mut(&mut still.model));
         still.begin(0.0, false, start::Shapes::Equilibrium)?;
+        let had_shape = |index: usize, _: &Line| self.model.lines[index].initial != InitialShape::Static;
+        let model = Arc::make_mut(&mut still.model);
+        if start::stiffen_clamps(model, &still.snapshot.state, had_shape) {
+            still.begin(0.0, false, start::Shapes::Equilibrium)?;
+        }
         Ok(still)
     }
 

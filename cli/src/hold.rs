@@ -88,18 +88,22 @@ fn put(table: &mut dyn TableLike, at: &str, key: &str, item: &Item) -> String {
         value.decor_mut().clear();
     }
     let assignment = format!("{at}.{key} = {item}");
-    if table.get(key).is_none()
-        && let Some(last) = table.iter_mut().last().and_then(|(_, last)| last.as_value_mut())
-        && last
-            .decor()
-            .suffix()
-            .and_then(RawString::as_str)
-            .is_some_and(|after| after.trim().is_empty())
-    {
-        last.decor_mut().set_suffix(""); // in an inline table, the blank before the closing brace
+    if table.get(key).is_none() {
+        close_up(table);
     }
     table.insert(key, item);
     assignment
+}
+
+/// Removes the blank behind the last value of a table: before the brace that closes an inline table, and so before the comma of a key to come.
+fn close_up(table: &mut dyn TableLike) {
+    let Some(last) = table.iter_mut().last().and_then(|(_, item)| item.as_value_mut()) else {
+        return;
+    };
+    let behind = last.decor().suffix().and_then(RawString::as_str);
+    if behind.is_some_and(|behind| behind.trim().is_empty()) {
+        last.decor_mut().set_suffix("");
+    }
 }
 
 /// Table of section `k` of line `i` of a scene.

@@ -80,7 +80,7 @@ pub struct Mesh {
     pub elements: usize,
     /// Estimated error with them [-].
     pub error: f64,
-    /// True if a trial was run on this mesh; false if it was extrapolated.
+    /// True if a trial was run on this mesh, or none is needed; false if it was extrapolated, or no trial could be run.
     pub tried: bool,
     /// Elements of sections that are one element on all levels [-]; none where their error could not be tried.
     pub short_sections: Option<usize>,
@@ -177,12 +177,12 @@ impl Discretisation {
             });
             let unknown = match mesh.short_sections {
                 _ if mesh.is_unknown() => Some("this mesh"),
-                None => Some("sections that are one element long"),
+                None => Some("one element in each of the short sections"),
                 Some(_) => None,
             };
-            let unknown = unknown.map(|part| {
+            let unknown = unknown.map(|mesh_or_part| {
                 format!(
-                    "{}: the error of {part} is not known, as no trial of it could be run; compare with more `elements` there",
+                    "{}: the error with {mesh_or_part} is unknown, since no trial could be run; compare with a run with more `elements`",
                     self.names(&[mesh])
                 )
             });
@@ -231,7 +231,7 @@ impl Discretisation {
                 "{elements} elements in sections that are one element on coarse and fine meshes alike, of which these trials do not give the error"
             )),
             None => said.push(
-                "these trials do not give the error of sections that are one element on coarse and fine meshes alike, and no others could be run"
+                "these trials do not give the error of sections that are one element on coarse and fine meshes alike, and no further trial could be run"
                     .to_string(),
             ),
         }
@@ -243,10 +243,7 @@ impl Discretisation {
             ));
         }
         if mesh.is_unknown() {
-            said.push(format!(
-                "{} elements a line alone {target}: no trial of that could be run",
-                mesh.elements
-            ));
+            said.push("no trial of this mesh could be run: its error is unknown".to_string());
         } else if !mesh.tried {
             said.push(format!(
                 "that is extrapolated, trials being bounded: about {} is expected",

@@ -64,7 +64,8 @@ impl Bending {
         }
     }
 
-    /// Sets the joint of the clamp at an end for the tension [N] and the unstretched length [m] of the segment there; returns whether there is one.
+    /// Sets stiffness and damping of the clamp at an end for the tension [N] and the unstretched length [m] of the segment there; returns whether there is
+    /// one.
     pub fn stiffen_clamp(&mut self, end: End, tension: f64, length: f64) -> bool {
         let (node, segment) = match end {
             End::A => (0, 0),
@@ -72,8 +73,12 @@ impl Bending {
         };
         let is_clamped = self.joint[node] > 0.0;
         if is_clamped {
-            self.joint[node] = of_clamp(self.stiffness[segment], length, tension);
-            self.length[node] = self.stiffness[segment] / self.joint[node];
+            let growth = of_clamp(self.stiffness[segment], length, tension) / self.joint[node];
+            self.joint[node] *= growth;
+            self.length[node] /= growth;
+            if let Some(damping) = &mut self.damping {
+                damping[node] *= growth;
+            }
         }
         is_clamped
     }
@@ -184,9 +189,9 @@ mod tests {
     }
 
     #[test]
-    fn tension_makes_the_joint_of_a_clamp_stiffer_and_its_length_shorter() {
+    fn tension_makes_a_clamp_stiffer_and_its_length_shorter_and_keeps_its_damping_in_proportion() {
         let clamps = [None, Some(Vector3::x())];
-        let mut bending = Bending::new(&[1.0, 2.0], vec![4.0; 2], &[0.0; 2], clamps);
+        let mut bending = Bending::new(&[1.0, 2.0], vec![4.0; 2], &[0.5; 2], clamps);
         assert!(!bending.stiffen_clamp(End::A, 100.0, 1.0));
         assert!(bending.stiffen_clamp(End::B, 0.0, 2.0));
         assert_eq!(
@@ -200,6 +205,8 @@ mod tests {
             max_relative = 1e-14
         );
         assert_relative_eq!(bending.joint[2] * bending.length[2], 4.0);
+        let damping = bending.damping.unwrap()[2];
+        assert_relative_eq!(damping, 0.5 * bending.joint[2], max_relative = 1e-14);
     }
 
     #[test]

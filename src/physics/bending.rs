@@ -13,15 +13,15 @@
 //! Two directions that meet where stiffness changes bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂); B = 0 where one of
 //! them is a hinge. A clamp is a fixed direction.
 //!
-//! Under a tension T a line leaves a clamp in a bend of length λ = √(EI/T), M = EI Θ/λ at the angle Θ between the clamp and the line beyond. In
-//! a chain of equal segments of length l the directions approach that of the line beyond by a factor r from one to the next, r + 1/r = 2 + l²/λ², which is
-//! r = e^(−2x) with sinh x = l/2λ = u. The joints beyond the clamp act on it as a stiffness (EI/l)(1/r − 1) in series with its own, which makes M that
-//! of the line on every mesh if
+//! Under a tension T a line leaves a clamp in a bend of length λ = √(EI/T), with the moment M = EI Θ/λ at the angle Θ between the clamp and the line
+//! beyond. In a chain of equal segments of length l, each direction deviates from that of the line beyond by a factor r less than the one before,
+//! r + 1/r = 2 + l²/λ²; that is r = e^(−2x) with sinh x = l/2λ = u. The chain acts on the clamp as a stiffness (EI/l)(1/r − 1) in series with B,
+//! and M is that of the line on every mesh if
 //!
 //! B = (2EI/l)/(1 − tanh ½x),   tanh ½x = u/(1 + √(1 + u²)):
 //!
-//! 2EI/l for short segments, which is half a segment, and √(EI T) for long ones. T is that at rest: where it becomes T', M misses by a
-//! part of 0.05 (l/λ)² ln(T'/T) where l < λ, of 0.15 ln(T'/T) at l = 2λ.
+//! 2EI/l, that of half a segment, for short segments, and √(EI T) for long ones. T is the tension at rest. At another tension T', M has a relative
+//! error of 0.05 (l/λ)² ln(T'/T) where l < λ, and of 0.15 ln(T'/T) at l = 2λ.
 //!
 //! A moment M on an end of a line turns its last segment, of the end-to-end vector e and direction q. A turn δθ = q ×
 //! δq across the line takes the work M·δθ = (M × q)·δe/l. M is therefore a couple of forces ± f on the segment's two

@@ -85,11 +85,11 @@ pub(super) fn begin(
     ))
 }
 
-/// Sets the joints of the clamps of lines at rest for the tension there; returns whether there are any.
-pub(super) fn stiffen_clamps(model: &mut Model, state: &State) -> bool {
+/// Sets the joints of the clamps of lines, where `rests`, for their tension in a state of rest; returns whether there are any.
+pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
     let mut any = false;
-    for (line, shape) in model.lines.iter_mut().zip(&state.lines) {
-        if line.initial != InitialShape::Static || line.bending.is_none() {
+    for (index, (line, shape)) in model.lines.iter_mut().zip(&state.lines).enumerate() {
+        if line.bending.is_none() || !rests(index, line) {
             continue;
         }
         for (end, segment) in [(End::A, 0), (End::B, line.segment_count() - 1)] {

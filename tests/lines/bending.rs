@@ -749,6 +749,26 @@ fn the_power_cable_rests_in_a_lazy_wave_and_stays_there() {
     assert!(drift < 1e-7, "{drift} m");
 }
 
+#[test]
+fn a_clamp_is_as_stiff_in_the_equilibrium_of_a_run_from_a_given_shape_as_in_statics() {
+    let mut scene = draft(
+        "line_types.cable = { mass = 20.0, diameter = 0.1, axial_stiffness = 1.0e7, bending_stiffness = 1.0e3 }",
+    )
+    .fixed("wall", [0.0, 0.0, 0.0])
+    .fixed("post", [9.9, 0.0, 0.0])
+    .line("cable", ["wall", "post"], "cable", 10.0, Some(10))
+    .scene();
+    scene.lines[0].clamped_a = Some([1.0, 0.0, 0.3]);
+    let moment = |simulation: &Simulation| simulation.bending(0).unwrap()[0].moment;
+    let hung = moment(&Simulation::at_rest(&scene).unwrap());
+    scene.lines[0].initial = InitialShape::Straight;
+    let laid = moment(&Simulation::at_rest(&scene).unwrap());
+    let settled = moment(&Simulation::new(&scene).unwrap().in_equilibrium().unwrap());
+    for found in [laid, settled] {
+        assert!((found / hung - 1.0).abs() < 1e-9, "{found}, {hung}");
+    }
+}
+
 /// Moment at the hang-off of the power cable with `elements` elements in the last 90 m [N m], at rest and the greatest from 15 to 30 s.
 fn hang_off_moments(elements: usize) -> [f64; 2] {
     let mut scene = shipped("power_cable");

@@ -546,10 +546,13 @@ fn a_mesh_of_which_no_trial_could_be_run_is_told() {
     scene.line_types.get_mut("polyester").unwrap().damping_ratio = None;
     scene.solver.tolerance = 0.002;
     let found = discretisation::select(&scene).unwrap();
-    assert_says(&found.in_words().join("\n"), &["no trial of that could be run"]);
+    assert_says(
+        &found.in_words().join("\n"),
+        &["no trial of this mesh could be run"],
+    );
     assert_says(
         &found.shortfalls().join("\n"),
-        &["leg: the error of this mesh is not known"],
+        &["leg: the error with this mesh is unknown"],
     );
 }
 

@@ -44,7 +44,7 @@ pub(super) fn stiffest_joint(line: &Line) -> f64 {
     let Some(bending) = &line.bending else {
         return 0.0;
     };
-    let joints = bending.joint.iter().zip(&bending.length);
+    let joints = bending.joint.iter().zip(&line.nodes.length);
     let stiffness = |(joint, length): (&f64, &f64)| 16.0 * joint / (length * length);
     joints.map(stiffness).fold(0.0, f64::max)
 }
