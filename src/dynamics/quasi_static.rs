@@ -7,7 +7,7 @@
 //! and drag is small compared with weight.
 //!
 //! A step is one equilibrium. It is halved where none is found. Where an energy balance is asked for and the mean of the forces before and after a step gives
-//! too rough a work, equilibria between these are found for the balance alone.
+//! the work too roughly, equilibria in between are found for the balance alone.
 
 use nalgebra::Vector3;
 
