@@ -9,6 +9,7 @@
 
 mod coupling;
 mod dependencies;
+mod derivatives;
 mod flow;
 mod parameters;
 mod profile;

@@ -200,6 +200,18 @@ int moorline_set(moorline_simulation simulation,
 // Gets variables. Results have values from start on.
 int moorline_get(moorline_simulation simulation, const uint32_t *references, double *values, size_t count);
 
+// Gives the derivatives of `count` outputs by an input, a displacement or a velocity, at the end of the last step. The scene asks for them with
+// `derivatives = true` in `[output]`.
+int moorline_derivatives(moorline_simulation simulation,
+                         const uint32_t *outputs,
+                         double *values,
+                         size_t count,
+                         uint32_t input);
+
+// Gives the rates of `count` outputs in time, per second, at the end of the last step. The scene asks for them with `derivatives = true` in
+// `[output]`.
+int moorline_rates(moorline_simulation simulation, const uint32_t *outputs, double *values, size_t count);
+
 // Gives the number of inputs.
 int moorline_input_count(moorline_simulation simulation, size_t *count);
 

@@ -253,6 +253,24 @@ impl Session {
         Ok(())
     }
 
+    /// Derivatives of outputs by an input.
+    pub(crate) fn derivatives(&self, outputs: &[u32], input: u32, values: &mut [f64]) -> Outcome {
+        let (outputs, input) = (self.variables_of(outputs)?, self.variable(input)?);
+        let found = Interface::derivative(&outputs, input, self.simulation()?);
+        put_derivatives(found, values)
+    }
+
+    /// Rates of outputs in time.
+    pub(crate) fn rates(&self, outputs: &[u32], values: &mut [f64]) -> Outcome {
+        let found = Interface::rates(&self.variables_of(outputs)?, self.simulation()?);
+        put_derivatives(found, values)
+    }
+
+    fn variables_of(&self, references: &[u32]) -> Outcome<Vec<&Variable>> {
+        let variables = references.iter().map(|&reference| self.variable(reference));
+        variables.collect()
+    }
+
     fn value(&self, variable: &Variable) -> Outcome<f64> {
         match &variable.binding {
             Binding::Displacement { body, axis } => {
@@ -575,6 +593,14 @@ fn moved(scene: &Scene, model: &Model) -> Vec<Moved> {
         Body::Vessel(_) => true,
     };
     bodies.filter(is_moved).collect()
+}
+
+/// Copies derivatives into the room for them.
+fn put_derivatives(found: Result<Vec<f64>, String>, values: &mut [f64]) -> Outcome {
+    let found = found.map_err(|problem| Failure::new(MOORLINE_NOT_AVAILABLE, problem))?;
+    check_lengths(found.len(), values.len())?;
+    values.copy_from_slice(&found);
+    Ok(())
 }
 
 fn check_lengths(wanted: usize, given: usize) -> Outcome {

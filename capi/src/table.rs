@@ -140,6 +140,39 @@ pub unsafe extern "C" fn moorline_get(
     })
 }
 
+/// Gives the derivatives of `count` outputs by an input, a displacement or a velocity, at the end of the last step. The scene asks for them with
+/// `derivatives = true` in `[output]`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn moorline_derivatives(
+    simulation: moorline_simulation,
+    outputs: *const u32,
+    values: *mut f64,
+    count: usize,
+    input: u32,
+) -> c_int {
+    edge::call(simulation, "moorline_derivatives", |session| {
+        // SAFETY: two arrays of `count` values.
+        let (outputs, values) = unsafe { (edge::slice(outputs, count)?, edge::slice_mut(values, count)?) };
+        session.derivatives(outputs, input, values)
+    })
+}
+
+/// Gives the rates of `count` outputs in time, per second, at the end of the last step. The scene asks for them with `derivatives = true` in
+/// `[output]`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn moorline_rates(
+    simulation: moorline_simulation,
+    outputs: *const u32,
+    values: *mut f64,
+    count: usize,
+) -> c_int {
+    edge::call(simulation, "moorline_rates", |session| {
+        // SAFETY: two arrays of `count` values.
+        let (outputs, values) = unsafe { (edge::slice(outputs, count)?, edge::slice_mut(values, count)?) };
+        session.rates(outputs, values)
+    })
+}
+
 /// Gives the number of inputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_input_count(simulation: moorline_simulation, count: *mut usize) -> c_int {

@@ -3,6 +3,7 @@
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::ptr::{null, null_mut, without_provenance_mut};
 
+use moorline::interface::{Interface, Layout};
 use moorline::math::random::Random;
 use moorline::scene::Scene;
 use moorline::simulation::{Simulation, WaterFlow};
@@ -35,6 +36,14 @@ unsafe extern "C" {
     ) -> c_int;
     fn moorline_set(simulation: Handle, references: *const u32, values: *const f64, count: usize) -> c_int;
     fn moorline_get(simulation: Handle, references: *const u32, values: *mut f64, count: usize) -> c_int;
+    fn moorline_derivatives(
+        simulation: Handle,
+        outputs: *const u32,
+        values: *mut f64,
+        count: usize,
+        input: u32,
+    ) -> c_int;
+    fn moorline_rates(simulation: Handle, outputs: *const u32, values: *mut f64, count: usize) -> c_int;
     fn moorline_output_count(simulation: Handle, count: *mut usize) -> c_int;
     fn moorline_get_outputs(simulation: Handle, values: *mut f64, count: usize) -> c_int;
     fn moorline_set_inputs(simulation: Handle, values: *const f64, count: usize) -> c_int;
@@ -190,6 +199,61 @@ fn forces_and_nodes_are_those_of_the_library_in_rust() {
             .chunks(3)
             .eq(profile.iter().map(|node| [node.x, node.y, node.z]))
     );
+}
+
+#[test]
+fn derivatives_and_rates_are_those_of_the_library_in_rust() {
+    let text = format!("{SCENE}\n[output]\nderivatives = true\n");
+    let scene = Scene::from_toml(&text).unwrap();
+    let (simulation, mut mooring) = (read(&text), Simulation::new(&scene).unwrap());
+    mooring.restart(0.0).unwrap();
+    let names = ["hull.fx", "hull.fz", "hull.my"];
+    let references = names.map(|name| find(simulation, name));
+    let (by, release) = (
+        find(simulation, "hull.pitch"),
+        find(simulation, "solver.substeps"),
+    );
+    let (mut derivatives, mut rates) = ([0.0; 3], [0.0; 3]);
+    // SAFETY: arrays of three values.
+    unsafe {
+        assert_eq!(
+            moorline_rates(simulation, references.as_ptr(), rates.as_mut_ptr(), 3),
+            MOORLINE_WRONG_PHASE
+        );
+        assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK);
+        sway(simulation, 0, 3);
+        let (from, to) = (references.as_ptr(), derivatives.as_mut_ptr());
+        assert_eq!(moorline_derivatives(simulation, from, to, 3, by), MOORLINE_OK);
+        assert_eq!(
+            moorline_rates(simulation, from, rates.as_mut_ptr(), 3),
+            MOORLINE_OK
+        );
+        assert_eq!(
+            moorline_derivatives(simulation, from, to, 3, release),
+            MOORLINE_NOT_AVAILABLE
+        );
+        assert!(
+            message().contains("displacements and velocities"),
+            "{}",
+            message()
+        );
+        assert_eq!(moorline_close(simulation), MOORLINE_OK);
+    }
+    for k in 0..3 {
+        let size = 1.0 - (0.05 * f64::from(k)).cos();
+        mooring.set_displacement(3, [size, 0.0, 0.0]);
+        mooring.set_pose(0, [size, 0.0, 0.0, 0.05 * size, 0.0, 0.0]);
+        mooring.advance(0.05).unwrap();
+    }
+    let interface = Interface::new(&scene, mooring.model(), Layout::Scalars).unwrap();
+    let variable = |reference: u32| interface.variable(reference).unwrap();
+    let outputs = references.map(variable);
+    assert_eq!(
+        derivatives[..],
+        Interface::derivative(&outputs, variable(by), &mooring).unwrap()
+    );
+    assert_eq!(rates[..], Interface::rates(&outputs, &mooring).unwrap());
+    assert!(derivatives.iter().all(|value| *value != 0.0), "{derivatives:?}");
 }
 
 #[test]

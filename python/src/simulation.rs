@@ -188,6 +188,23 @@ impl Table {
         })
     }
 
+    /// The variable of a name.
+    fn named(&self, name: &str) -> Result<&Variable, Failure> {
+        let row = self.rows.get(name).map(|&row| self.variable(row));
+        let names = || {
+            self.interface
+                .variables()
+                .iter()
+                .map(|variable| variable.name.as_str())
+        };
+        row.ok_or_else(|| parameters::unknown(name, "variable", names()))
+    }
+
+    /// The variables of names.
+    fn all_named(&self, names: &[String]) -> Result<Vec<&Variable>, Failure> {
+        names.iter().map(|name| self.named(name)).collect()
+    }
+
     fn slot(&self, body: Body) -> usize {
         match body {
             Body::Point(point) => point,
@@ -356,8 +373,7 @@ impl Simulation {
     }
 
     /// Value of a scalar output now.
-    fn output(&self, mooring: &Mooring, row: usize) -> Result<f64, Failure> {
-        let variable = self.table.variable(row);
+    fn output(&self, mooring: &Mooring, variable: &Variable) -> Result<f64, Failure> {
         let mut value = [f64::NAN];
         let read = Interface::read(variable, mooring, &mut value);
         read.map_err(|problem| Failure::Input(variable.name.clone(), problem))?;
@@ -493,13 +509,7 @@ impl Simulation {
 
     /// An input, output or parameter by name.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let Some(&row) = self.table.rows.get(name) else {
-            let names = self.table.interface.variables().iter();
-            return Err(
-                parameters::unknown(name, "variable", names.map(|variable| variable.name.as_str())).into(),
-            );
-        };
-        let variable = self.table.variable(row);
+        let variable = self.table.named(name)?;
         let value = match &variable.binding {
             Binding::Displacement { body, axis } => self.given.bodies[self.table.slot(*body)].0[*axis],
             Binding::Velocity { body, axis } => {
@@ -516,7 +526,7 @@ impl Simulation {
                 let value = parameter.value(&self.table.loaded.scene);
                 value.expect("the table has only parameters of the scene")
             }
-            _ => self.output(&self.mooring.read(), row)?,
+            _ => self.output(&self.mooring.read(), variable)?,
         };
         Ok(match variable.kind {
             Kind::Float64 => value.into_pyobject(py)?.into_any(),
@@ -546,10 +556,42 @@ impl Simulation {
         }
         let mooring = self.mooring.read();
         for (value, &row) in values.iter_mut().zip(rows) {
-            *value = self.output(&mooring, row)?;
+            *value = self.output(&mooring, self.table.variable(row))?;
         }
         drop(writable);
         Ok(out)
+    }
+
+    /// Derivatives of outputs by inputs, displacements and velocities at the end of the last step: a row an output, a column an input. The
+    /// scene asks for them with `derivatives = true` in `[output]`.
+    fn derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        outputs: Vec<String>,
+        inputs: Vec<String>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (rows, knowns) = (self.table.all_named(&outputs)?, self.table.all_named(&inputs)?);
+        let columns = py.detach(|| {
+            let mooring = self.mooring.read();
+            let columns = knowns
+                .iter()
+                .map(|known| Interface::derivative(&rows, known, &mooring));
+            columns.collect::<Result<Vec<_>, String>>()
+        });
+        let columns = columns.map_err(|problem| Failure::of_argument("derivatives", problem))?;
+        let matrix = PyArray2::zeros(py, [outputs.len(), inputs.len()], false);
+        for (index, value) in matrix.try_readwrite()?.as_array_mut().indexed_iter_mut() {
+            *value = columns[index.1][index.0];
+        }
+        Ok(matrix)
+    }
+
+    /// Rates of outputs in time, per second, at the end of the last step. The scene asks for them with `derivatives = true` in `[output]`.
+    fn rates<'py>(&self, py: Python<'py>, outputs: Vec<String>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let rows = self.table.all_named(&outputs)?;
+        let rates = py.detach(|| Interface::rates(&rows, &self.mooring.read()));
+        let rates = rates.map_err(|problem| Failure::of_argument("rates", problem))?;
+        Ok(PyArray1::from_vec(py, rates))
     }
 
     /// Positions of the nodes of a line from end A to end B [m], a row a node; written into `out` where that is given.

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import moorline
+from conftest import CHAIN
 
 
 def steps(simulation, count, start=0):
@@ -81,6 +82,37 @@ def stream(simulation, count, give):
         simulation.advance({"fairlead.x": 0.2 * simulation.time}, 0.1)
         rows.append(simulation.outputs())
     return np.array(rows)
+
+
+def test_derivatives_are_those_of_steps_from_a_saved_state_and_rates_those_of_the_next_step():
+    asked = CHAIN + 'derivatives = true\n[solver]\ninput_reconstruction = "interpolate"\n'
+    simulation = moorline.Simulation(moorline.Scene.from_toml(asked))
+    outputs, inputs = ["fairlead.fx", "fairlead.fz"], ["fairlead.x", "fairlead.vz"]
+    values = {"fairlead.x": 0.02, "fairlead.z": 0.01, "fairlead.vx": 0.4, "fairlead.vz": 0.2}
+    simulation.advance(values, 0.05)
+    start = simulation.save()
+
+    def stepped(change, step=0.05):
+        simulation.restore(start)
+        simulation.advance(values | change, step)
+        return np.array([simulation[name] for name in outputs])
+
+    by_hand = [stepped({name: values[name] + 1e-6}) - stepped({name: values[name] - 1e-6}) for name in inputs]
+    stepped({})
+    derivatives, rates = simulation.derivatives(outputs, inputs), simulation.rates(outputs)
+    assert derivatives.shape == (2, 2) and rates.shape == (2,)
+    assert np.allclose(derivatives, np.array(by_hand).T / 2e-6, rtol=1e-5)
+    assert np.all(np.isfinite(rates)) and np.any(rates != 0.0)
+    with pytest.raises(moorline.InputError, match="only outputs of type Float64"):
+        simulation.derivatives(["solver.substeps"], inputs)
+    with pytest.raises(moorline.InputError, match="did you mean|fairlead.fx"):
+        simulation.derivatives(["fairlead.f"], inputs)
+
+
+def test_without_its_key_a_scene_has_no_derivatives(chain):
+    simulation = moorline.Simulation(chain)
+    with pytest.raises(moorline.InputError, match="`derivatives` in"):
+        simulation.rates(["fairlead.fx"])
 
 
 def test_a_flow_given_as_arrays_is_that_of_its_inputs_by_name_and_is_saved(chain):

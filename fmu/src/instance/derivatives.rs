@@ -1,11 +1,9 @@
 //! Derivatives of outputs: by the motion of the bodies at the end of the last step, and in time.
 //!
-//! Sources: FMI 2.0.4 section 2.1.9 and 4.2.2, FMI 3.0.2 section 2.2.11 and 4.2. An unknown is any output of type Float64; a known is a
-//! displacement or a velocity of a point or vessel, at the end of the step just made, whether the host gave it for that time
-//! (`input_reconstruction = "interpolate"`) or it was extrapolated.
+//! Sources: FMI 2.0.4 section 2.1.9 and 4.2.2, FMI 3.0.2 section 2.2.11 and 4.2. Unknowns and knowns are the outputs and inputs of
+//! [`Interface::derivative`].
 
-use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
-use moorline::simulation::{EndMotion, Simulation};
+use moorline::interface::{Interface, Variable};
 
 use super::{Instance, Outcome, Refusal};
 use crate::saved::Phase;
@@ -62,8 +60,7 @@ impl Instance {
         }
         let rows = self.outputs(references, values.len())?;
         let simulation = self.simulation.as_ref().ok_or(NO_SIMULATION)?;
-        let rates = simulation.rates(|simulation| read(&rows, simulation))?;
-        values.copy_from_slice(&rates);
+        values.copy_from_slice(&Interface::rates(&rows, simulation)?);
         Ok(())
     }
 
@@ -82,22 +79,15 @@ impl Instance {
         let rows = self.outputs(unknowns, size)?;
         let simulation = self.simulation.as_ref().ok_or(NO_SIMULATION)?;
         for (number, &known) in knowns.iter().enumerate() {
-            let motion = end_motion(Self::variable(&self.interface, known)?)?;
-            let column = simulation.derivative(motion, |simulation| read(&rows, simulation))?;
-            take(number, &column);
+            let known = Self::variable(&self.interface, known)?;
+            take(number, &Interface::derivative(&rows, known, simulation)?);
         }
         Ok(())
     }
 
-    /// Outputs by their references, which have `size` values together.
+    /// Variables by their references, which have `size` values together.
     fn outputs(&self, references: &[u32], size: usize) -> Result<Vec<&Variable>, Refusal> {
-        let row = |&reference: &u32| match Self::variable(&self.interface, reference)? {
-            row if row.causality == Causality::Output && row.kind == Kind::Float64 => Ok(row),
-            row => Err(Refusal(format!(
-                "{}: only outputs of type Float64 have derivatives",
-                row.name
-            ))),
-        };
+        let row = |&reference: &u32| Self::variable(&self.interface, reference);
         let rows: Vec<&Variable> = references.iter().map(row).collect::<Result<_, _>>()?;
         count("value", size, rows.iter().map(|row| row.size()).sum())?;
         Ok(rows)
@@ -106,37 +96,6 @@ impl Instance {
 
 /// Reason for which there is nothing to differentiate.
 const NO_SIMULATION: &str = "out of order: derivatives are available from initialization mode on";
-
-/// Component of the motion that an input gives.
-fn end_motion(variable: &Variable) -> Result<EndMotion, Refusal> {
-    let (body, axis, is_velocity) = match variable.binding {
-        Binding::Displacement { body, axis } => (body, axis, false),
-        Binding::Velocity { body, axis } => (body, axis, true),
-        _ => {
-            return Err(Refusal(format!(
-                "{}: derivatives are with respect to displacements and velocities of points and vessels",
-                variable.name
-            )));
-        }
-    };
-    Ok(EndMotion {
-        body,
-        axis,
-        is_velocity,
-    })
-}
-
-/// Values of outputs, one after the other.
-fn read(rows: &[&Variable], simulation: &Simulation) -> Result<Vec<f64>, String> {
-    let mut values = vec![0.0; rows.iter().map(|row| row.size()).sum()];
-    let mut rest = &mut values[..];
-    for row in rows {
-        let (own, others) = rest.split_at_mut(row.size());
-        Interface::read(row, simulation, own)?;
-        rest = others;
-    }
-    Ok(values)
-}
 
 /// Refuses another number of values than there are.
 fn count(what: &str, given: usize, wanted: usize) -> Outcome {

@@ -109,6 +109,11 @@ class Simulation:
         """An input, output or parameter by name."""
     def outputs(self, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """All outputs in the order of `output_names`; written into `out` where that is given."""
+    def derivatives(self, outputs: Sequence[str], inputs: Sequence[str]) -> NDArray[np.float64]:
+        """Derivatives of outputs by inputs, displacements and velocities at the end of the last step: a row an output, a column an input. The
+        scene asks for them with `derivatives = true` in `[output]`."""
+    def rates(self, outputs: Sequence[str]) -> NDArray[np.float64]:
+        """Rates of outputs in time, per second, at the end of the last step. The scene asks for them with `derivatives = true` in `[output]`."""
     def positions(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Positions of the nodes of a line from end A to end B [m], a row a node; written into `out` where that is given."""
     def velocities(self, line: str, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
