@@ -1,26 +1,33 @@
 #!/usr/bin/env python3
 """Run MoorDyn and CableDyn over one scene at their own best settings, for `moorline accuracy --peers`.
 
-The conversation is in lines of JSON. The first line on standard input describes a scene of one line whose upper end is
+The conversation is in lines of JSON. The first line on standard input describes a scene of lines, some of whose ends are
 driven; the first answer lists the runs of the ladder. Every further line asks for one of them and gets its results.
 Everything else goes to standard error.
 
 Input (SI units)
-    name, gravity [m/s²], density [kg/m³], depth [m] or null, seabed {stiffness [Pa/m], damping [Pa·s/m]} or null,
-    line {length [m], mass [kg/m], diameter [m], axial_stiffness [N], axial_damping [N·s], drag_normal, drag_tangential,
-    added_mass_normal, added_mass_tangential [-]}, anchor [m], fairlead [m],
-    harmonics {x, y, z: [[amplitude [m], period [s], phase [rad]], ...], ramp [s]}, duration [s], interval [s],
-    elements [-], hosts, the communication steps [s] of hosts (none if absent), and time_limit_seconds [s], the CPU time
-    that all passes of a run may take. A density of null is a line in air.
+    name, gravity [m/s²], density [kg/m³], null in air, seabed {depth [m], stiffness [Pa/m], damping [Pa·s/m]} or null,
+    lies_on_seabed, whether a line lies on it at rest, points, lines, duration [s], interval [s], elements [-] of the
+    longest line, hosts, the communication steps [s] of hosts (none if absent), and time_limit_seconds [s], the CPU time
+    that all passes of a run may take.
+    A point has kind (fixed, coupled, that is driven, or free), position at rest [m], mass [kg], volume [m³], drag_area
+    [m²], added_mass [-] and, if it is driven, motion: position [m] and attitude [rad] of a body at rest, the place of
+    the point on it, arm [m], sines of x, y, z, roll, pitch, yaw, each a list of [amplitude [m, rad], period [s], phase
+    [rad]], and ramp [s]. A driven point has one line and no mass.
+    A line has from and to, numbers of points, driven, its driven end, a, b or null, has_surface, whether it loses the
+    water above z = 0, clamped, the directions [-] of clamped ends or nulls, and sections, each with start, the place of
+    its first node at rest [m], length [m], mass [kg/m], diameter [m], axial_stiffness [N], axial_damping [N·s],
+    bending_stiffness [N·m²], drag_normal, drag_tangential, added_mass_normal and added_mass_tangential [-].
 First answer
     runs, each with peer, label, host, deck, and family, a name that runs share which differ in their mesh alone, from
     coarse to fine. host is null for a run of the offline ladder, or the one of hosts that the run is in. deck is the
-    number of elements where the settings are those of a deck, else null.
+    number of elements where the settings are those of a deck, else null. left_out: peers that cannot run the scene,
+    with the reason.
 Question
     run, its number from 0, and read, whether its results are wanted beside its cost.
 Answer
-    Either cpu_seconds [s] and, where wanted, tension [N] at the fairlead and mid [m], the position at s = L/2, both at
-    interval, 2·interval, ...; or failed, the reason.
+    Either cpu_seconds [s] and, where wanted, tension [N] at the driven end of every line that has one, and mid [m], the
+    position at s = L/2 of every line, both at interval, 2·interval, ...; or failed, the reason.
 
 Offline and in a host
     Offline, the peer chooses its communication step: that of its path and of its forces. In a host, the communication
@@ -72,6 +79,10 @@ Decks as they come
     MoorDyn's RK2 with an internal step of 1 ms, and CableDyn without options of its solver (a tolerance of 1e-8,
     ρ∞ = 0.4, new tangents in every iteration) with 1/180 of the motion's period, as it has no default step.
 
+Systems
+    A point that rides on a vessel is a driven point with the path of the rigid body. MoorDyn has a line for every
+    section, joined by free points without mass. The peers that cannot compute a scene are left out, see beyond().
+
 Both get a water depth (CableDyn drops drag and added mass without one) that a scene without a seabed never reaches,
 and where the motion reaches z = 0 the whole scene is lowered by 10 m (MoorDyn drops the water above), which changes
 nothing in still water.
@@ -101,8 +112,6 @@ WALL = 20.0
 LOWERED = 10.0
 # What stands for air's density where CableDyn wants a positive one [kg/m³].
 AIR = 1e-6
-# A line shorter than this part [-] of one that just leaves the seabed at its anchor is taken to hang free.
-HANGS_FREE = 0.97
 # Timed passes of a run: at most this many, until they add up to this much CPU time [s].
 PASSES, PASSES_CPU = 9, 0.4
 
@@ -132,44 +141,78 @@ FREE += tuple((parts, 1.0, True, 1e-1) for parts in (20.0, 12.0, 9.0))
 DECK_ELEMENTS, DECK_STEP, DECK_PARTS = (20, 40), 0.001, 180.0
 
 
-class Path:
-    """The fairlead's prescribed motion: position [m], velocity [m/s] and acceleration [m/s²] at any time."""
+class Motion:
+    """The motion of the driven points: position [m], velocity [m/s] and acceleration [m/s²] at any time."""
 
     def __init__(self, scene):
-        """Take the harmonics of the scene."""
-        self.start = np.array(scene["fairlead"], float)
-        self.harmonics = scene["harmonics"]
+        """Take the motions of the points in their order."""
+        self.motions = [point["motion"] for point in scene["points"] if point["kind"] == "coupled"]
 
     def period(self, duration):
-        """Return the period [s] of the harmonic motion with the same mean squares of velocity and acceleration."""
+        """Return the shortest of the points' periods [s].
+
+        A point's is that of the harmonic motion with the same mean squares of velocity and acceleration.
+        """
         _, velocity, acceleration = self.at(np.linspace(0.0, duration, 4001))
-        squares = (velocity**2).mean(), (acceleration**2).mean()
-        return 2.0 * math.pi * math.sqrt(squares[0] / squares[1]) if squares[1] > 0.0 else duration
+        squares = [(of_time.reshape(len(of_time), -1, 3) ** 2).sum(2).mean(0) for of_time in (velocity, acceleration)]
+        moves = squares[1] > 0.0
+        return 2.0 * math.pi * math.sqrt((squares[0][moves] / squares[1][moves]).min()) if moves.any() else duration
 
     def at(self, times):
-        """Return position [m], velocity [m/s] and acceleration [m/s²] at `times` [s], one row each."""
+        """Return position [m], velocity [m/s] and acceleration [m/s²] of all points at `times` [s], one row each."""
         times = np.asarray(times, float)
-        waves = np.zeros((3, len(times), 3))
-        for axis, name in enumerate("xyz"):
-            for amplitude, period, *phase in self.harmonics[name]:
-                omega = 2.0 * math.pi / period
-                angle = omega * times + (phase[0] if phase else 0.0)
-                waves[0, :, axis] += amplitude * np.sin(angle)
-                waves[1, :, axis] += amplitude * omega * np.cos(angle)
-                waves[2, :, axis] -= amplitude * omega**2 * np.sin(angle)
-        rise = self.harmonics["ramp"]
-        ramp = np.stack([np.ones_like(times), np.zeros_like(times), np.zeros_like(times)])
-        if rise > 0.0:
-            early, rate = times < rise, math.pi / rise
-            ramp[0, early] = 0.5 * (1.0 - np.cos(rate * times[early]))
-            ramp[1, early] = 0.5 * rate * np.sin(rate * times[early])
-            ramp[2, early] = 0.5 * rate**2 * np.cos(rate * times[early])
-        value, slope, bend = ramp[:, :, None]
-        return (
-            self.start + value * waves[0],
+        return np.concatenate([placed(motion, times) for motion in self.motions], axis=2)
+
+
+def placed(motion, times):
+    """Return position and two derivatives of a point of a body at `times` [s], shape (3, times, 3)."""
+    waves = np.zeros((3, len(times), 6))
+    for axis, sines in enumerate(motion["sines"]):
+        for amplitude, period, *phase in sines:
+            omega = 2.0 * math.pi / period
+            angle = omega * times + (phase[0] if phase else 0.0)
+            waves[0, :, axis] += amplitude * np.sin(angle)
+            waves[1, :, axis] += amplitude * omega * np.cos(angle)
+            waves[2, :, axis] -= amplitude * omega**2 * np.sin(angle)
+    rise = motion["ramp"]
+    ramp = np.stack([np.ones_like(times), np.zeros_like(times), np.zeros_like(times)])
+    if rise > 0.0:
+        early, rate = times < rise, math.pi / rise
+        ramp[0, early] = 0.5 * (1.0 - np.cos(rate * times[early]))
+        ramp[1, early] = 0.5 * rate * np.sin(rate * times[early])
+        ramp[2, early] = 0.5 * rate**2 * np.cos(rate * times[early])
+    value, slope, bend = ramp[:, :, None]
+    pose = np.stack(
+        [
+            value * waves[0],
             slope * waves[0] + value * waves[1],
             bend * waves[0] + 2.0 * slope * waves[1] + value * waves[2],
-        )
+        ]
+    )
+    pose[0] += motion["position"] + motion["attitude"]
+    arm = np.zeros((3, len(times), 3))
+    arm[0] = motion["arm"]
+    for axis in range(3):  # roll, then pitch, then yaw
+        arm = turned(arm, axis, pose[:, :, 3 + axis])
+    return pose[:, :, :3] + arm
+
+
+def turned(vector, axis, angle):
+    """Return `vector` turned about a global axis by `angle` [rad], both with their first two derivatives in time."""
+    unit = np.eye(3)[axis]
+    cos, sin = np.cos(angle[0])[:, None], np.sin(angle[0])[:, None]
+    value, slope, bend = (
+        cos * part + (1.0 - cos) * part[:, axis : axis + 1] * unit + sin * np.cross(unit, part) for part in vector
+    )
+    rate, change = angle[1:, :, None]
+    across = np.cross(unit, value)
+    return np.stack(
+        [
+            value,
+            slope + rate * across,
+            bend + 2.0 * rate * np.cross(unit, slope) + change * across + rate**2 * np.cross(unit, across),
+        ]
+    )
 
 
 class Site:
@@ -177,51 +220,56 @@ class Site:
 
     def __init__(self, scene):
         """Lower the scene where its motion reaches the surface, and give deep water where it has no seabed."""
-        self.path = Path(scene)
-        highest = self.path.at(np.linspace(0.0, scene["duration"], 4001))[0][:, 2].max()
-        self.lowered = LOWERED if max(highest, scene["anchor"][2]) >= 0.0 else 0.0
-        down = np.array([0.0, 0.0, self.lowered])
-        self.anchor, self.fairlead = np.array(scene["anchor"]) - down, np.array(scene["fairlead"]) - down
+        self.motion = Motion(scene)
+        driven = self.motion.at(np.linspace(0.0, scene["duration"], 4001))[0]
+        heights = np.concatenate([driven[:, 2::3].ravel(), [point["position"][2] for point in scene["points"]]])
+        self.lowered = LOWERED if heights.max() >= 0.0 else 0.0
         seabed = scene["seabed"]
         if seabed:
-            self.depth = scene["depth"] + self.lowered
+            self.depth = seabed["depth"] + self.lowered
             self.stiffness, self.damping = seabed["stiffness"], seabed["damping"]
         else:
-            self.depth = scene["line"]["length"] - min(self.anchor[2], self.fairlead[2])
+            self.depth = max(map(length, scene["lines"])) - heights.min() + self.lowered
             self.stiffness, self.damping = 1.0e3, 0.0
 
-    def motion(self, step, every, duration):
-        """Return times [s] at intervals of `step` [s], and the lowered path at these times.
+    def below(self, place):
+        """Return a place [m] of the scene, lowered."""
+        return [place[0], place[1], place[2] - self.lowered]
+
+    def path(self, step, every, duration):
+        """Return times [s] at intervals of `step` [s], and the lowered paths of the driven points at these times.
 
         The last time is the first multiple of `every` steps that is not before `duration` [s].
         """
         times = step * np.arange(every * math.ceil(duration / (every * step) - 1e-9) + 1)
-        position, velocity, acceleration = self.path.at(times)
-        position[:, 2] -= self.lowered
+        position, velocity, acceleration = self.motion.at(times)
+        position[:, 2::3] -= self.lowered
         return times, position, velocity, acceleration
 
 
-def lies_on_seabed(scene, path):
-    """Return whether the line reaches the seabed, by the inextensible catenary that leaves it at the anchor.
+def length(line):
+    """Return the unstretched length [m] of a line."""
+    return sum(section["length"] for section in line["sections"])
 
-    Its parameter a [m] satisfies X = a·acosh(1 + Z/a), its length is √(Z² + 2Za). This chooses settings only: the seabed
-    stays in the decks.
-    """
-    if not scene["seabed"]:
-        return False
-    position = path.at(np.linspace(0.0, scene["duration"], 4001))[0]
-    across = np.hypot(*(position - np.array(scene["anchor"]))[:, :2].T).min()
-    above = (position[:, 2] - scene["anchor"][2]).min()
-    if above <= 0.0 or across <= 0.0:
-        return True
-    lower, upper = 1e-6 * above, 1e9 * (above + across)
-    for _ in range(200):
-        middle = math.sqrt(lower * upper)
-        if middle * math.acosh(1.0 + above / middle) < across:
-            lower = middle
-        else:
-            upper = middle
-    return scene["line"]["length"] > HANGS_FREE * math.sqrt(above**2 + 2.0 * above * lower)
+
+def bends(line):
+    """Return whether a line has bending stiffness."""
+    return any(section["bending_stiffness"] > 0.0 for section in line["sections"])
+
+
+def driven_lines(scene, *values):
+    """Return the lines with a driven end, each after the place of its point among the driven ones, and their `values`."""
+    coupled = [index for index, point in enumerate(scene["points"]) if point["kind"] == "coupled"]
+    end = {"a": "from", "b": "to"}
+    lines = zip(scene["lines"], *values)
+    return [(coupled.index(row[0][end[row[0]["driven"]]]), *row) for row in lines if row[0]["driven"]]
+
+
+def meshed(scene, elements):
+    """Return the number of elements of every section of every line, with `elements` on the longest line."""
+    longest = max(map(length, scene["lines"]))
+    counts = [[elements * section["length"] / longest for section in line["sections"]] for line in scene["lines"]]
+    return [[max(1, math.floor(count + 0.5)) for count in line] for line in counts]
 
 
 def resampled(times, values, wanted):
@@ -238,14 +286,23 @@ def resampled(times, values, wanted):
     return sum(weight * values[at + point] for point, weight in enumerate(weights))
 
 
-def half_way(nodes):
-    """Return the position [m] half-way along a line of equal elements: between nodes by a cubic, as moorline's."""
-    nodes = np.asarray(nodes)
-    last = len(nodes) - 1
-    if last % 2 == 0 or last < 3:
-        return 0.5 * (nodes[last // 2] + nodes[(last + 1) // 2])
-    first = last // 2 - 1
-    return np.array([-1.0, 9.0, 9.0, -1.0]) @ nodes[first : first + 4] / 16.0
+def arcs(line, counts):
+    """Return the unstretched arc length [m] of every node of a line with `counts` elements in its sections."""
+    lengths = [np.full(count, section["length"] / count) for section, count in zip(line["sections"], counts)]
+    return np.concatenate([[0.0], np.cumsum(np.concatenate(lengths))])
+
+
+def half_way(arc, nodes):
+    """Return the position [m] half-way along a line: by a cubic through four nodes, on a chord where there are fewer."""
+    nodes, last, half = np.asarray(nodes), len(arc) - 1, 0.5 * arc[-1]
+    after = min(max(int(np.searchsorted(arc, half)), 1), last)
+    first, count = (min(max(after - 2, 0), last - 3), 4) if last >= 3 else (after - 1, 2)
+    places = arc[first : first + count]
+    weights = [
+        np.prod([(half - other) / (own - other) for k, other in enumerate(places) if k != index])
+        for index, own in enumerate(places)
+    ]
+    return np.array(weights) @ nodes[first : first + count]
 
 
 def median_cpu(timed_pass):
@@ -265,10 +322,20 @@ def numbers(values):
     return " ".join(f"{value:.17g}" for value in values)
 
 
-def line_type(line, *coefficients):
-    """Return the row of a line type without bending stiffness, its coefficients in the order of a peer's columns."""
-    kind = ("diameter", "mass", "axial_stiffness", "axial_damping")
-    return numbers([line[key] for key in kind] + [0.0] + [line[key] for key in coefficients])
+def line_type(section, *coefficients):
+    """Return the row of a section's line type, its coefficients in the order of a peer's columns."""
+    kind = ("diameter", "mass", "axial_stiffness", "axial_damping", "bending_stiffness")
+    return numbers(section[key] for key in kind + coefficients)
+
+
+def point_rows(scene, site):
+    """Return the rows of the points, which both peers spell alike."""
+    own = ("mass", "volume", "drag_area", "added_mass")
+    rows = (
+        f"{index} {point['kind']} {numbers(site.below(point['position']))} {numbers(point[key] for key in own)}"
+        for index, point in enumerate(scene["points"], 1)
+    )
+    return list(rows)
 
 
 def options(scene, site):
@@ -321,24 +388,35 @@ def growth(scheme, z):
 
 
 def eigenvalues(scene, elements, bedded):
-    """Return the fast modes' eigenvalues λ [1/s] of a lumped line.
+    """Return the fast modes' eigenvalues λ [1/s] of lumped lines.
 
-    Axial waves of the mesh; the same segments slack, when their damping acts without their stiffness; where
-    `bedded`, contact with the seabed.
+    Of every kind of section: axial waves of the mesh; the same segments slack, when their damping acts without their
+    stiffness; waves of bending; where `bedded`, contact with the seabed.
     """
-    line, density = scene["line"], scene["density"]
-    displaced = density * math.pi / 4.0 * line["diameter"] ** 2  # ρA [kg/m]
-    mass_tangential = line["mass"] + displaced * line["added_mass_tangential"]
-    mass_normal = line["mass"] + displaced * line["added_mass_normal"]
-    wave = math.sqrt(line["axial_stiffness"] / mass_tangential)
+    kinds = {}
+    for line, counts in zip(scene["lines"], meshed(scene, elements)):
+        for section, count in zip(line["sections"], counts):
+            kind = section | {"start": None, "length": section["length"] / count}
+            kinds[json.dumps(kind)] = kind
+    return [mode for kind in kinds.values() for mode in section_modes(scene, kind, bedded)]
+
+
+def section_modes(scene, section, bedded):
+    """Return the eigenvalues λ [1/s] of the modes of a section whose length is that of one of its elements."""
+    displaced = scene["density"] * math.pi / 4.0 * section["diameter"] ** 2  # ρA [kg/m]
+    mass_tangential = section["mass"] + displaced * section["added_mass_tangential"]
+    mass_normal = section["mass"] + displaced * section["added_mass_normal"]
+    wave = math.sqrt(section["axial_stiffness"] / mass_tangential)
     modes = []
     for part in (1.0, 0.75, 0.5, 0.25, 0.1):
-        omega = part * 2.0 * wave * elements / line["length"]
-        modes.append((omega, omega * line["axial_damping"] / (2.0 * line["axial_stiffness"])))
+        omega = part * 2.0 * wave / section["length"]
+        modes.append((omega, omega * section["axial_damping"] / (2.0 * section["axial_stiffness"])))
     seabed = scene["seabed"]
     if bedded and seabed["stiffness"] > 0.0:
-        omega = math.sqrt(seabed["stiffness"] * line["diameter"] / mass_normal)
-        modes.append((omega, seabed["damping"] * line["diameter"] / (2.0 * omega * mass_normal)))
+        omega = math.sqrt(seabed["stiffness"] * section["diameter"] / mass_normal)
+        modes.append((omega, seabed["damping"] * section["diameter"] / (2.0 * omega * mass_normal)))
+    if section["bending_stiffness"] > 0.0:
+        modes.append((4.0 / section["length"] ** 2 * math.sqrt(section["bending_stiffness"] / mass_normal), 0.0))
     slack = -2.0 * modes[0][1] * modes[0][0]
     pairs = [(omega * -ratio, omega * cmath.sqrt(ratio**2 - 1.0)) for omega, ratio in modes]
     return [slack] + [centre + sign * half for centre, half in pairs for sign in (1.0, -1.0)]
@@ -358,27 +436,47 @@ def stable_steps(scene, elements, bedded):
     return {scheme: stable_step(scheme, modes) for scheme in EVALUATIONS}
 
 
-def moordyn_deck(scene, site, elements, scheme, step):
-    """Return MoorDyn's input for one line of `elements` segments and an internal step of `step` [s].
+class Mooring:
+    """The lines of a scene as MoorDyn has them: a line for every section, joined by free points without mass."""
+
+    def __init__(self, scene, site, elements):
+        """Number the joints after the points of the scene, and lay out the rows of types, points and lines."""
+        self.types, self.points, self.lines, self.numbers, self.arcs = [], point_rows(scene, site), [], [], []
+        for line, counts in zip(scene["lines"], meshed(scene, elements)):
+            first, start = len(self.lines) + 1, line["from"] + 1
+            for section, count in zip(line["sections"], counts):
+                number = len(self.lines) + 1
+                if number > first:
+                    start = len(self.points) + 1
+                    self.points.append(f"{start} free {numbers(site.below(section['start']))} 0 0 0 0")
+                last = number == first + len(counts) - 1
+                end = line["to"] + 1 if last else len(self.points) + 1
+                coefficients = ("drag_normal", "added_mass_normal", "drag_tangential", "added_mass_tangential")
+                self.types.append(f"type{number} {line_type(section, *coefficients)}")
+                self.lines.append(f"{number} type{number} {start} {end} {section['length']:.17g} {count} -")
+            self.numbers.append(range(first, len(self.lines) + 1))
+            self.arcs.append(arcs(line, counts))
+
+
+def moordyn_deck(scene, site, mooring, scheme, step):
+    """Return MoorDyn's input for a mooring and an internal step of `step` [s].
 
     The step is written a little too long, and MoorDyn shortens it to fit: written to the last digit, rounding leaves
     a splinter of a step at the end of some host steps, and the force then belongs to another time.
     """
-    line = scene["line"]
-    row = line_type(line, "drag_normal", "added_mass_normal", "drag_tangential", "added_mass_tangential")
+    types, points, lines = ("\n".join(rows) for rows in (mooring.types, mooring.points, mooring.lines))
     return f"""--- LINE TYPES ---
 Name Diam Mass EA BA EI Cd Ca CdAx CaAx
 (-) (m) (kg/m) (N) (N-s) (N-m2) (-) (-) (-) (-)
-line {row}
+{types}
 --- POINTS ---
 ID Type X Y Z Mass Vol CdA Ca
 (#) (-) (m) (m) (m) (kg) (m3) (m2) (-)
-1 Fixed {numbers(site.anchor)} 0 0 0 0
-2 Coupled {numbers(site.fairlead)} 0 0 0 0
+{points}
 --- LINES ---
 ID LineType AttachA AttachB UnstrLen NumSegs Outputs
 (#) (-) (#) (#) (m) (-) (-)
-1 line 1 2 {line["length"]:.17g} {elements} -
+{lines}
 --- OPTIONS ---
 0 writeLog
 {options(scene, site)}
@@ -401,35 +499,48 @@ class MoorDyn:
 
         self.library, self.scene, self.run = cmoordyn, scene, run
         self.site = Site(scene)
-        times, position, _, _ = self.site.motion(run["communication"], 1, scene["duration"])
-        self.times = times
+        times, position, _, _ = self.site.path(run["communication"], 1, scene["duration"])
+        self.times, self.start = times, position[0].tolist()
         secant = np.diff(position, axis=0) / run["communication"]
         self.steps = list(zip(position[:-1].tolist(), secant.tolist(), times[:-1].tolist()))
+        self.mooring = Mooring(scene, self.site, run["elements"])
         with open("deck.txt", "w", encoding="ascii") as deck:
-            deck.write(moordyn_deck(scene, self.site, run["elements"], run["scheme"], run["step"]))
+            deck.write(moordyn_deck(scene, self.site, self.mooring, run["scheme"], run["step"]))
 
     def open(self):
         """Return a system in its initial equilibrium."""
         system = self.library.create("deck.txt")
         self.library.set_verbosity(system, 4096)
-        self.library.init(system, self.site.fairlead.tolist(), [0.0, 0.0, 0.0], 0)
+        self.library.init(system, self.start, [0.0] * len(self.start), 0)
         return system
 
     def read(self):
-        """Run once, and return times [s] and values of tension [N] and mid-position [m]."""
+        """Run once, and return times [s] and values of tensions [N] and mid-positions [m]."""
         system, library = self.open(), self.library
-        line, nodes, length = library.get_line(system, 1), self.run["elements"], self.run["communication"]
+        lines = [[library.get_line(system, number) for number in numbers] for numbers in self.mooring.numbers]
+        counts = meshed(self.scene, self.run["elements"])
+        ends = [
+            (place, of_line[0] if line["driven"] == "a" else of_line[-1], 0 if line["driven"] == "a" else count[-1])
+            for place, line, of_line, count in driven_lines(self.scene, lines, counts)
+        ]
         forces, masses, mids = [], [], []
         for position, velocity, start in self.steps:
-            forces.append(library.step(system, position, velocity, start, length))
-            masses.append(library.line_get_node_m(line, nodes))
-            mids.append(half_way([library.line_get_node_pos(line, node) for node in range(nodes + 1)]))
+            loads = np.reshape(library.step(system, position, velocity, start, self.run["communication"]), (-1, 3))
+            forces.append([loads[place] for place, _, _ in ends])
+            masses.append([library.line_get_node_m(line, node) for _, line, node in ends])
+            mids.append([self.half_way(of_line, *rest) for of_line, *rest in zip(lines, counts, self.mooring.arcs)])
         library.close(system)
         late = 0.0 if self.run["scheme"] == "RK4" else 0.5 * self.run["step"]
-        acceleration = self.site.path.at(self.times[1:] - late)[2]
-        inertia = np.einsum("tij,tj->ti", np.array(masses), acceleration)
-        tension = np.linalg.norm(np.array(forces) - inertia, axis=1)
+        acceleration = self.site.motion.at(self.times[1:] - late)[2].reshape(len(self.steps), -1, 3)
+        inertia = np.einsum("tkij,tkj->tki", np.array(masses), acceleration[:, [place for place, _, _ in ends]])
+        tension = np.linalg.norm(np.array(forces) - inertia, axis=2)
         return (self.times[1:] - late, tension), (self.times[1:], np.array(mids))
+
+    def half_way(self, lines, counts, arc):
+        """Return the position [m] half-way along a line that consists of `lines` with `counts` elements."""
+        place = self.library.line_get_node_pos
+        nodes = [place(line, node) for line, count in zip(lines, counts) for node in range(count)]
+        return half_way(arc, nodes + [place(lines[-1], counts[-1])])
 
     def timed(self):
         """Run once, and return the CPU time [s] less that of as many empty calls; each step returns the forces."""
@@ -523,33 +634,45 @@ def moordyn_hosted(scene, period, bedded, host):
 
 
 def cabledyn_deck(scene, site, run):
-    """Return CableDyn's input; its end A is the fairlead."""
-    line = scene["line"]
-    row = line_type(line, "drag_normal", "drag_tangential", "added_mass_normal", "added_mass_tangential")
-    solver = ""
+    """Return CableDyn's input."""
+    solver, types, lines, sections, clamps = "", [], [], [], []
     if run["radius"] is not None:
         solver = f"""dynamic_solver {run["tolerance"]:g} 1e-14 30 12
 {run["radius"]:g} rhoInf
 {run["reuse"]} modified_newton
 """
+    for number, (line, counts) in enumerate(zip(scene["lines"], meshed(scene, run["elements"])), 1):
+        lines.append(f"{number} {line['from'] + 1} {line['to'] + 1} -")
+        for section, count in zip(line["sections"], counts):
+            name = f"type{len(types) + 1}"
+            coefficients = ("drag_normal", "drag_tangential", "added_mass_normal", "added_mass_tangential")
+            types.append(f"{name} {line_type(section, *coefficients)}")
+            sections.append(f"{number} {name} {section['length']:.17g} {count}")
+        for end, direction in zip("AB", line["clamped"]):
+            if direction:
+                clamps.append(f"{number} {end} Rigid {numbers(direction)}")
+    if clamps:
+        heading = ["--- END CONNECTIONS ---", "LineID End Stiffness EzX EzY EzZ", "(-) (-) (N-m/rad) (-) (-) (-)"]
+        clamps = heading + clamps
+    points = point_rows(scene, site)
+    types, points, lines, sections, clamps = (
+        "".join(f"{row}\n" for row in rows) for rows in (types, points, lines, sections, clamps)
+    )
     return f"""--- LINE TYPES ---
 Name Diam Mass EA BA EI Cdn Cdt Can Cat
 (-) (m) (kg/m) (N) (N-s) (N-m^2) (-) (-) (-) (-)
-line {row}
---- POINTS ---
-ID Type X Y Z
-(-) (-) (m) (m) (m)
-1 Coupled {numbers(site.fairlead)}
-2 Fixed {numbers(site.anchor)}
---- LINES ---
+{types}--- POINTS ---
+ID Type X Y Z Mass Vol CdA Ca
+(-) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)
+{points}--- LINES ---
 ID NodeA NodeB Outputs
 (-) (-) (-) (-)
-1 1 2 -
---- SECTIONS ---
+{lines}--- SECTIONS ---
 LineID LineType Length NumSegs
 (-) (-) (m) (-)
-1 line {line["length"]:.17g} {run["elements"]}
---- OPTIONS ---
+{sections}{clamps}--- OPTIONS ---
+{run["step"]:.17g} dtM
+{scene["duration"]:.17g} TMax
 {solver}{options(scene, site)}
 {scene["density"]:.17g} rhoW
 --- need this line ---
@@ -569,7 +692,7 @@ class CableDyn:
         with open("deck.dat", "w", encoding="ascii") as deck:
             deck.write(cabledyn_deck(scene, self.site, run))
         self.every = round(run["communication"] / run["step"])
-        self.times, *path = self.site.motion(run["step"], self.every, scene["duration"])
+        self.times, *path = self.site.path(run["step"], self.every, scene["duration"])
         with self.create("deck.dat") as model:
             self.size, self.driven = model.n_coupled_dof, model.host_dofs()
             rest = np.asarray(model.get_coupled_motion()[0], float)
@@ -590,21 +713,38 @@ class CableDyn:
         ]
 
     def read(self):
-        """Run once, and return times [s] and values of tension [N] and mid-position [m]."""
+        """Run once, and return times [s] and values of tensions [N] and mid-positions [m]."""
         step, length = self.library.CableDyn_Step, ctypes.c_double(self.run["step"])
         forces, mids, every = [], [], self.every
+        counts = meshed(self.scene, self.run["elements"])
         with self.create("deck.dat") as model:
-            line = model.lines[0]
+            known = [
+                (arcs(*given), self.rows(*given, line))
+                for *given, line in zip(self.scene["lines"], counts, model.lines)
+            ]
             for index, arguments in enumerate(self.calls(), 1):
                 step(model._handle, length, *arguments, self.size, *self.replies)
                 if self.flags[3].value != 0:
                     raise RuntimeError(f"step to {self.times[index]:g} s failed with status {self.flags[3].value}")
                 if index % every != 0:
                     continue
-                forces.append(model.calc_output()[self.driven])
-                mids.append(half_way(line.node_positions()))
-        times, tension = self.times[every::every], np.linalg.norm(np.array(forces), axis=1)
+                forces.append(model.calc_output()[self.driven].reshape(-1, 3))
+                mids.append(
+                    [half_way(arc, line.node_positions()[rows]) for line, (arc, rows) in zip(model.lines, known)]
+                )
+        places = [place for place, _ in driven_lines(self.scene)]
+        times, tension = self.times[every::every], np.linalg.norm(np.array(forces), axis=2)[:, places]
         return (times, tension), (times, np.array(mids))
+
+    def rows(self, given, counts, line):
+        """Return the nodes of a line from its end A on that its deck has.
+
+        CableDyn may turn a line round, and adds nodes to lines that bend.
+        """
+        first = [int(np.flatnonzero(line.deck_nodes == node)[0]) for node in range(1, sum(counts) + 2)]
+        start = np.array(self.site.below(self.scene["points"][given["from"]]["position"]))
+        far = np.linalg.norm(line.node_positions()[first][[0, -1]] - start, axis=1)
+        return first if far[0] < far[1] else first[::-1]
 
     def timed(self):
         """Run once, and return the CPU time [s] less that of as many refused calls."""
@@ -665,6 +805,20 @@ def cabledyn_hosted(scene, period, bedded, host):
     return runs
 
 
+def beyond(scene):
+    """Return the reasons why peers cannot run a scene, by their names."""
+    if Site(scene).lowered and any(line["has_surface"] for line in scene["lines"]):
+        return dict.fromkeys(["MoorDyn", "CableDyn"], "a line comes out of the water")
+    reasons = {}
+    if any(any(line["clamped"]) for line in scene["lines"]):
+        reasons["MoorDyn"] = "it clamps no line to a point"
+    elif any(bends(line) and len(line["sections"]) > 1 for line in scene["lines"]):
+        reasons["MoorDyn"] = "a line that bends has hinges between its sections"
+    if any(point["drag_area"] or point["added_mass"] for point in scene["points"] if point["kind"] == "free"):
+        reasons["CableDyn"] = "its free points have neither drag nor added mass, whatever the deck gives them"
+    return reasons
+
+
 # One process a run
 
 
@@ -688,13 +842,13 @@ def single(scene, run, limit, read):
 
 
 def results(scene, peer):
-    """Return a peer's tension [N] and mid-position [m] at the scene's output times."""
+    """Return a peer's tensions [N] and mid-positions [m], line by line, at the scene's output times."""
     wanted = scene["interval"] * np.arange(1, round(scene["duration"] / scene["interval"]) + 1)
     tension, mid = (resampled(*series, wanted) for series in peer.read())
     if not (np.isfinite(tension).all() and np.isfinite(mid).all()):
         raise RuntimeError("the results are not finite")
-    mid[:, 2] += peer.site.lowered
-    return {"tension": tension.tolist(), "mid": mid.tolist()}
+    mid[:, :, 2] += peer.site.lowered
+    return {"tension": tension.T.tolist(), "mid": mid.transpose(1, 0, 2).tolist()}
 
 
 def in_own_process(scene, run, limit, read):
@@ -725,13 +879,14 @@ def main():
         return
     scene = json.loads(sys.stdin.readline())
     scene["density"] = scene["density"] or AIR
-    path = Path(scene)
-    period, bedded = path.period(scene["duration"]), lies_on_seabed(scene, path)
+    period, bedded = Motion(scene).period(scene["duration"]), scene["lies_on_seabed"]
     runs = moordyn_offline(scene, period, bedded) + cabledyn_runs(scene, period, bedded, None)
     for host in scene.get("hosts", []):
         runs += moordyn_hosted(scene, period, bedded, host) + cabledyn_hosted(scene, period, bedded, host)
+    left_out = [{"peer": peer, "reason": reason} for peer, reason in beyond(scene).items()]
+    runs = [run for run in runs if run["peer"] not in beyond(scene)]
     named = [{key: run.get(key) for key in ("peer", "label", "family", "host", "deck")} for run in runs]
-    print(json.dumps({"runs": named}), file=answers, flush=True)
+    print(json.dumps({"runs": named, "left_out": left_out}), file=answers, flush=True)
     limit = scene["time_limit_seconds"]
     for line in sys.stdin:
         question = json.loads(line)

@@ -1,6 +1,6 @@
 //! Errors of histories against those of a converged solution.
 //!
-//! Over the window, of the line where it is worst:
+//! Over the window, of the line where it is worst; tensions are those at the driven ends of lines that have one:
 //!
 //! * RMS: √⟨(T − T_ref)²⟩ over the standard deviation of T_ref;
 //! * low-passed: the same of both tensions behind a zero-phase filter ([`moorline::math::low_pass`]);
@@ -51,7 +51,7 @@ impl Metric {
 /// Histories of a run, one sample after every output interval.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Histories {
-    /// Tension at the driven end of every line [N].
+    /// Tension at the driven end of every line that has one [N].
     pub tension: Vec<Vec<f64>>,
     /// Position half-way along every line [m].
     pub middle: Vec<Vec<Vector3<f64>>>,

@@ -20,6 +20,7 @@ mod ladder;
 mod peers;
 mod rounds;
 mod slow;
+mod system;
 pub mod tables;
 mod timed;
 mod verdict;

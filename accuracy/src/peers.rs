@@ -9,7 +9,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-use moorline::scene::{LineType, MotionPath, PointKind, Scene};
+use moorline::scene::Scene;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -17,30 +17,17 @@ use serde_json::{Value, json};
 
 use crate::converged::Converged;
 use crate::errors::{Errors, Histories, Metric};
-use crate::ladder::HOST_STEPS;
-use crate::{Code, Failed, How, Run, Study};
+use crate::{Code, Failed, How, Run, Study, system};
 
 const SCRIPT: &str = include_str!("../peers.py");
 /// Imports all that the script needs, and then prints [`READY`].
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
-/// Elements that the peers are tried with [-].
-const ELEMENTS: [usize; 23] = [
-    3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80,
-];
-/// Those of them that a line on a seabed starts from: with fewer it means nothing.
-const ELEMENTS_ON_SEABED: usize = 5;
-/// Processor time that all passes of a single run of a peer may take [s].
-const TIME_LIMIT: f64 = 60.0;
 
 /// A finer mesh pays as long as it lowers some error to less than this part of the least so far [-].
 const PAYS: f64 = 0.95;
 /// Number of meshes in a row that do not pay, after which their family of settings ends [-].
 const IDLE_MAX: usize = 3;
-/// Scenes that the peers run.
-const WANTED: &str =
-    "peers run on scenes of one uniform line from a fixed anchor to a coupled fairlead in harmonic motion";
-
 /// A Python interpreter that can import the peers' packages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Peers {
@@ -77,6 +64,14 @@ pub enum PeerError {
 #[derive(Debug, Deserialize)]
 struct Ladder {
     runs: Vec<Planned>,
+    left_out: Vec<LeftOut>,
+}
+
+/// A peer that cannot run the scene.
+#[derive(Debug, Clone, Deserialize)]
+struct LeftOut {
+    peer: String,
+    reason: String,
 }
 
 /// A run of the script's ladder.
@@ -104,10 +99,12 @@ enum Answer {
 #[derive(Debug, Deserialize)]
 struct Measured {
     cpu_seconds: f64,
+    /// Of every line with a driven end.
     #[serde(default)]
-    tension: Vec<f64>,
+    tension: Vec<Vec<f64>>,
+    /// Of every line.
     #[serde(default)]
-    mid: Vec<[f64; 3]>,
+    mid: Vec<Vec<[f64; 3]>>,
 }
 
 /// The script at work on a scene.
@@ -118,6 +115,7 @@ pub(crate) struct Conversation {
     input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
     runs: Vec<Planned>,
+    left_out: Vec<LeftOut>,
     simulated: f64,
 }
 
@@ -157,7 +155,7 @@ impl Peers {
 
     /// Starts the script with a scene, and reads its ladder.
     pub(crate) fn begin(&self, name: &str, scene: &Scene) -> Result<Conversation, String> {
-        let question = question(name, scene).ok_or(WANTED)?;
+        let question = system::described(name, scene)?;
         let mut child = Command::new(&self.python)
             .arg(&self.script)
             .stdin(Stdio::piped())
@@ -172,10 +170,12 @@ impl Peers {
             input,
             output: BufReader::new(output),
             runs: Vec::new(),
+            left_out: Vec::new(),
             simulated: scene.output.duration,
         };
         let ladder: Ladder = conversation.ask(&question)?;
         conversation.runs = ladder.runs;
+        conversation.left_out = ladder.left_out;
         Ok(conversation)
     }
 }
@@ -238,6 +238,10 @@ impl Conversation {
     pub(crate) fn add_runs(&mut self, converged: &Converged, study: &mut Study, done: &mut dyn FnMut(usize)) {
         let mut families: BTreeMap<String, Family> = BTreeMap::new();
         let mut made = 0;
+        study.failed.extend(self.left_out.iter().map(|left_out| Failed {
+            label: left_out.peer.clone(),
+            reason: left_out.reason.clone(),
+        }));
         for number in 0..self.runs.len() {
             let planned = self.runs[number].clone();
             let Planned {
@@ -253,9 +257,10 @@ impl Conversation {
             }
             match self.run(number, true) {
                 Ok(measured) => {
+                    let middle = |line: Vec<[f64; 3]>| line.into_iter().map(Vector3::from).collect();
                     let histories = Histories {
-                        tension: vec![measured.tension],
-                        middle: vec![measured.mid.into_iter().map(Vector3::from).collect()],
+                        tension: measured.tension,
+                        middle: measured.mid.into_iter().map(middle).collect(),
                     };
                     let errors = converged.errors(&histories);
                     family.take(&errors);
@@ -276,58 +281,6 @@ impl Conversation {
     /// Times a run of the peers' ladder again: processor time over simulated time [-]. `None` where it fails.
     pub(crate) fn time(&mut self, number: usize) -> Option<f64> {
         Some(self.run(number, false).ok()?.cpu_seconds / self.simulated)
-    }
-}
-
-/// The scene as the script reads it; `None` where it is not one uniform line from a fixed anchor to a fairlead in harmonic motion.
-fn question(name: &str, scene: &Scene) -> Option<Value> {
-    let ([line], Some(line_type)) = (scene.lines.as_slice(), uniform_type(scene)) else {
-        return None;
-    };
-    let end = |name: &str, kind: PointKind| {
-        let mut points = scene.points.iter();
-        points.find(|point| point.name == name && point.kind == kind)
-    };
-    let anchor = end(&line.from, PointKind::Fixed)?;
-    let fairlead = end(&line.to, PointKind::Coupled)?;
-    let Some(MotionPath::Harmonic(motion)) = scene.motion.get(&fairlead.name) else {
-        return None;
-    };
-    let seabed = scene.seabed.as_ref();
-    let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
-    Some(json!({
-        "name": name,
-        "gravity": scene.gravity,
-        "density": scene.water.as_ref().map(|water| water.density),
-        "depth": seabed.map(|seabed| seabed.depth),
-        "seabed": seabed.map(|seabed| json!({ "stiffness": seabed.stiffness, "damping": seabed.damping })),
-        "line": {
-            "length": line.sections[0].length,
-            "mass": line_type.mass?,
-            "diameter": line_type.diameter?,
-            "axial_stiffness": line_type.axial_stiffness?,
-            "axial_damping": or_zero(line_type.axial_damping),
-            "drag_normal": or_zero(line_type.drag_normal),
-            "drag_tangential": or_zero(line_type.drag_tangential),
-            "added_mass_normal": or_zero(line_type.added_mass_normal),
-            "added_mass_tangential": or_zero(line_type.added_mass_tangential),
-        },
-        "anchor": anchor.position,
-        "fairlead": fairlead.position,
-        "harmonics": { "x": motion.x, "y": motion.y, "z": motion.z, "ramp": or_zero(motion.ramp) },
-        "duration": scene.output.duration,
-        "interval": scene.output.interval,
-        "elements": &ELEMENTS[if seabed.is_some() { ELEMENTS_ON_SEABED } else { 0 }..],
-        "hosts": HOST_STEPS,
-        "time_limit_seconds": TIME_LIMIT,
-    }))
-}
-
-/// The type of a line of one section.
-fn uniform_type(scene: &Scene) -> Option<&LineType> {
-    match scene.lines.first()?.sections.as_slice() {
-        [section] => scene.line_types.get(&section.line_type),
-        _ => None,
     }
 }
 

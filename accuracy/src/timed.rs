@@ -244,25 +244,36 @@ pub(crate) fn run(trial: &Trial) -> Result<Timed, String> {
 
 /// Values read at every communication point, the start included.
 struct Record {
+    /// Lines with a driven end; all where there is none.
+    driven: Vec<usize>,
     tension: Vec<Vec<f64>>,
     middle: Vec<Vec<Vector3<f64>>>,
 }
 
 impl Record {
     fn new(start: &Simulation, count: usize) -> Record {
-        let lines = start.model().lines.len();
+        let model = start.model();
+        let is_driven = |line: &usize| model.lines[*line].ends.iter().any(|end| moved(model, *end));
+        let lines = 0..model.lines.len();
+        let mut driven: Vec<usize> = lines.clone().filter(is_driven).collect();
+        if driven.is_empty() {
+            driven.extend(lines);
+        }
         let mut record = Record {
-            tension: vec![Vec::with_capacity(count + 1); lines],
-            middle: vec![Vec::with_capacity(count + 1); lines],
+            tension: vec![Vec::with_capacity(count + 1); driven.len()],
+            middle: vec![Vec::with_capacity(count + 1); model.lines.len()],
+            driven,
         };
         record.read(start);
         record
     }
 
     fn read(&mut self, simulation: &Simulation) {
-        for line in 0..self.tension.len() {
-            self.tension[line].push(driven_tension(simulation, line));
-            self.middle[line].push(middle(simulation, line));
+        for (tension, line) in self.tension.iter_mut().zip(&self.driven) {
+            tension.push(driven_tension(simulation, *line));
+        }
+        for (line, middle) in self.middle.iter_mut().enumerate() {
+            middle.push(half_way_of(simulation, line));
         }
     }
 
@@ -324,7 +335,7 @@ fn moved(model: &Model, point: usize) -> bool {
 }
 
 /// Position half-way along a line [m]: by a cubic through four nodes, on a chord where there are fewer.
-fn middle(simulation: &Simulation, line: usize) -> Vector3<f64> {
+fn half_way_of(simulation: &Simulation, line: usize) -> Vector3<f64> {
     let arc = &simulation.model().lines[line].nodes.arc;
     let profile = simulation.state().lines[line].position.as_slice();
     half_way(arc, profile)

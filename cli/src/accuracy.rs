@@ -20,21 +20,26 @@ use crate::folder::Folder;
 use crate::summary::Table;
 use crate::terminal::{bar, print, read_scene};
 
-/// The public scenes, built in.
-const PUBLIC: [(&str, &str); 7] = [
-    ("oc3_catenary", include_str!("../../scenes/oc3_catenary.toml")),
-    ("oc4_chain", include_str!("../../scenes/oc4_chain.toml")),
-    ("taut_polyester", include_str!("../../scenes/taut_polyester.toml")),
-    ("lindahl_fast", include_str!("../../scenes/lindahl_fast.toml")),
-    ("lindahl_slow", include_str!("../../scenes/lindahl_slow.toml")),
-    (
-        "storm_chain_shallow",
-        include_str!("../../scenes/storm_chain_shallow.toml"),
-    ),
-    (
-        "storm_chain_deep",
-        include_str!("../../scenes/storm_chain_deep.toml"),
-    ),
+/// A scene of the repository, built in.
+macro_rules! built_in {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../../scenes/", $name, ".toml")))
+    };
+}
+
+/// The scenes that are studied where none is given.
+const PUBLIC: [(&str, &str); 11] = [
+    built_in!("oc3_catenary"),
+    built_in!("oc4_chain"),
+    built_in!("taut_polyester"),
+    built_in!("lindahl_fast"),
+    built_in!("lindahl_slow"),
+    built_in!("storm_chain_shallow"),
+    built_in!("storm_chain_deep"),
+    built_in!("clump_weight"),
+    built_in!("power_cable"),
+    built_in!("volturnus_semi"),
+    built_in!("shared_mooring"),
 ];
 /// moorline's integrators that have a ladder.
 const INTEGRATORS: [Integrator; 4] = [

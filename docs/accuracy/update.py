@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Make the tables and figures of speed against error anew on this machine, and the part of docs/accuracy.md that shows them.
 
-Builds the command line, runs `moorline accuracy` over the public scenes into a folder named after the processor,
-and puts its summary between the marks of docs/accuracy.md. `--page-only` does the last part alone, from the folder's tables.
+Builds the command line, runs `moorline accuracy` over the public scenes, or those given, into a folder named after the
+processor, and puts the summaries of all folders between the marks of docs/accuracy.md. `--page-only` does the last part
+alone.
 """
 
 import argparse
@@ -30,41 +31,50 @@ def folder_of(name):
     return HERE / re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 
-def measured(peers):
-    """Run the study and return the folder that its results have been moved to."""
+def measure(scenes, peers):
+    """Run the study and move its results to the folder of this processor."""
     subprocess.run(["cargo", "build", "--release"], cwd=ROOT, check=True)
     with tempfile.TemporaryDirectory() as directory:
-        command = [ROOT / "target/release/moorline", "accuracy", "-o", directory]
+        command = [ROOT / "target/release/moorline", "accuracy", *scenes, "-o", directory]
         subprocess.run(command + (["--peers", peers] if peers else []), check=True)
         folder = folder_of(machine(Path(directory)))
         folder.mkdir(exist_ok=True)
         for pattern in KEPT:
             for file in Path(directory).glob(pattern):
                 (folder / file.name).write_bytes(file.read_bytes())
-    return folder
 
 
-def shown(folder):
-    """Put the summary and the figure of `folder` between the marks of the page."""
+def show():
+    """Put the summaries and the figures of all folders between the marks of the page."""
     page = HERE.parent / "accuracy.md"
     before, rest = page.read_text(encoding="utf-8").split(MARKS[0])
     _, after = rest.split(MARKS[1])
+    parts = [part(summary.parent) for summary in sorted(HERE.glob("*/summary.md"))]
+    text = "\n".join(parts)
+    page.write_text(f"{before}{MARKS[0]}\n{text}{MARKS[1]}{after}", encoding="utf-8")
+
+
+def part(folder):
+    """Return the part of the page on the scenes that were measured on one processor."""
     place = folder.relative_to(HERE.parent).as_posix()
-    summary = (folder / "summary.md").read_text(encoding="utf-8")
     text = f"Measured on {machine(folder)}; tables and figures in [{place}]({place}).\n\n"
     text += f"![cost against error]({place}/overview.svg)\n\n"
-    text += f"In a host:\n\n![cost against error in a host]({place}/in_host.svg)\n\n{summary}"
-    page.write_text(f"{before}{MARKS[0]}\n{text}{MARKS[1]}{after}", encoding="utf-8")
+    text += f"In a host:\n\n![cost against error in a host]({place}/in_host.svg)\n\n"
+    return text + (folder / "summary.md").read_text(encoding="utf-8")
 
 
 def main():
     """Measure where wanted, and show."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--peers", help="Python interpreter or virtual environment with the peers' packages")
-    parser.add_argument("--page-only", metavar="FOLDER", help="show a folder's tables, measure nothing")
+    parser.add_argument("--page-only", action="store_true", help="show the tables that are there, measure nothing")
+    parser.add_argument(
+        "scenes", nargs="*", help="scenes in place of the public ones; the processor's folder then holds these alone"
+    )
     arguments = parser.parse_args()
-    only = arguments.page_only
-    shown(Path(only).resolve() if only else measured(arguments.peers))
+    if not arguments.page_only:
+        measure(arguments.scenes, arguments.peers)
+    show()
 
 
 if __name__ == "__main__":
