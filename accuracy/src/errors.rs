@@ -78,6 +78,12 @@ impl Errors {
         Errors([error; 4])
     }
 
+    /// Errors [-] in the order of [`Metric::ALL`].
+    #[cfg(test)]
+    pub(crate) fn new(errors: [f64; 4]) -> Errors {
+        Errors(errors)
+    }
+
     /// The error in one respect [-].
     pub fn of(&self, metric: Metric) -> f64 {
         self.0[metric as usize]

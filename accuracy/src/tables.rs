@@ -149,8 +149,9 @@ fn defaults(study: &Study) -> String {
 fn row(study: &Study, verdict: &Verdict<'_>) -> String {
     let metric = match verdict.metric {
         Metric::Rms => "RMS tension",
+        Metric::LowPassed => "low-passed tension",
         Metric::Position => "mid position",
-        other => other.title(),
+        Metric::Peak => "greatest tension",
     };
     let place = format!("{}, {metric} {}", study.place(), percent(verdict.level));
     if !verdict.certain {

@@ -16,7 +16,8 @@ pub struct Verdict<'a> {
     /// Error level [-].
     pub level: f64,
     /// moorline is held to this level: 3 % of RMS tension, 1 % in position; of lines without a seabed 1 % of RMS tension; in a host the
-    /// tolerances of its default settings, of RMS tension.
+    /// tolerances of its default settings, of RMS tension. The low-passed tension takes the place of the raw one at levels at which only the
+    /// former is certain.
     pub key: bool,
     /// The converged solution is certain enough to judge this level.
     pub certain: bool,
@@ -78,16 +79,22 @@ impl Study {
             let its_runs = move |code: &Code| matches!(code, Code::Peer(peer) if peer == name);
             (name, self.cheapest(metric, level, its_runs))
         };
+        let is_certain = |metric: Metric| level >= self.uncertainty.of(metric);
+        let low_passed = is_certain(Metric::LowPassed) && !is_certain(Metric::Rms);
+        let holds_tension = match self.host_step {
+            Some(_) => TOLERANCES.contains(&level),
+            None => level == 0.03 || (level == 0.01 && !self.on_seabed),
+        };
         Verdict {
             metric,
             level,
             key: match metric {
-                _ if self.host_step.is_some() => metric == Metric::Rms && TOLERANCES.contains(&level),
-                Metric::Rms => level == 0.03 || (level == 0.01 && !self.on_seabed),
-                Metric::Position => level == 0.01,
-                Metric::LowPassed | Metric::Peak => false,
+                Metric::Rms => holds_tension && !low_passed,
+                Metric::LowPassed => holds_tension && low_passed,
+                Metric::Position => self.host_step.is_none() && level == 0.01,
+                Metric::Peak => false,
             },
-            certain: level >= self.uncertainty.of(metric),
+            certain: is_certain(metric),
             own: self.cheapest(metric, level, Code::is_own),
             peers: self.peers().into_iter().map(of_peer).collect(),
         }
@@ -157,5 +164,17 @@ mod tests {
         study.uncertainty = Errors::all(0.01);
         assert_eq!(study.duels(Metric::Rms)[0].ratio(), 50.0);
         assert!(!study.verdict(Metric::Rms, 0.005).certain);
+    }
+
+    #[test]
+    fn the_low_passed_tension_counts_where_the_raw_one_is_uncertain() {
+        let mut study = study_of(vec![own(1.0, 0.02), peer("A", 50.0, 0.02)]);
+        let keys =
+            |study: &Study| [Metric::Rms, Metric::LowPassed].map(|metric| study.verdict(metric, 0.03).key);
+        assert_eq!(keys(&study), [true, false]);
+        study.uncertainty = Errors::new([0.07, 0.003, 0.1, 0.05]);
+        assert_eq!(keys(&study), [false, true]);
+        study.uncertainty = Errors::all(0.07);
+        assert_eq!(keys(&study), [true, false]);
     }
 }
