@@ -133,6 +133,14 @@ pub fn following(scene: &Scene) -> Simulation {
     simulation
 }
 
+/// Sets every body to where the scene moves it at a time [s], with or without velocities.
+pub fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
+    for moving in simulation.model().moving(time) {
+        let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
+        simulation.set_body(moving.body, moving.pose, velocity);
+    }
+}
+
 /// A simulation of a scene at its start.
 pub fn start(scene: &Scene) -> Simulation {
     Simulation::new(scene).unwrap()

@@ -2,21 +2,13 @@
 
 use std::time::Instant;
 
-use crate::common::{assert_says, shipped, start};
+use crate::common::{assert_says, set_motion, shipped, start};
 use moorline::model::Body;
 use moorline::scene::Reconstruction;
 use moorline::simulation::{Error, Simulation};
 
 fn by_rules(name: &str) -> Simulation {
     start(&shipped(name))
-}
-
-/// Sets every body to where the scene moves it at a time [s], with or without velocities.
-fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
-    for moving in simulation.model().moving(time) {
-        let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
-        simulation.set_body(moving.body, moving.pose, velocity);
-    }
 }
 
 #[test]

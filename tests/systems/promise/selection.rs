@@ -1,0 +1,229 @@
+//! Selection of meshes by trials: short sections, meshes that cannot be tried, copies of a line, packaged scenes, positions.
+
+use super::scenes::{deep_polyester, moved};
+use super::{CONVERGED, errors_between, recorded, shortest_period, tensions};
+use crate::common::*;
+use moorline::discretisation::{self, discretised};
+use moorline::scene::{Integrator, Scene, ToleranceOf};
+use moorline::simulation::Simulation;
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn short_sections_keep_the_stated_error() {
+    let scene = deep_polyester();
+    let mut fine = scene.clone();
+    fine.solver.tolerance = 5e-4;
+    for (section, elements) in fine.lines[0].sections.iter_mut().zip([12, 60, 12]) {
+        section.elements = Some(elements);
+    }
+    let exact = tensions(&fine);
+    for tolerance in [0.02, 0.005] {
+        let mut chosen = scene.clone();
+        chosen.solver.tolerance = tolerance;
+        let found = discretised(&chosen);
+        let elements = found.lines[0].sections.iter().map(|section| section.elements);
+        let errors = errors_between(&tensions(&chosen), &exact);
+        println!(
+            "{tolerance}: {:?} elements, {errors:.4?}",
+            elements.collect::<Vec<_>>()
+        );
+        assert!(errors[0] <= tolerance, "{tolerance}: {errors:?}");
+    }
+    let words = |tolerance: f64| {
+        let mut chosen = scene.clone();
+        chosen.solver.tolerance = tolerance;
+        let found = discretisation::select(&chosen).unwrap();
+        [found.in_words(), found.shortfalls()].map(|words| words.join("\n"))
+    };
+    let [said, short] = words(0.005);
+    assert_says(
+        &said,
+        &["2 elements in sections that are one element on coarse and fine meshes alike"],
+    );
+    assert_eq!(short, "");
+    let [_, short] = words(2e-5);
+    assert_says(&short, &["more than solver.tolerance"]);
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn a_mesh_of_which_no_trial_could_be_run_is_told() {
+    let mut scene = deep_polyester();
+    scene.lines[0].sections[1].length = 2498.0;
+    scene.lines[0].sections[2].length = 0.02; // axial waves cross it in a fraction of a millisecond
+    scene.line_types.get_mut("polyester").unwrap().damping_ratio = None;
+    scene.solver.tolerance = 0.002;
+    let found = discretisation::select(&scene).unwrap();
+    assert_says(
+        &found.in_words().join("\n"),
+        &["no trial of this mesh could be run"],
+    );
+    assert_says(
+        &found.shortfalls().join("\n"),
+        &["leg: the error with this mesh is unknown"],
+    );
+}
+
+#[test]
+fn a_packaged_scene_keeps_its_mesh_whatever_is_set_later() {
+    let scene = moved("taut_polyester", [1.0, 1.0]);
+    let mut frozen = discretisation::frozen(&scene).unwrap();
+    let count = |scene: &Scene| Simulation::new(scene).unwrap().model().lines[0].segment_count();
+    let before = count(&frozen);
+    assert_eq!(count(&discretised(&scene)), before);
+    frozen.solver.tolerance = 0.002;
+    frozen.lines[0].sections[0].length *= 1.01;
+    assert_eq!(count(&frozen), before);
+    let mut still = scene;
+    still.motion.clear();
+    let mut frozen = discretisation::frozen(&still).unwrap();
+    frozen.solver.tolerance = 0.002;
+    assert_eq!(count(&frozen), 40);
+    assert_eq!(discretisation::frozen(&shipped("oc3_catenary")), None);
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn a_line_that_hardly_moves_takes_hardly_more_elements_than_one_that_does() {
+    let elements = |amplitude: f64| {
+        let settled = discretisation::select(&moved("oc3_catenary", [amplitude, 1.0])).unwrap();
+        println!("{amplitude}: {:?}", settled.meshes[0].trials);
+        settled.meshes[0].elements
+    };
+    let [little, less, still] = [0.1, 1e-3, 1e-6].map(elements);
+    assert!(
+        less as f64 <= 1.2 * little as f64 && still <= less,
+        "{little}, {less}, {still}"
+    );
+}
+
+/// Copies of a scene's only line along the seabed, all moved alike, and one that is longer by a metre.
+fn field(name: &str, copies: usize) -> Scene {
+    let mut scene = moved(name, [1.0, 1.0]);
+    let (line, [from, to]) = (
+        scene.lines[0].clone(),
+        [0, 1].map(|end| scene.points[end].clone()),
+    );
+    let motion = scene.motion[&to.name].clone();
+    for copy in 1..=copies {
+        let along = [700.0 * copy as f64, -300.0 * copy as f64];
+        let named = |name: &str| format!("{name}_{copy}");
+        for point in [&from, &to] {
+            let [x, y, z] = point.position;
+            let mut point = point.clone();
+            point.position = [x + along[0], y + along[1], z];
+            point.name = named(&point.name);
+            scene.points.push(point);
+        }
+        let mut line = line.clone();
+        line.name = named(&line.name);
+        (line.from, line.to) = (named(&line.from), named(&line.to));
+        line.sections[0].length += if copy == copies { 1.0 } else { 0.0 };
+        scene.lines.push(line);
+        scene.motion.insert(named(&to.name), motion.clone());
+    }
+    scene
+}
+
+#[test]
+fn of_lines_that_are_copies_one_is_tried() {
+    let alone = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();
+    let field = field("taut_polyester", 4);
+    let selected = discretisation::select(&field).unwrap();
+    assert_eq!(selected.meshes.len(), field.lines.len());
+    let [one, copy, .., longer] = &selected.meshes[..] else {
+        panic!("{:?}", selected.meshes);
+    };
+    assert_eq!(
+        (&one.trials, one.elements),
+        (&alone.meshes[0].trials, alone.meshes[0].elements)
+    );
+    assert_eq!((&copy.trials, copy.elements), (&one.trials, one.elements));
+    assert_ne!(longer.trials, one.trials);
+}
+
+/// RMS error of the position of the middle of a scene's line on the mesh selected, over its deviation from its mean [-].
+fn error_of_middle(scene: &Scene) -> f64 {
+    let middle = |scene: &Scene| {
+        let mut simulation = following(scene);
+        let count = (scene.output.duration / scene.output.interval).round() as usize;
+        let mut places: Vec<[f64; 3]> = Vec::new();
+        for _ in 0..count {
+            simulation.advance(scene.output.interval).unwrap();
+            let nodes = simulation.profile(0);
+            let middle = nodes[nodes.len() / 2];
+            places.push([middle.x, middle.y, middle.z]);
+        }
+        places.split_off(count / 2)
+    };
+    let mut selected = discretised(scene).into_owned();
+    selected.solver.elements = selected.solver.elements.map(|elements| elements + elements % 2);
+    let mut fine = scene.clone();
+    fine.solver.elements = Some(4 * selected.solver.elements.unwrap());
+    fine.solver.tolerance = 1e-3;
+    let (own, right) = (middle(&selected), middle(&fine));
+    let count = right.len() as f64;
+    let mean = [0, 1, 2].map(|axis| right.iter().map(|place| place[axis]).sum::<f64>() / count);
+    let square = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>();
+    let wrong: f64 = own.iter().zip(&right).map(|(a, b)| square(a, b)).sum();
+    let scale: f64 = right.iter().map(|place| square(place, &mean)).sum();
+    (wrong / scale).sqrt()
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn the_error_of_positions_is_kept_where_the_tolerance_is_of_position() {
+    for name in ["oc3_catenary", "taut_polyester"] {
+        let mut scene = moved(name, [1.0, 1.0]);
+        scene.solver.tolerance_of = ToleranceOf::Position;
+        let error = error_of_middle(&scene);
+        println!("{name}: {error:.4}");
+        assert!(error <= scene.solver.tolerance, "{name}: {error}");
+    }
+}
+
+#[test]
+fn the_trials_are_described_in_words() {
+    let selected = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();
+    let words = selected.in_words();
+    assert!(
+        words[0].starts_with("5 elements a line alone for the target error of 2 %"),
+        "{words:?}"
+    );
+}
+
+/// RMS difference of tension, and of the middle's position, of runs with twice the elements each time.
+fn refined(name: &str, elements: &[usize]) -> Vec<[f64; 2]> {
+    let scene = shipped(name);
+    let step = shortest_period(&scene) / CONVERGED.1;
+    let fine = |n: &usize| {
+        let fine = with_elements(scene.clone(), *n);
+        recorded(&with_integrator(fine, Integrator::AxialImplicit, step)).0
+    };
+    let runs: Vec<History> = elements.iter().map(fine).collect();
+    let window = runs[0].tension.len() / 2;
+    let errors = |coarse: &History, fine: &History| {
+        [
+            coarse.tension_error(fine, window),
+            coarse.middle_error(fine, window),
+        ]
+    };
+    let found: Vec<[f64; 2]> = runs.windows(2).map(|pair| errors(&pair[0], &pair[1])).collect();
+    println!("{name}, {elements:?}: {found:?}");
+    found
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn successive_refinement_converges_under_the_default_law() {
+    for name in ["oc3_catenary", "oc4_chain"] {
+        let found = refined(name, &[160, 320, 640, 1280]);
+        assert!(
+            found.is_sorted_by(|a, b| a[0] > b[0] && a[1] > b[1]),
+            "{name}: {found:?}"
+        );
+        let [tension, position] = found[2];
+        assert!(tension < 2e-3 && position < 1e-3, "{name}: {tension} {position}");
+        assert!(found[1][1] < 1e-3, "{name}: {found:?}");
+    }
+}
