@@ -183,7 +183,8 @@ impl Ladder {
             (None, _) => {
                 let wanted = last.elements as f64 * last.error / (AIM * tolerance);
                 let wanted = wanted.min(ELEMENTS_MAX);
-                let error = last.error * last.elements as f64 / wanted;
+                // as slow as the RMS of jumps whose instants are off by the time of an element
+                let error = last.error * (last.elements as f64 / wanted).sqrt();
                 (wanted.ceil() as usize, error)
             }
         };
