@@ -136,16 +136,6 @@ fn finer(scene: &Scene, settled: &Scene) -> Scene {
     fine
 }
 
-/// RMS error of the tension of every line over its standard deviation [-], at a tolerance.
-fn errors_of_lines(name: &str, scene: &Scene, tolerance: f64) -> Vec<f64> {
-    let settled = settled(scene, tolerance);
-    let [found, exact] = [&settled.scene, &finer(scene, &settled.scene)].map(tensions);
-    let errors = errors_between(&found, &exact);
-    let elements: Vec<usize> = settled.meshes.iter().map(|mesh| mesh.elements).collect();
-    println!("{name}, {tolerance}: {elements:?} elements, {errors:.4?}");
-    errors
-}
-
 /// RMS error of every tension over the standard deviation of the right one [-].
 fn errors_between(found: &[Vec<f64>], exact: &[Vec<f64>]) -> Vec<f64> {
     let lines = found.iter().zip(exact);
@@ -156,30 +146,6 @@ fn errors_between(found: &[Vec<f64>], exact: &[Vec<f64>]) -> Vec<f64> {
         (wrong / right.iter().map(|b| b - mean).fold(0.0, square)).sqrt()
     });
     errors.collect()
-}
-
-#[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
-fn every_line_of_networks_cables_and_systems_in_waves_keeps_the_stated_error() {
-    let both = [0.05, 0.02];
-    let groups = [
-        (networks(), &both[..]),
-        (cables(), &[0.05, 0.02, 0.005]),
-        (systems_in_waves(), &both),
-        (others(), &both),
-    ];
-    for (cases, tolerances) in groups {
-        for ((name, scene), &tolerance) in cases
-            .iter()
-            .flat_map(|case| tolerances.iter().map(move |t| (case, t)))
-        {
-            let errors = errors_of_lines(name, scene, tolerance);
-            assert!(
-                errors.iter().all(|error| *error <= tolerance),
-                "{name}, {tolerance}: {errors:?}"
-            );
-        }
-    }
 }
 
 /// Greatest curvature of the first line in the second half of a run [1/m].
