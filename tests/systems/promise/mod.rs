@@ -65,8 +65,8 @@ struct Run {
     warning: Option<String>,
 }
 
-/// Runs a scene, whose discretisation is settled, in communication steps [s].
-fn run_by(mover: Mover, scene: &Scene, step: f64) -> Run {
+/// Runs a scene, whose discretisation is settled, for a number of communication steps [s].
+fn run_by(mover: Mover, scene: &Scene, step: f64, count: usize) -> Run {
     let mut simulation = start(scene);
     let velocities = mover == Mover::Velocities;
     if mover == Mover::Scene {
@@ -77,7 +77,6 @@ fn run_by(mover: Mover, scene: &Scene, step: f64) -> Run {
     }
     let ends = ends_that_move(simulation.model());
     let (mut tensions, mut warning) = (vec![Vec::new(); ends.len()], None);
-    let count = (scene.output.duration / step).round() as usize;
     for sample in 0..count {
         if mover != Mover::Scene {
             set_motion(&mut simulation, sample as f64 * step, velocities);
@@ -109,7 +108,9 @@ fn ends_that_move(model: &Model) -> Vec<End> {
 
 /// Tensions of every line of a scene that follows its own motion, over the second half of a run [N].
 fn tensions(scene: &Scene) -> Vec<Vec<f64>> {
-    run_by(Mover::Scene, &discretised(scene), scene.output.interval).tensions
+    let output = &scene.output;
+    let count = (output.duration / output.interval).round() as usize;
+    run_by(Mover::Scene, &discretised(scene), output.interval, count).tensions
 }
 
 /// The discretisation of a scene at a tolerance.
