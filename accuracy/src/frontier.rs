@@ -7,6 +7,8 @@ use moorline::scene::Integrator;
 
 use crate::{Code, Metric, Study};
 
+/// The peers in the order of their colours, the same in every chart.
+const PEERS: [&str; 2] = ["MoorDyn", "CableDyn"];
 /// Errors beyond this part of the signal are left out: such a run shows nothing [-].
 const ERROR_MAX: f64 = 0.5;
 /// Errors below this part of the converged solution's uncertainty are drawn there [-].
@@ -96,9 +98,10 @@ fn curves(study: &Study, metric: Metric, runs_too: bool) -> Vec<Curve> {
             curves.push(Curve::new(points, colour(index), Stroke::Nodes).named(code.name()));
         }
     }
-    for (index, peer) in study.peers().into_iter().enumerate() {
+    for peer in study.peers() {
         let code = Code::Peer(peer.to_string());
-        let colour = colour(INTEGRATORS.len() + index);
+        let number = PEERS.iter().position(|name| *name == peer).unwrap_or(PEERS.len());
+        let colour = colour(INTEGRATORS.len() + number);
         if runs_too {
             let all = shown_runs(study, metric, &code);
             curves.push(Curve::new(all, colour, Stroke::Nodes));
