@@ -59,7 +59,7 @@ pub(crate) fn described(name: &str, scene: &Scene) -> Result<Value, String> {
     }))
 }
 
-/// Refuses what has properties beside those that the peers are given.
+/// Refuses what has more properties than the peers are given.
 fn only<T: PartialEq>(whole: &T, given: &T, what: &str) -> Result<(), String> {
     match whole == given {
         true => Ok(()),
