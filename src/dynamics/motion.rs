@@ -192,7 +192,7 @@ impl AxesPath {
         sample: &InputSample,
     ) -> [[Lanes; 3]; 2] {
         self.positions = extrapolation.order.push(&before.positions, sample.position);
-        self.degree = before.degree;
+        (self.rated, self.degree) = (sample.rated, before.degree);
         let mut velocity = sample.velocity;
         if !sample.rated.all_positive() {
             let derived = self.derive(before, extrapolation);

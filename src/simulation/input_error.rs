@@ -292,24 +292,32 @@ impl Simulation {
         }
         let points = TAU / (record.frequency() * record.step);
         let step = record.step * (allowed / error).powf(1.0 / ORDER);
-        let (fault, cure) = match self.model.solver.input_reconstruction {
-            Reconstruction::Jump => (
+        let (fault, cure) = match (
+            self.model.solver.input_reconstruction,
+            self.paths.lack_velocities(),
+        ) {
+            (Reconstruction::Jump, _) => (
                 "a path that jumps at each of them",
-                "solver.input_reconstruction = \"smooth\"",
+                " or solver.input_reconstruction = \"smooth\"",
             ),
-            Reconstruction::Interpolate => (
+            (Reconstruction::Interpolate, true) => (
                 "the velocities derived from them",
-                "velocities as well as displacements",
+                " or velocities as well as displacements",
             ),
-            Reconstruction::Smooth | Reconstruction::Filtered => (
+            (Reconstruction::Interpolate, false) => ("the cubics between them", ""),
+            (Reconstruction::Smooth | Reconstruction::Filtered, true) => (
                 "its extrapolation",
-                "velocities as well as displacements or solver.input_reconstruction = \"interpolate\"",
+                " or velocities as well as displacements or solver.input_reconstruction = \"interpolate\"",
+            ),
+            (Reconstruction::Smooth | Reconstruction::Filtered, false) => (
+                "its extrapolation",
+                " or solver.input_reconstruction = \"interpolate\"",
             ),
         };
         let time = self.time();
         Some(format!(
             "at t = {time:.6} s, about {points:.0} communication steps a period of the motion are too few for {fault}: tension is off \
-             by about {:.2} % of its variation, {:.2} % are allowed next to the error of the mesh (solver.tolerance); communication steps of {} s or {cure} would do; said once",
+             by about {:.2} % of its variation, {:.2} % are allowed next to the error of the mesh (solver.tolerance); communication steps of {} s{cure} would do; said once",
             100.0 * error,
             100.0 * allowed,
             rounded_down(step),

@@ -88,6 +88,11 @@ impl Paths {
         self.points.iter_mut().map(|path| &mut path.0).chain(vessels)
     }
 
+    /// Returns whether the host gives anything without velocities.
+    pub(super) fn lack_velocities(&self) -> bool {
+        self.axes().any(|path| path.unrated().is_some())
+    }
+
     /// Leads the paths of what the host gives without velocities, continued from those `before`, to the predictions of their filters
     /// over a step from a time [s] of a length [s].
     fn filter(&mut self, before: &Paths, span @ [time, length]: [f64; 2]) {

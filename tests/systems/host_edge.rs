@@ -155,6 +155,9 @@ fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
                 "{what}: {error} estimated {estimate}"
             );
             assert_eq!(warning.is_some(), estimate > ALLOWED, "{what}: {estimate}");
+            if let Some(text) = warning {
+                assert_eq!(text.contains("or velocities as well"), !velocities, "{text}");
+            }
         }
     }
 }
