@@ -111,17 +111,28 @@ fn oc4_converges_to_a_fifth_of_a_percent_in_tension_and_a_thousandth_in_position
 }
 
 #[test]
-fn the_page_shows_the_committed_summary() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let page = std::fs::read_to_string(root.join("docs/accuracy.md")).unwrap();
-    let part = page.split("<!-- accuracy: begin -->").nth(1).unwrap();
-    let part = part.split("<!-- accuracy: end -->").next().unwrap();
-    let folder = part.split("](").nth(1).unwrap().split(')').next().unwrap();
-    let file = |name: &str| root.join("docs").join(folder).join(name);
-    let summary = std::fs::read_to_string(file("summary.md")).unwrap();
-    assert!(part.ends_with(&summary), "{part}");
-    for name in ["overview.svg", "accuracy.csv", "verdicts.csv"] {
-        assert!(file(name).is_file(), "{folder}/{name}");
+fn the_page_shows_the_committed_summary_of_every_processor() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("docs");
+    let page = std::fs::read_to_string(docs.join("accuracy.md")).unwrap();
+    let shown = page.split("<!-- accuracy: begin -->").nth(1).unwrap();
+    let shown = shown.split("<!-- accuracy: end -->").next().unwrap();
+    let entries = std::fs::read_dir(docs.join("accuracy")).unwrap();
+    let folders: Vec<_> = entries
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_dir())
+        .collect();
+    assert_eq!(shown.matches("Measured on ").count(), folders.len());
+    for folder in folders {
+        let place = format!("(accuracy/{})", folder.file_name().unwrap().to_str().unwrap());
+        let part = shown
+            .split("Measured on ")
+            .find(|part| part.contains(&place))
+            .unwrap();
+        let summary = std::fs::read_to_string(folder.join("summary.md")).unwrap();
+        assert!(part.trim_end().ends_with(summary.trim_end()), "{part}");
+        for name in ["overview.svg", "accuracy.csv", "verdicts.csv"] {
+            assert!(folder.join(name).is_file(), "{place}: {name}");
+        }
     }
 }
 
