@@ -121,7 +121,7 @@ pub(crate) enum Command {
     },
     /// Speed against error on this machine: meshes, integrators and steps against a converged solution
     Accuracy {
-        /// Scenes of moorline, or decks of MoorDyn or MAP++; the five public scenes where none is given
+        /// Scenes of moorline, or decks of MoorDyn or MAP++; the public scenes where none is given
         scenes: Vec<PathBuf>,
         /// Folder for tables and figures; made where it is missing
         #[arg(short, long, value_name = "DIR", default_value = "moorline-accuracy")]
