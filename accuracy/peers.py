@@ -883,8 +883,9 @@ def main():
     runs = moordyn_offline(scene, period, bedded) + cabledyn_runs(scene, period, bedded, None)
     for host in scene.get("hosts", []):
         runs += moordyn_hosted(scene, period, bedded, host) + cabledyn_hosted(scene, period, bedded, host)
-    left_out = [{"peer": peer, "reason": reason} for peer, reason in beyond(scene).items()]
-    runs = [run for run in runs if run["peer"] not in beyond(scene)]
+    reasons = beyond(scene)
+    runs = [run for run in runs if run["peer"] not in reasons]
+    left_out = [{"peer": peer, "reason": reason} for peer, reason in reasons.items()]
     named = [{key: run.get(key) for key in ("peer", "label", "family", "host", "deck")} for run in runs]
     print(json.dumps({"runs": named, "left_out": left_out}), file=answers, flush=True)
     limit = scene["time_limit_seconds"]

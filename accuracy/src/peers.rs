@@ -28,6 +28,7 @@ const READY: &str = "ready";
 const PAYS: f64 = 0.95;
 /// Number of meshes in a row that do not pay, after which their family of settings ends [-].
 const IDLE_MAX: usize = 3;
+
 /// A Python interpreter that can import the peers' packages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Peers {

@@ -1,6 +1,6 @@
 //! The scene as the peers' script reads it: the properties that all codes have, and no others.
 //!
-//! A scene with any other property is refused by the property's owner: a peer that ran it without would be compared with a different system.
+//! A scene with any other property is refused, with the owner of the property: without it the peers would run a different system.
 //! Damping and places at rest are those of moorline's model, in which a damping ratio and an open damping are values in N s.
 
 use moorline::model::{Line as ModelLine, Model, Role};
@@ -17,14 +17,14 @@ use crate::ladder::{HOST_STEPS, Setting};
 const ELEMENTS: [usize; 23] = [
     3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80,
 ];
-/// Those of them that a line on a seabed starts from: with fewer it means nothing.
+/// Index of the coarsest of these meshes for lines on a seabed: fewer elements do not resolve the touchdown.
 const ELEMENTS_ON_SEABED: usize = 5;
 /// Processor time that all passes of a single run of a peer may take [s].
 const TIME_LIMIT: f64 = 60.0;
 /// Elements of the longest line of the model that places at rest are taken from [-].
 const ELEMENTS_AT_REST: usize = 40;
 
-/// The scene in the words of `peers.py`; the error names what the peers cannot be given.
+/// The scene as input of `peers.py`. The error names the owner of a property that the input does not hold.
 pub(crate) fn described(name: &str, scene: &Scene) -> Result<Value, String> {
     admit_surroundings(scene)?;
     let meshed = Setting::new(ELEMENTS_AT_REST, Integrator::Auto, None).apply(scene);
@@ -59,7 +59,7 @@ pub(crate) fn described(name: &str, scene: &Scene) -> Result<Value, String> {
     }))
 }
 
-/// Refuses what has more properties than the peers are given.
+/// Returns an error if `whole`, described by `what`, differs from the part of it that the peers are given.
 fn only<T: PartialEq>(whole: &T, given: &T, what: &str) -> Result<(), String> {
     match whole == given {
         true => Ok(()),
@@ -67,7 +67,7 @@ fn only<T: PartialEq>(whole: &T, given: &T, what: &str) -> Result<(), String> {
     }
 }
 
-/// Refuses waters and seabeds other than still water over a level seabed without friction.
+/// Refuses everything but still water over a level seabed without friction.
 fn admit_surroundings(scene: &Scene) -> Result<(), String> {
     if let Some(water) = &scene.water {
         only(water, &Water::still(water.density), "the water")?;

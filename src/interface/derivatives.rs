@@ -1,7 +1,7 @@
 //! Derivatives of outputs: by the motion of the bodies at the end of the last step, and in time.
 //!
-//! Outputs of type Float64 have derivatives, by displacements and velocities of points and vessels. These are the ones at the end of the step just
-//! made, whether the host gave them for that time (`input_reconstruction = "interpolate"`) or they were extrapolated.
+//! Outputs of type Float64 have derivatives with respect to displacements and velocities of points and vessels at the end of the last step. The host gave
+//! these for that time (`input_reconstruction = "interpolate"`), or they were extrapolated.
 
 use super::{Binding, Causality, Interface, Kind, Variable};
 use crate::simulation::{EndMotion, Simulation};
@@ -10,7 +10,7 @@ impl Interface {
     /// Derivatives of the values of outputs, one after the other, by an input.
     ///
     /// # Errors
-    /// A variable that has no derivatives or is not to be differentiated by; as [`Simulation::derivative`].
+    /// An output without derivatives, an input that is neither a displacement nor a velocity, or an error of [`Simulation::derivative`].
     pub fn derivative(
         outputs: &[&Variable],
         input: &Variable,
@@ -23,7 +23,7 @@ impl Interface {
     /// Rates in time of the values of outputs, one after the other.
     ///
     /// # Errors
-    /// A variable that has no derivatives; as [`Simulation::rates`].
+    /// An output without derivatives, or an error of [`Simulation::rates`].
     pub fn rates(outputs: &[&Variable], simulation: &Simulation) -> Result<Vec<f64>, String> {
         expect_differentiable(outputs)?;
         simulation.rates(|simulation| values(outputs, simulation))

@@ -85,7 +85,7 @@ pub(super) fn begin(
     ))
 }
 
-/// Sets the joints of the clamps of lines, where `rests`, for their tension in a state of rest; returns whether there are any.
+/// Sets the joints of the clamps of the lines that `rests` selects for their tension in a state of rest; returns whether there are any.
 pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
     let mut any = false;
     for (index, (line, shape)) in model.lines.iter_mut().zip(&state.lines).enumerate() {

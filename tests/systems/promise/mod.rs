@@ -46,7 +46,7 @@ fn converged(scene: &Scene) -> Scene {
     with_integrator(fine, Integrator::AxialImplicit, shortest_period(scene) / steps)
 }
 
-/// What moves the ends of lines: the scene's own motion, or a host that samples it.
+/// Source of the motion of the ends of lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mover {
     /// The scene's own motion, followed exactly.

@@ -11,17 +11,17 @@
 
 use super::*;
 
-/// Communication steps of a host to the shortest period of its motion [-]: the fraction puts its readings on other phases in every period, so that no
-/// snap falls between them every time.
+/// Communication steps in the shortest period of the motion [-]. The fraction shifts the phases of the readings from period to period, so that a snap is not
+/// missed every time.
 const POINTS: f64 = 40.381_966;
-/// Readings of a scene that follows its own motion to one of a host [-].
+/// Readings of a scene that follows its own motion for each reading of a host [-].
 const FINER: usize = 4;
 const TOLERANCES: [f64; 3] = [0.05, 0.02, 0.005];
 const MOVERS: [Mover; 3] = [Mover::Scene, Mover::Velocities, Mover::Displacements];
 
-/// Misses of which nothing tells: scene, mover, tolerance, and the error that is kept instead [-]. Lazy waves: an axial mode has the frequency of the
-/// communication points, which the estimate of the error of inputs leaves out. Chains in a tank: trials have 25 to 70 samples at the same phases of every turn,
-/// and snaps of the chain last as long as one of them. `oc4_chain`: the scene itself keeps the tolerance over all times, and the host reads few of its snaps.
+/// Errors above the tolerance without a note: scene, mover, tolerance, and the bound that holds instead [-]. Lazy waves: an axial mode has the frequency
+/// of the communication points; the estimated error of inputs excludes this resonance. Chains in a tank: trials have 25 to 70 samples at the same phases of
+/// every period, and a snap lasts one sample. `oc4_chain`: the mesh keeps the tolerance over all times, but the host reads few of the snaps.
 const SILENT: [(&str, Mover, f64, f64); 11] = [
     ("lazy_wave", Mover::Displacements, 0.05, 0.065),
     ("lazy_wave in waves", Mover::Displacements, 0.05, 0.075),
