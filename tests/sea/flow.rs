@@ -69,12 +69,15 @@ impl Host {
     fn give(&mut self, simulation: &mut Simulation, time: f64) {
         self.waves.turn_to(time, &mut self.instant);
         for line in 0..simulation.model().lines.len() {
-            for node in 0..self.flow.node_count(line) {
-                let orbit = self
-                    .waves
-                    .orbit(simulation.flow_place(line, node), &mut self.instant);
-                self.flow
-                    .set(line, node, orbit.velocity.into(), orbit.acceleration.into());
+            let nodes: Vec<usize> = (0..self.flow.node_count(line)).collect();
+            // four nodes are sampled with the components of the highest, as the waves of a scene are
+            for four in nodes.chunks(4) {
+                let place = |k: usize| simulation.flow_place(line, four[k.min(four.len() - 1)]);
+                let orbits = self.waves.orbits([0, 1, 2, 3].map(place), &mut self.instant);
+                for (node, orbit) in four.iter().zip(orbits) {
+                    let (velocity, acceleration) = (orbit.velocity.into(), orbit.acceleration.into());
+                    self.flow.set(line, *node, velocity, acceleration);
+                }
             }
         }
         simulation.set_flow(&self.flow);
