@@ -29,6 +29,10 @@ const PERIODS: f64 = 20.0;
 const DURATION: f64 = 200.0;
 /// Samples in a period of the fastest sine, at least [-].
 const SAMPLES: f64 = 25.0;
+/// Samples in a period that are dense enough for a snap at any phase [-]. Fewer samples have other phases in every period.
+const PHASES: f64 = 100.0;
+/// Fraction of the interval by which the samples move from one period to the next [-]: 1 − 1/golden ratio, which spreads them evenly.
+const SHIFT: f64 = 0.381_966;
 /// Elements below those of the level that are worth a trial, over them [-].
 const FEWER: f64 = 0.93;
 
@@ -39,6 +43,8 @@ pub(super) struct Search<'a> {
     scene: Scene,
     /// First sample that is evaluated.
     from: usize,
+    /// Longest step of the trials [s].
+    longest_step: f64,
     /// Results of every network.
     ladders: Vec<Ladder>,
     /// True if a line may need fully implicit steps, for example because it bends. All networks are then run with the integrators that the rules choose.
@@ -214,10 +220,12 @@ impl<'a> Search<'a> {
         let output = &scene.output;
         let mut scene = scene.clone();
         scene.output.duration = output.duration.min(times.duration);
-        scene.output.interval = output.interval.min(times.shortest / SAMPLES);
+        let interval = output.interval.min(times.shortest / SAMPLES);
+        scene.output.interval = spread(interval, times.shortest);
         let start = (0.5 * scene.output.duration).max(times.ramp.min(0.75 * scene.output.duration));
         Some(Search {
             from: (start / scene.output.interval) as usize,
+            longest_step: scene.solver.time_step_max.min(interval),
             scene,
             ladders: ladders(networks, implicit),
             implicit,
@@ -365,11 +373,11 @@ impl<'a> Search<'a> {
             return None;
         }
         if self.implicit {
-            return Some(self.longest_step());
+            return Some(self.longest_step);
         }
         let elements = vec![COARSE; self.ladders.len()];
         let explicit = self.explicit_work(&self.with(&elements))?;
-        let mut step = self.longest_step();
+        let mut step = self.longest_step;
         let mut run = self.run(&self.with_step(&elements, step)).ok()??;
         for _ in 0..HALVINGS {
             let finer = self.run(&self.with_step(&elements, 0.5 * step)).ok()??;
@@ -420,11 +428,6 @@ impl<'a> Search<'a> {
                 Some(smooth_error(same, &ladder.part(elements, &record)))
             });
         (errors.fold(0.0, f64::max) / most, step)
-    }
-
-    /// Longest step of the trials [s].
-    fn longest_step(&self) -> f64 {
-        self.scene.solver.time_step_max.min(self.scene.output.interval)
     }
 
     /// Runs the scene with more and more elements in those networks that need them. Returns the cost in explicit steps of an element [-].
@@ -504,7 +507,7 @@ impl<'a> Search<'a> {
     fn axial_implicit_step(&mut self, elements: &[usize]) -> Option<f64> {
         let explicit = self.explicit_work(&self.with(elements))?;
         let aim = AIM * self.scene.solver.tolerance;
-        let mut step = self.longest_step();
+        let mut step = self.longest_step;
         for _ in 0..=HALVINGS {
             if explicit.axial_implicit_work(step) > WORTH * explicit.work {
                 return None;
@@ -637,6 +640,16 @@ impl MotionTimes {
             ramp,
             duration: ramp + duration,
         })
+    }
+}
+
+/// Returns an interval of samples [s] for a motion of a period [s], a little shorter where so few samples would miss the same snap in every period.
+fn spread(interval: f64, period: f64) -> f64 {
+    let samples = period / interval;
+    if samples < PHASES {
+        period / (samples.ceil() + SHIFT)
+    } else {
+        interval
     }
 }
 

@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use super::scenes::{Case, public, variants};
-use super::{converged, recorded, shortest_period};
+use super::{converged, reading_interval, recorded, shortest_period};
 use crate::common::*;
 use moorline::math::low_pass::low_pass;
 use moorline::scene::Integrator;
@@ -21,11 +21,6 @@ const DEARER: f64 = 1.3;
 
 /// Cost of an axial-implicit step over that of an explicit one [-].
 const AXIAL_IMPLICIT_COST: f64 = 3.0;
-
-/// Limits of the promise: on a chain that slackens in every period and lies on the seabed for half of its length the RMS
-/// error of the raw tension falls as slowly as 1/n, and 400 elements, the most that are chosen, leave more than 0.5
-/// %. Listed are scene, tolerance, and the bound that is kept instead; the low-passed tension keeps the tolerance.
-const ROUGH: [(&str, f64, f64); 1] = [("shallow", 0.005, 0.009)];
 
 /// Result of a tolerance.
 struct Outcome<'a> {
@@ -46,7 +41,7 @@ impl Outcome<'_> {
         let window = history.tension.len() / 2;
         let cut_off = CUT_OFF / shortest_period(&scene);
         let smooth = |history: &History| History {
-            tension: low_pass(&history.tension, scene.output.interval, cut_off),
+            tension: low_pass(&history.tension, reading_interval(&scene), cut_off),
             ..History::default()
         };
         let choice = simulation.choices().next().unwrap();
@@ -65,13 +60,6 @@ impl Outcome<'_> {
             work: cost * (history.solves * elements) as f64 / scene.output.duration,
             words: format!("{elements} elements, {}", choice.in_words()),
         }
-    }
-
-    /// Promised error of the raw tension [-].
-    fn promised(&self) -> f64 {
-        let mut rough = ROUGH.iter();
-        let found = rough.find(|(name, tolerance, _)| *name == self.name && *tolerance == self.tolerance);
-        found.map_or(self.tolerance, |(_, _, kept)| *kept)
     }
 }
 
@@ -105,7 +93,7 @@ fn keep(cases: &[Case]) {
     for outcome in cases.iter().flat_map(outcomes) {
         let (name, tolerance) = (outcome.name, outcome.tolerance);
         let [raw, smooth] = outcome.errors;
-        assert!(raw <= outcome.promised(), "{name}, {tolerance}: {raw}");
+        assert!(raw <= tolerance, "{name}, {tolerance}: {raw}");
         assert!(smooth <= tolerance, "{name}, {tolerance}: {smooth} low-passed");
         let (known, work) = (known(&outcome), outcome.work);
         assert!(

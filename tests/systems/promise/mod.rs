@@ -31,11 +31,22 @@ fn shortest_period(scene: &Scene) -> f64 {
     sines.map(|sine| sine[1]).fold(f64::INFINITY, f64::min)
 }
 
+/// Fraction of the interval by which a period is longer than a whole number of readings [-]. Readings have other phases in every period, so that no snap is
+/// missed every time.
+const FRACTION: f64 = 0.381_966;
+
+/// Interval of readings [s], somewhat shorter than that of the scene's output.
+fn reading_interval(scene: &Scene) -> f64 {
+    let period = shortest_period(scene);
+    period / ((period / scene.output.interval).round() + FRACTION)
+}
+
+/// Runs a scene with the discretisation that is chosen for it.
 fn recorded(scene: &Scene) -> (History, Simulation) {
     let mut simulation = following(&discretised(scene));
-    let output = &scene.output;
-    let count = (output.duration / output.interval).round() as usize;
-    let history = History::record(&mut simulation, output.interval, count);
+    let interval = reading_interval(scene);
+    let count = (scene.output.duration / interval).round() as usize;
+    let history = History::record(&mut simulation, interval, count);
     (history, simulation)
 }
 

@@ -79,6 +79,23 @@ fn the_error_of_an_extrapolated_mesh_is_told_as_it_is_where_lines_snap() {
     );
 }
 
+/// Snaps that last a fraction of a period: 25 samples at the same phases of every period miss some, or find all of them.
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn few_samples_in_a_period_give_the_errors_of_trials_that_many_give() {
+    for amplitude in [1.0, 1.5] {
+        let few = moved("lindahl_fast", [amplitude, 1.0]);
+        let mut many = few.clone();
+        many.output.interval = shortest_period(&few) / 200.0;
+        let [few, many] = [few, many].map(|scene| settled(&scene, 0.05).meshes[0].trials.clone());
+        for (few, many) in few.iter().zip(&many) {
+            let ratio = few.error / many.error;
+            println!("{amplitude}, {} elements: {ratio:.2}", few.elements);
+            assert!(ratio > 0.8 && ratio < 1.25, "{amplitude}: {few:?} {many:?}");
+        }
+    }
+}
+
 #[test]
 fn a_packaged_scene_keeps_its_mesh_whatever_is_set_later() {
     let scene = moved("taut_polyester", [1.0, 1.0]);
