@@ -79,7 +79,6 @@ impl Errors {
     }
 
     /// Errors [-] in the order of [`Metric::ALL`].
-    #[cfg(test)]
     pub(crate) fn new(errors: [f64; 4]) -> Errors {
         Errors(errors)
     }

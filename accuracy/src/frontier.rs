@@ -3,9 +3,8 @@
 use moorline::output::figures::axis::Axis;
 use moorline::output::figures::chart::{Chart, Curve, Stroke, grid_svg};
 use moorline::output::figures::{DARK, WIDTH, colour};
-use moorline::scene::Integrator;
 
-use crate::{Code, Metric, Study};
+use crate::{Code, INTEGRATORS, Metric, Study};
 
 /// The peers in the order of their colours, the same in every chart.
 const PEERS: [&str; 2] = ["MoorDyn", "CableDyn"];
@@ -19,13 +18,6 @@ const ERROR_MIN: f64 = 2e-4;
 const LEVELS: [f64; 2] = [0.03, 0.01];
 /// Size of a chart, without title [px].
 const SIZE: [u32; 2] = [WIDTH / 2, 300];
-/// moorline's integrators that have runs of their own, in the order of their colours.
-const INTEGRATORS: [Integrator; 4] = [
-    Integrator::Leapfrog,
-    Integrator::AxialImplicit,
-    Integrator::GeneralisedAlpha,
-    Integrator::QuasiStatic,
-];
 
 /// The figure of a study: a chart for each way to measure the error.
 pub fn figure(study: &Study) -> String {

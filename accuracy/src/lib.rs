@@ -38,6 +38,13 @@ pub use slow::Slow;
 use timed::{Timed, Trial, run};
 pub use verdict::{Duel, LEVELS, Verdict};
 
+/// moorline's integrators that have a ladder.
+pub const INTEGRATORS: [Integrator; 4] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+    Integrator::QuasiStatic,
+];
 /// Cut-off of the low-passed tension over the frequency of the fastest motion [-].
 const CUT_OFF: f64 = 5.0;
 /// Shortest period taken where the scene's motion is a table, or nothing moves [s].
@@ -66,6 +73,13 @@ impl Code {
             Code::Own(_) => "moorline, implicit",
             Code::Peer(name) => name,
         }
+    }
+
+    /// The code of a name; a peer where it is none of moorline's.
+    pub fn named(name: &str) -> Code {
+        let own = INTEGRATORS.into_iter().chain([Integrator::Beam]).map(Code::Own);
+        let found = own.chain([Code::ByDefault]).find(|code| code.name() == name);
+        found.unwrap_or_else(|| Code::Peer(name.to_string()))
     }
 
     /// Returns whether it is moorline.
@@ -102,6 +116,8 @@ enum How {
     InHost(usize),
     /// By its number in the peers' ladder.
     Peer(usize),
+    /// Not at all: it was read from a table.
+    Read,
 }
 
 impl Run {

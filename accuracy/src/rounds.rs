@@ -35,6 +35,7 @@ impl Repeat<'_> {
             How::Own(setting) => Trial::new(self.scene, setting).ok()?.cost().ok(),
             How::InHost(number) => self.hosted.get(*number)?.cost().ok(),
             How::Peer(number) => self.peers.as_mut()?.time(*number),
+            How::Read => None,
         }
     }
 }

@@ -1,15 +1,16 @@
 //! `moorline accuracy`: speed against error on this machine.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use moorline::output::fmi::FmiVersion;
 use moorline::output::package::{Container, Stamp, write_package};
 use moorline::output::report::rounded;
 use moorline::output::write_file;
-use moorline::scene::{Drive, Integrator, Scene};
-use moorline_accuracy::tables::{UNCERTAIN, summary, write_runs, write_verdicts};
+use moorline::scene::{Drive, Scene};
+use moorline_accuracy::tables::{UNCERTAIN, read_runs, summary, write_runs, write_verdicts};
 use moorline_accuracy::{
-    Code, Duel, Errors, LEVELS, Means, Metric, Peers, Run, Slow, Study, Verdict, frontier, study,
+    Code, Duel, Errors, INTEGRATORS, LEVELS, Means, Metric, Peers, Run, Slow, Study, Verdict, frontier, study,
 };
 use moorline_decks::Supplement;
 use moorline_host::Fmu;
@@ -41,15 +42,16 @@ const PUBLIC: [(&str, &str); 11] = [
     built_in!("volturnus_semi"),
     built_in!("shared_mooring"),
 ];
-/// moorline's integrators that have a ladder.
-const INTEGRATORS: [Integrator; 4] = [
-    Integrator::Leapfrog,
-    Integrator::AxialImplicit,
-    Integrator::GeneralisedAlpha,
-    Integrator::QuasiStatic,
-];
 /// Error of RMS tension with which the quasi-static mode is enough [-].
 const ENOUGH: f64 = 0.02;
+
+/// Folder with the results of a study.
+pub(crate) struct Results<'a> {
+    /// The folder.
+    pub folder: &'a Path,
+    /// True if the scenes it holds are kept beside the new ones.
+    pub add: bool,
+}
 
 /// Studies scenes, with their own motion or with a given one, prints the cost of each level of error and writes tables and figures into
 /// a folder.
@@ -57,18 +59,23 @@ pub(crate) fn accuracy(
     paths: &[PathBuf],
     supplement: &Supplement,
     drive: &Drive,
-    folder: &Path,
+    Results { folder, add }: Results<'_>,
     (python, library): (Option<&Path>, Library<'_>),
 ) -> Result<(), Failure> {
     let scenes = scenes(paths, supplement, drive)?;
+    let machine = processor();
+    let mut studies = match add {
+        true => studied(&machine, folder)?,
+        false => Vec::new(),
+    };
+    studies.retain(|study| !scenes.iter().any(|(name, _)| *name == study.name));
     let _open = Folder::open(folder)?;
     let peers = python.map(|python| Peers::find(python, folder)).transpose();
     let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     stay_on_one_core();
-    let machine = processor();
     // Results are written even if the reader of standard output closes it.
     let mut printed = print(&format!("on {machine}\n\n"));
-    let mut studies = Vec::new();
+    let kept = studies.len();
     for (name, scene) in &scenes {
         let bar = bar(1);
         let means = Means {
@@ -94,11 +101,28 @@ pub(crate) fn accuracy(
         printed = printed.and_then(|()| print(&text));
     }
     printed = printed.and_then(|()| print(&format!("written to {}\n", folder.display())));
-    if python.is_some() && studies.iter().all(|study| study.peers().is_empty()) {
+    if python.is_some() && studies[kept..].iter().all(|study| study.peers().is_empty()) {
         let text = "no peer gave a result: the reasons stand at \"no result\" above";
         return Err(Failure::Computation(text.to_string()));
     }
     printed
+}
+
+/// The studies of a folder, made on this machine; none where it holds none.
+fn studied(machine: &str, folder: &Path) -> Result<Vec<Study>, Failure> {
+    let path = folder.join("accuracy.csv");
+    let fault = |text: String| Failure::Argument(format!("{}: {text}", path.display()));
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let file = File::open(&path).map_err(|error| fault(error.to_string()))?;
+    let (other, studies) = read_runs(file).map_err(fault)?;
+    if other != machine {
+        let text =
+            format!("costs on {other} do not compare with those on this {machine}: give another folder");
+        return Err(fault(text));
+    }
+    Ok(studies)
 }
 
 /// The FMU of a scene, opened; the error is a message.

@@ -126,6 +126,9 @@ pub(crate) enum Command {
         /// Folder for tables and figures; made where it is missing
         #[arg(short, long, value_name = "DIR", default_value = "moorline-accuracy")]
         output: PathBuf,
+        /// Keep the other scenes whose results DIR holds, and add these to its tables and figures
+        #[arg(long)]
+        add: bool,
         /// Run MoorDyn and CableDyn too, in the same run on the same core; PYTHON is an interpreter, or the folder of a virtual
         /// environment, that can import moordyn and cabledyn
         #[arg(long, value_name = "PYTHON")]

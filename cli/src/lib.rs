@@ -137,12 +137,14 @@ fn call(command: Command, library: Library<'_>) -> Result<(), Failure> {
         Command::Accuracy {
             scenes,
             output,
+            add,
             peers,
             moved,
             host,
         } => {
             let (host, moved) = (host.supplement(), moved.into());
-            accuracy::accuracy(&scenes, &host, &moved, &output, (peers.as_deref(), library))
+            let results = accuracy::Results { folder: &output, add };
+            accuracy::accuracy(&scenes, &host, &moved, results, (peers.as_deref(), library))
         }
         Command::Demo { output } => demo::demo(&output, library),
     }

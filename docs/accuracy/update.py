@@ -2,13 +2,15 @@
 """Make the tables and figures of speed against error anew on this machine, and the part of docs/accuracy.md that shows them.
 
 Builds the command line, runs `moorline accuracy` over the public scenes, or those given, into a folder named after the
-processor, and puts the summaries of all folders between the marks of docs/accuracy.md. `--page-only` does the last part
-alone.
+processor, which keeps its other scenes, and puts the summaries of all folders between the marks of docs/accuracy.md.
+`--page-only` does the last part alone.
 """
 
 import argparse
 import csv
+import platform
 import re
+import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -26,16 +28,25 @@ def machine(folder):
         return next(csv.DictReader(table))["machine"]
 
 
+def processor():
+    """Return the name of this processor."""
+    names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
+    return names[0].strip() if names else platform.machine()
+
+
 def folder_of(name):
     """Return the folder of a processor."""
     return HERE / re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 
 def measure(scenes, peers):
-    """Run the study and move its results to the folder of this processor."""
+    """Run the study, and add its results to those of this processor."""
     subprocess.run(["cargo", "build", "--release"], cwd=ROOT, check=True)
     with tempfile.TemporaryDirectory() as directory:
-        command = [ROOT / "target/release/moorline", "accuracy", *scenes, "-o", directory]
+        command = [ROOT / "target/release/moorline", "accuracy", *scenes, "--add", "-o", directory]
+        for table in HERE.glob("*/accuracy.csv"):
+            if machine(table.parent) == processor():
+                shutil.copy(table, directory)
         subprocess.run(command + (["--peers", peers] if peers else []), check=True)
         folder = folder_of(machine(Path(directory)))
         folder.mkdir(exist_ok=True)
@@ -68,9 +79,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--peers", help="Python interpreter or virtual environment with the peers' packages")
     parser.add_argument("--page-only", action="store_true", help="show the tables that are there, measure nothing")
-    parser.add_argument(
-        "scenes", nargs="*", help="scenes in place of the public ones; the processor's folder then holds these alone"
-    )
+    parser.add_argument("scenes", nargs="*", help="scenes in place of the public ones")
     arguments = parser.parse_args()
     if not arguments.page_only:
         measure(arguments.scenes, arguments.peers)

@@ -83,6 +83,27 @@ fn default_settings_keep_their_tolerance_in_a_host_of_short_steps() {
 }
 
 #[test]
+fn a_study_is_added_to_those_of_a_folder_of_the_same_processor() {
+    let folder = short_study();
+    folder.done("accuracy short.toml -o out");
+    let before = folder.read("out/accuracy.csv").replace(",short,", ",earlier,");
+    folder.write("out/accuracy.csv", &before);
+    folder.done("accuracy short.toml -o out --add");
+    let table = folder.read("out/accuracy.csv");
+    assert!(
+        table.starts_with(&before) && table[before.len()..].contains(",short,"),
+        "{table}"
+    );
+    assert_says(&folder.read("out/summary.md"), &["| earlier, ", "| short, "]);
+    let processor = table.lines().nth(1).unwrap().split(',').next().unwrap();
+    folder.write("out/accuracy.csv", &before.replace(processor, "another one"));
+    folder.refused(
+        "accuracy short.toml -o out --add",
+        &["out/accuracy.csv", "another one"],
+    );
+}
+
+#[test]
 fn a_study_takes_decks_and_motion_as_a_run_does() {
     let folder = short_study();
     for (given, part) in [
