@@ -1,7 +1,7 @@
-//! The one table of a scene's inputs, outputs and parameters: names, units, roles and bindings.
+//! Table of a scene's inputs, outputs and parameters: names, units, roles and bindings.
 //!
-//! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table, so
-//! that they always agree. The value reference of a variable is its position in the table, counted from 1.
+//! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table and therefore always agree. The value
+//! reference of a variable is its position in the table, counted from 1.
 //!
 //! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
 //! solver's outputs, the calculated parameters, the parameters, the flow of the water where a host gives it, and the profiles where the
@@ -28,7 +28,7 @@ pub use results::{LineResult, SolverResult};
 /// Message for a value of an energy balance that the scene does not request.
 const NO_BALANCE: &str = "the scene asks for no energy balance (`energy_balance` in [output])";
 
-/// Role of a variable, by FMI's names.
+/// Role of a variable, named as in FMI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
     /// The host sets it before every step.
@@ -41,7 +41,7 @@ pub enum Causality {
     Parameter,
 }
 
-/// Times at which a variable may change, by FMI's names.
+/// Times at which a variable may change, named as in FMI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
     /// Not after initialization.
@@ -137,7 +137,7 @@ units! {
 }
 
 impl Unit {
-    /// Base units with their exponents other than 0.
+    /// Base units with a non-zero exponent, and these exponents.
     pub(crate) fn exponents(&self) -> Vec<(&'static str, String)> {
         let exponents = [("kg", self.kg), ("m", self.m), ("s", self.s), ("rad", self.rad)];
         let present = exponents.into_iter().filter(|(_, exponent)| *exponent != 0);
@@ -146,7 +146,7 @@ impl Unit {
             .collect()
     }
 
-    /// Unit written as `N m²` in a doc comment or the scene format; dimensionless where it is unknown.
+    /// Unit from its notation in a doc comment or the scene format, such as `N m²`; dimensionless if it is unknown.
     fn of_scene(text: &str) -> Unit {
         let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
         let found = Unit::ALL.iter().find(|unit| unit.name == name);
@@ -199,22 +199,22 @@ pub enum Binding {
         /// The line.
         line: usize,
     },
-    /// Velocity [m/s] or acceleration [m/s²] of the water at a node of a line, or at all from end A to end B.
+    /// Velocity [m/s] or acceleration [m/s²] of the water at a node of a line, or at all its nodes from end A to end B.
     Flow {
         /// The line.
         line: usize,
         /// Component of [`crate::simulation::FLOW_COMPONENTS`].
         component: usize,
-        /// The node; all where absent.
+        /// The node; all nodes if absent.
         node: Option<usize>,
     },
-    /// Coordinate of the place of a node of a line for which the next flow is due, or of all from end A to end B [m].
+    /// Coordinate of the position at which the next flow is due, for a node of a line or for all nodes from end A to end B [m].
     FlowPlace {
         /// The line.
         line: usize,
         /// Axis: x, y, z, 0 to 2.
         axis: usize,
-        /// The node; all where absent.
+        /// The node; all nodes if absent.
         node: Option<usize>,
     },
     /// A result of a line.
@@ -234,7 +234,7 @@ pub enum Binding {
         line: usize,
         /// The quantity at each node.
         quantity: ProfileQuantity,
-        /// The only node, counted from 0; all where absent.
+        /// The only node, counted from 0; all nodes if absent.
         node: Option<usize>,
     },
 }
@@ -244,7 +244,7 @@ pub enum Binding {
 pub enum InterfaceQuantity {
     /// Mass of the mooring's ends.
     Mass,
-    /// Force at the end of the coming step at no displacement, velocity and acceleration.
+    /// Force at the end of the coming step for zero displacement, velocity and acceleration.
     Free,
     /// Force at the end of the coming step per velocity there, with the opposite sign.
     Damping,
@@ -286,7 +286,7 @@ pub enum Layout {
 /// A row of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
-    /// Name, dots between its parts.
+    /// Name, with dots between its parts.
     pub name: String,
     /// Description in a sentence.
     pub description: String,
@@ -304,8 +304,8 @@ pub struct Variable {
     pub start: Option<f64>,
     /// Least and greatest value, in its unit; none where the type alone limits it.
     pub range: [Option<f64>; 2],
-    /// Value references that it depends on during initialization; outputs and calculated parameters only. After
-    /// initialization outputs change with a step only and so depend on nothing that is set between two steps.
+    /// Value references that it depends on during initialization; outputs and calculated parameters only. After initialization, outputs change only with a
+    /// step and so depend on nothing that is set between two steps.
     pub initial_dependencies: Vec<u32>,
     /// Quantity that it gets or sets.
     pub binding: Binding,
@@ -379,10 +379,10 @@ impl Interface {
         &self.still_water
     }
 
-    /// Refuses a model with other numbers of nodes than the table has, which parameters may cause.
+    /// Refuses a model whose numbers of nodes differ from those of the table, which parameters may cause.
     ///
     /// # Errors
-    /// Such a model, with the first variable and its line.
+    /// The first line with another number of nodes.
     pub fn check_nodes(&self, model: &Model) -> Result<(), String> {
         for variable in &self.variables {
             let (line, count, fits) = match variable.binding {
@@ -418,7 +418,7 @@ impl Interface {
         u32::try_from(index + 1).expect("a table of more than 4e9 rows does not fit in memory")
     }
 
-    /// The row of a value reference.
+    /// Row with this value reference.
     #[inline]
     pub fn variable(&self, reference: u32) -> Option<&Variable> {
         let index = usize::try_from(reference).ok()?.checked_sub(1)?;

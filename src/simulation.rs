@@ -1,8 +1,7 @@
-//! One mooring, driven by a host, the command line, a test or a bench: model, state and scratch behind one facade.
+//! One mooring, driven by a host, the command line, a test or a benchmark: model, state and scratch behind one facade.
 //!
-//! A scene is made discrete, its static equilibrium solved, and then [`Simulation::advance`] steps from one communication
-//! point to the next. Coupled points follow the displacements of [`Simulation::set_displacement`], or the scene's
-//! motion after [`Simulation::follow_scene`].
+//! A scene is discretised, its static equilibrium is solved, and [`Simulation::advance`] then steps from one communication point to the next. Coupled
+//! points follow the displacements of [`Simulation::set_displacement`], or the scene's motion after [`Simulation::follow_scene`].
 
 mod coupling;
 mod flow;
@@ -43,13 +42,13 @@ pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
 pub use watch::Watch;
 
-/// Shortest step that is integrated [s]. A host that cuts its last step to the end of its run may request the
-/// rounding of its clock as a step, some 1e-14 s. Over less than this, accelerations and rates of strain would be
-/// rounding of coordinates: the fairlead's force of a chain 800 m long would be off by thousandths of its value in a
-/// step of 1e-7 s and by five times its value in one of 1e-9 s. Such steps are integrated together with the next one.
+/// Shortest step that is integrated [s]. A host that ends its last step at the end of its run may request a step as short as the rounding of its clock,
+/// some 1e-14 s. Over steps shorter than this limit, accelerations and strain rates would be rounding of coordinates: the fairlead force of a chain 800 m
+/// long would be off by thousandths of its value in a step of 1e-7 s and by five times its value in one of 1e-9 s. Such steps are integrated together with
+/// the next one.
 const STEP_MIN: f64 = 1e-6;
 
-/// Reason for which a simulation could not be built.
+/// Reason why a simulation could not be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// The scene is invalid.
@@ -60,7 +59,7 @@ pub enum Error {
     Statics(#[from] StaticsError),
 }
 
-/// All that changes in a simulation. Restoring it replays the simulation bit for bit.
+/// Everything that changes in a simulation. Restoring it replays the simulation bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     state: State,
@@ -229,7 +228,7 @@ impl Simulation {
         self.work.choices()
     }
 
-    /// Number of threads that share communication steps of a length [s], with the reason.
+    /// Number of threads that share communication steps of a given length [s], with the reason.
     pub fn threads_in_words(&self, length: f64) -> String {
         self.work.threads_in_words(length)
     }
@@ -353,7 +352,7 @@ impl Simulation {
 /// Removes waves, a host's flow of the water and initial shapes, for an equilibrium.
 fn make_still(model: &mut Model) {
     (model.waves, model.host_flow) = (None, false);
-    // the initial shape of a beam may be the one free of bending moments, and is the start of its search
+    // the initial shape of a beam may be its moment-free shape, and the search for its equilibrium starts from it
     for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
         line.initial = InitialShape::Static;
     }
@@ -363,7 +362,7 @@ fn make_still(model: &mut Model) {
 mod tests {
     use super::*;
 
-    /// A line that is driven for a second, in steps of a length [s].
+    /// Drives a line for one second, in steps of a length [s].
     fn driven(simulation: &mut Simulation, step: f64) {
         let count = (1.0 / step).round() as usize;
         for _ in 0..count {

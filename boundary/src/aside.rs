@@ -1,4 +1,4 @@
-//! A thread of the system that makes the worker threads.
+//! A system thread that creates the worker threads.
 //!
 //! [`std::thread`] registers a destructor on the thread that spawns another. On a thread of the host, that destructor would keep this library
 //! mapped after it is unloaded, until the host's thread ends. A thread made here by the system's own call ends at once, and its destructors
@@ -22,7 +22,7 @@ unsafe extern "C" {
     fn pthread_join(thread: usize, result: *mut *mut c_void) -> c_int;
 }
 
-/// Runs work on a separate thread and waits for its end; does nothing where the system grants no thread.
+/// Runs work on a separate thread and waits for its end; does nothing if the system cannot create a thread.
 pub(crate) fn run(mut work: Work) {
     let mut thread = 0_usize; // pthread_t is as wide as a pointer
     // SAFETY: `work` outlives the thread, which is joined before this function returns, and no one else uses it meanwhile.
@@ -37,7 +37,7 @@ pub(crate) fn run(mut work: Work) {
 extern "C" fn body(work: *mut c_void) -> *mut c_void {
     // SAFETY: made in `run` of this type, alive until this thread has ended, and used here only.
     let work = unsafe { &mut *work.cast::<Work>() };
-    // work that was cut short has no result, which its caller sees
+    // interrupted work leaves no result, which its caller detects
     let _ = catch_unwind(AssertUnwindSafe(work));
     ptr::null_mut()
 }

@@ -9,10 +9,10 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use crate::guard::guard;
 
-/// Distance of two handles, so that they are as unequal to small integers and as aligned as pointers are [-].
+/// Distance of two handles, so that they differ from small integers and are aligned as pointers are [-].
 const STRIDE: usize = 64;
 
-/// Reason why a handle serves no call.
+/// Reason why a call on a handle is refused.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Denied {
     /// The handle is null.
@@ -43,7 +43,7 @@ impl<T> Default for Handles<T> {
 }
 
 impl<T> Handles<T> {
-    /// No item.
+    /// An empty collection.
     pub const fn new() -> Handles<T> {
         Handles {
             entries: RwLock::new(BTreeMap::new()),
@@ -76,7 +76,7 @@ impl<T> Handles<T> {
         let removed = entries.remove(&handle);
         drop(entries);
         let is_known = removed.is_some();
-        // a fault while dropping leaks: the host is done with it
+        // a panic while dropping leaks the item, which the host no longer uses
         let _ = guard(move || drop(removed));
         is_known
     }

@@ -91,8 +91,8 @@ pub unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, String> {
     }
 }
 
-/// Copies a text with its zero byte to a host that gives room for `room` bytes, cut to it, and returns the room that the whole text needs [bytes].
-/// Null with no room only asks for it.
+/// Copies a text with its zero byte into `room` bytes of the host, truncated to fit, and returns the room that the whole text needs [bytes]. A null target
+/// without room only returns that.
 ///
 /// # Safety
 /// A pointer that is not null points to `room` bytes that nothing else uses.

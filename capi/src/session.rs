@@ -372,7 +372,7 @@ impl Session {
         self.moved.get(index).ok_or_else(unknown)
     }
 
-    /// Sets where a body is now, and its velocity where it is given.
+    /// Sets the present pose of a body, and its velocity if that is given.
     pub(crate) fn move_body(&mut self, index: usize, place: &[f64], velocity: Option<&[f64]>) -> Outcome {
         let body = self.body(index)?.clone();
         check_lengths(body.size, place.len())?;
@@ -612,7 +612,7 @@ fn check_lengths(wanted: usize, given: usize) -> Outcome {
     }
 }
 
-/// Refuses numbers that no input can be.
+/// Refuses numbers that are not valid inputs.
 fn check_numbers<'v>(name: &str, values: impl IntoIterator<Item = &'v f64>) -> Outcome {
     let mut values = values.into_iter();
     match values.find(|value| value.is_nan() || value.abs() > INPUT_MAX) {

@@ -382,7 +382,7 @@ fn a_flow_that_is_not_asked_for_or_cannot_be_used_has_its_code_and_a_sentence() 
     }
 }
 
-/// Claims the code of a call, and words of its sentence.
+/// Claims the code of a call, and words of its message.
 fn refused(code: c_int, expected: c_int, words: &str) {
     assert_eq!(code, expected, "{}", message());
     assert!(message().contains(words), "{}", message());

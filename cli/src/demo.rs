@@ -135,14 +135,14 @@ impl<'a> Host<'a> {
         self.record_statics(record)
     }
 
-    /// Makes a step of a length from a time [s]; the number of internal steps.
+    /// Makes a step of a length from a time [s]; returns the number of internal steps.
     fn step(&mut self, time: f64, step: f64) -> Result<u64, HostError> {
         self.set_motion(time)?;
         self.slave.do_step(time, step)?;
         Ok(self.slave.integer("solver.substeps")?.unsigned_abs().into())
     }
 
-    /// Sets where the scene's motion has the coupled points and vessels at `time` [s].
+    /// Moves the coupled points and vessels to the scene's motion at `time` [s].
     fn set_motion(&mut self, time: f64) -> Result<(), HostError> {
         for moving in self.reference.model().moving(time) {
             for &(owner, axis, reference) in &self.displacements {

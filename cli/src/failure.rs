@@ -34,7 +34,7 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// A mistake that shows only when the scene is made discrete or brought to equilibrium.
+    /// A mistake that appears only when the scene is discretised or brought to equilibrium.
     pub(crate) fn of_simulation(error: simulation::Error, loaded: &LoadedScene) -> Failure {
         match error {
             simulation::Error::Scene(mistake) => Failure::of_scene(mistake, loaded),
@@ -74,7 +74,7 @@ impl Failure {
         }
     }
 
-    /// Reports the failure on standard error, and returns the exit code. A closed pipe is no failure of the reader.
+    /// Reports the failure on standard error, and returns the exit code. A pipe that the reader closed is not a failure.
     pub(crate) fn report(self) -> u8 {
         let (code, text) = match self {
             Failure::Print(error) if error.kind() == ErrorKind::BrokenPipe => {

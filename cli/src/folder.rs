@@ -31,7 +31,7 @@ struct Place {
     path: PathBuf,
     /// Folders that were not there before, the innermost first.
     made: Vec<PathBuf>,
-    /// True if it is for results alone; false of the folder of one file.
+    /// True if it is for results alone; false for the folder of one file.
     is_own: bool,
 }
 
@@ -50,7 +50,7 @@ impl Folder {
         Ok(Folder::of(path, made, true))
     }
 
-    /// The folder of one file, whose beginning an interrupted command removes.
+    /// The folder of one file, whose incomplete content an interrupted command removes.
     pub(crate) fn of_file(target: &Path) -> Folder {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
         Folder::of(folder.unwrap_or(Path::new(".")), Vec::new(), false)
@@ -117,7 +117,7 @@ impl Place {
     /// Removes the folders that were made for nothing.
     fn remove_empty(&self) {
         for folder in &self.made {
-            // The system keeps one that has something in it.
+            // The system does not remove a folder that is not empty.
             if fs::remove_dir(folder).is_err() {
                 break;
             }
@@ -134,7 +134,7 @@ impl Place {
 
 /// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on the results kept, or be seen by a [`Listener`].
 pub(crate) fn end_on_interrupt() {
-    // Without a handler, they end the program as they end any other.
+    // Without a handler, they end this program like any other.
     let _ = ctrlc::set_handler(|| {
         let left = INTERRUPTS.compare_exchange(LISTENS, STOPS, Ordering::SeqCst, Ordering::SeqCst);
         if left.is_ok() {

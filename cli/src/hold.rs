@@ -42,8 +42,7 @@ pub(crate) fn hold(loaded: &LoadedScene, held: Option<&Scene>) -> Result<String,
     Ok(format!("written to {path}: {}", keys.join(", ")))
 }
 
-/// Text of a scene with the discretisation of the scene `held` in place of that of the scene `given`, and the keys set; none where the
-/// text is no scene.
+/// Text of a scene with the discretisation of the scene `held` in place of that of the scene `given`, and the keys set; none if the text is not a scene.
 fn edited(text: &str, given: &Scene, held: &Scene) -> Option<(String, Vec<String>)> {
     let mut document: DocumentMut = text.parse().ok()?;
     let [mut before, mut after] = [given, held].map(|scene| scene.to_toml().parse::<DocumentMut>().ok());

@@ -15,10 +15,10 @@ use crate::findings::{Findings, Placed};
 /// Density of sea water [kg/m³] of a deck that gives none.
 pub(crate) const SEA_WATER: f64 = 1025.0;
 
-/// Part of a thing in a deck: key in the scene, bytes in the file, name of its column.
+/// Part of an object in a deck: key in the scene, bytes in the file, name of its column.
 pub(crate) type Part<'p> = (&'static str, &'p Range<usize>, &'static str);
 
-/// A scene on its way from a deck. It is whole where there are no mistakes.
+/// A scene on its way from a deck. It is complete if there are no mistakes.
 pub(crate) struct Draft<'s> {
     /// Name of the format of the file.
     pub format: &'static str,
@@ -60,7 +60,7 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// Adds a line type under a name that a scene takes.
+    /// Adds a line type under a name that a scene accepts.
     pub(crate) fn add_line_type(&mut self, given: &Placed<String>, line_type: LineType, parts: &[Part<'_>]) {
         let name = type_name(&given.value, self.scene.line_types.keys().collect());
         if given.value != name {
@@ -106,8 +106,8 @@ impl<'s> Draft<'s> {
         self.scene.lines.push(line);
     }
 
-    /// Depth of the seabed [m]: that of the deck, that of the supplement, else that of the deepest fixed point, with a remark unless soundings
-    /// have the depth. Where these are all there is, it is 0.
+    /// Depth of the seabed [m]: that of the deck, that of the supplement, else that of the deepest fixed point, with a remark unless there are soundings.
+    /// If there are only soundings, it is 0.
     pub(crate) fn depth(&mut self, given: Option<f64>, is_sounded: bool) -> Option<f64> {
         if let Some(depth) = given {
             if let Some(other) = self.supplement.depth.filter(|other| *other != depth) {
@@ -174,7 +174,7 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// Checks that the vessel of all coupled points has a name that a scene takes, and no other place; `others` are those of the file.
+    /// Checks that the vessel of all coupled points has a name that a scene accepts, and no other place; `others` are those of the file.
     pub(crate) fn check_given(&mut self, mut others: impl Iterator<Item = String>) {
         let Some(name) = &self.supplement.vessel else {
             return;
@@ -229,7 +229,7 @@ fn taken(name: &str) -> String {
     )
 }
 
-/// A name of a line type as a scene takes it: variables of the FMU are called after it.
+/// The name of a line type in a form that a scene accepts: variables of the FMU are named after it.
 fn type_name(given: &str, taken: BTreeSet<&String>) -> String {
     let letter = |c: char| match c {
         c if c.is_ascii_alphanumeric() || c == '-' => c,

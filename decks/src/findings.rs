@@ -5,7 +5,7 @@ use std::ops::Range;
 use moorline::scene::path::line_column;
 use moorline::scene::{Note, SceneError};
 
-/// Most mistakes that are listed of one file.
+/// Greatest number of mistakes that are listed for one file.
 pub(crate) const MISTAKES_MAX: usize = 50;
 
 /// A value and the bytes it was read from.

@@ -144,7 +144,7 @@ fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneEr
     Ok(notes)
 }
 
-/// Leaves the first of mistakes that are alike: those of a row that the deck repeats.
+/// Keeps only the first of equal mistakes, such as those of a row that the deck repeats.
 fn drop_repeated(mistakes: &mut Vec<SceneError>) {
     let mut known: Vec<SceneError> = Vec::new();
     mistakes.retain(|mistake| {

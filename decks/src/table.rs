@@ -10,7 +10,7 @@ use moorline::scene::units::differ;
 
 use crate::findings::{Findings, Placed};
 
-/// Most rows of a table: beyond any mooring, and short enough for every check.
+/// Greatest number of rows of a table: beyond any mooring, and short enough for every check.
 pub(crate) const ROWS_MAX: usize = 5_000;
 
 /// A column of a table.
@@ -33,7 +33,7 @@ pub(crate) const fn column(name: &'static str, unit: &'static str, spellings: &'
     }
 }
 
-/// Returns whether a word is in a list of words between blanks; capitals do not count.
+/// Returns whether a word is in a list of words between blanks, regardless of case.
 pub(crate) fn is_one_of(word: &str, list: &str) -> bool {
     list.split(' ').any(|known| known.eq_ignore_ascii_case(word))
 }
@@ -76,7 +76,7 @@ fn in_words(lists: &[&'static [Column]]) -> String {
     lists.iter().map(list).collect::<Vec<_>>().join(" or ")
 }
 
-/// A row of a table, cell by cell. Every wrong cell is noted; the value returned for it only keeps the reading going.
+/// A row of a table, cell by cell. Every wrong cell is noted; the value returned for it only allows reading to continue.
 pub(crate) struct Cells<'r, 't> {
     /// Section and row in messages, such as "LINES, row 2".
     pub place: String,
@@ -195,7 +195,7 @@ pub(crate) fn check_units(units: &Row<'_>, columns: &[Column], rows: &[Row<'_>],
     }
 }
 
-/// Remarks on names above a table that are those of other columns: readers go by the place of a column, not by its name.
+/// Remarks on names above a table that are those of other columns: columns are read by their place, not by their name.
 pub(crate) fn compare_header(header: &Row<'_>, columns: &[Column], findings: &mut Findings) {
     let names = header.fields();
     let is =

@@ -1,4 +1,4 @@
-//! Handles, texts, states and callbacks: all unsafe code of the FMU library but that of [`moorline_boundary`], with its reasons.
+//! Handles, texts, states and callbacks: all unsafe code of the FMU library except that of [`moorline_boundary`], with its reasons.
 //!
 //! Guarantees of the host (FMI 2.0.4 section 2.1, FMI 3.0.2 section 2.2): a handle is what instantiate returned and is
 //! not used after free; no two calls use one handle at once; a pointer with a length points to that many values that
@@ -24,7 +24,7 @@ pub(crate) struct Handle {
     sink: Sink,
     /// The host's callback within communication steps.
     update: Option<Update>,
-    /// A call panicked: nothing but free is served any more.
+    /// True after a call panicked: only free is served from then on.
     is_poisoned: bool,
     /// Text given to the host; it lives until the next one.
     text: CString,
@@ -42,7 +42,7 @@ pub(crate) struct Update {
 /// Calls the host at a time [s] within a step; returns whether it ends the step.
 ///
 /// # Safety
-/// `handle` is null or a live handle that no other call is using; none of its instance is borrowed, since the host calls it.
+/// `handle` is null or a live handle that no other call is using; its instance is not borrowed, since the host calls it.
 pub(crate) unsafe fn update(handle: *mut c_void, time: f64) -> bool {
     // SAFETY: by the caller's promise; the copy does not borrow the handle.
     let update = unsafe { handle.cast::<Handle>().as_ref() }.and_then(|handle| handle.update);
@@ -180,7 +180,7 @@ pub(crate) unsafe fn free(handle: *mut c_void) {
     }
     // SAFETY: came from `Box::into_raw` and is freed once, by the caller's promise.
     let handle = unsafe { Box::from_raw(handle.cast::<Handle>()) };
-    // A fault while dropping leaks and is not worth more: the host is done with this instance.
+    // A panic while dropping leaks the instance, which the host no longer uses.
     let _ = guard(move || drop(handle));
 }
 
@@ -243,7 +243,7 @@ impl Handle {
     }
 }
 
-/// Keeps a text in the handle and returns where it is.
+/// Keeps a text in the handle and returns its address.
 ///
 /// # Safety
 /// As for [`call`].
@@ -327,7 +327,7 @@ pub(crate) unsafe fn state<'a>(state: *mut c_void) -> Result<&'a Snapshot, Refus
     unsafe { state.cast::<Snapshot>().as_ref() }.ok_or_else(|| "the saved state is null".into())
 }
 
-/// Frees a saved state and sets the host's pointer to null; null is nothing to free.
+/// Frees a saved state and sets the host's pointer to null; null is ignored.
 ///
 /// # Safety
 /// As for [`store_state`].

@@ -21,7 +21,7 @@ use crate::log::{Log, Topic};
 use crate::resources;
 use crate::saved::{BodyInput, Phase, Snapshot};
 
-/// Why a call was refused or failed, in words for the host's log.
+/// Reason why a call was refused or failed, in words for the host's log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Refusal(pub(crate) String);
 
@@ -39,7 +39,7 @@ impl From<&str> for Refusal {
 
 type Outcome = Result<(), Refusal>;
 
-/// Difference between the host's clock and ours that is rounding, relative to the step [-].
+/// Difference between the clocks of host and instance that counts as rounding, relative to the step [-].
 const TIME_TOLERANCE: f64 = 1e-6;
 /// Part of a step by which rounding of the host's clock may change it [-].
 const RESOLUTION: f64 = 1e-4;
@@ -71,7 +71,7 @@ pub(crate) struct Instance {
     /// Statics with the present parameters and inputs, or the end of the last step; `None` until they are solved.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
-    /// Notes on the scene that are in the log.
+    /// Notes on the scene that were logged.
     noted: Vec<Note>,
     /// Observes the steps, where warnings are logged.
     watch: Option<Watch>,
@@ -170,8 +170,8 @@ impl Instance {
             .map_err(|name| Refusal(format!("there is no log category \"{name}\"")))
     }
 
-    /// Sets start and end [s]. The host's tolerance is not used: it speaks of integration error, and the parameter
-    /// `solver.tolerance` of fairlead tension.
+    /// Sets start and end [s]. The host's tolerance is not used: it refers to the integration error, and the parameter `solver.tolerance` to the fairlead
+    /// tension.
     pub(crate) fn set_up(&mut self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
         self.expect_phase(&[Phase::Instantiated])?;
         if !start.is_finite() {
@@ -243,7 +243,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Back to just after instantiation; the log keeps its settings.
+    /// Returns to the state just after instantiation; the log keeps its settings.
     pub(crate) fn reset(&mut self) -> Outcome {
         self.expect_no_update()?;
         self.scene.clone_from(&self.packaged);

@@ -205,7 +205,7 @@ mod tests {
             let wanted = format!("is a URI of scheme \"{scheme}\"");
             assert!(message.contains(&wanted), "{message}");
         }
-        // a folder may be called so
+        // a folder may have such a name
         assert_eq!(first("./http:/a", false), "./http:/a");
     }
 

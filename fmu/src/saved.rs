@@ -1,7 +1,7 @@
 //! A saved state of an instance, in memory and as bytes.
 //!
-//! Bytes: mark, token of the FMU, length and SHA-256 of what follows, then the state in postcard. Bytes of another FMU
-//! or version, cut short or changed are refused before anything of them is used.
+//! Bytes: mark, token of the FMU, length and SHA-256 of what follows, then the state in postcard. Bytes of another FMU or version, truncated or changed
+//! ones are refused before any part is used.
 
 use moorline::simulation::{self, WaterFlow};
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ pub(crate) struct BodyInput {
     pub(crate) has_velocity: [bool; 6],
     /// True if it has moved since the start, along and about the axes.
     pub(crate) has_moved: [bool; 2],
-    /// True if any velocity was ever another than 0, along and about the axes.
+    /// True if any velocity was ever non-zero, along and about the axes.
     pub(crate) has_speed: [bool; 2],
 }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// Time between two looks for a signal.
+/// Time between two checks for a signal.
 const LISTEN_EVERY: Duration = Duration::from_millis(50);
 
 /// State shared by the two threads.
@@ -49,8 +49,7 @@ impl Control {
 /// made and to be made.
 ///
 /// # Errors
-/// An exception of a signal, such as `KeyboardInterrupt`, or of `progress`. The work then ends at its next look at the [`Control`], and is not
-/// waited for.
+/// An exception of a signal, such as `KeyboardInterrupt`, or of `progress`. The work then ends at its next check of the [`Control`], and is not waited for.
 pub(crate) fn aside<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -60,7 +59,7 @@ pub(crate) fn aside<T: Send + 'static>(
     let (sender, receiver) = channel();
     let worker = thread::Builder::new().name("moorline".to_string()).spawn({
         let control = control.clone();
-        // the receiver is gone where the work was given up
+        // the receiver is gone if the work was abandoned
         move || drop(sender.send(work(&control)))
     })?;
     let mut receiver = receiver;

@@ -32,7 +32,7 @@ pub(crate) enum Failure {
     Output(String, String),
     /// A call by MoorDyn's interface failed.
     MoorDyn(moorline_system::Failure),
-    /// The work was given up.
+    /// The work was abandoned.
     Interrupted,
 }
 

@@ -1,4 +1,4 @@
-//! The extension module `moorline._moorline`: doors from Python to the library. Nothing is computed here.
+//! The extension module `moorline._moorline`: the interface from Python to the library. Nothing is computed here.
 //!
 //! | module | content |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! Columns of a motion in memory as the motion of a scene, as a motion file has them.
+//! The motion of a scene from columns in memory, which are named as in a motion file.
 
 use std::collections::BTreeMap;
 

@@ -57,7 +57,7 @@ pub(crate) fn with_values(loaded: &LoadedScene, values: &[(String, f64)]) -> Res
     check(scene)
 }
 
-/// Refuses a scene that was changed into a wrong one.
+/// Refuses a scene that a change has made invalid.
 pub(crate) fn check(scene: Scene) -> Result<Scene, Failure> {
     let mistakes = scene.mistakes();
     match mistakes.is_empty() {

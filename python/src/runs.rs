@@ -209,7 +209,7 @@ fn shapes_of<'py>(py: Python<'py>, frames: &[Frame], line: usize) -> PyResult<Sh
     ))
 }
 
-/// Places of columns by name, behind that of the time.
+/// Places of columns by name, after that of the time.
 fn places(all: &[Column], names: &[String]) -> Result<Vec<usize>, Failure> {
     let known = all.iter().map(|column| column.name.as_str());
     let place = |name: &String| {

@@ -323,7 +323,7 @@ fn rows<'py>(
     Ok(out)
 }
 
-/// The mooring, which finds forces when they are read and so is for one thread at a time.
+/// The mooring, which computes forces when they are read and so is for one thread at a time.
 #[derive(Debug)]
 struct Held(Mutex<Mooring>);
 
@@ -362,7 +362,7 @@ pub(crate) struct Simulation {
 }
 
 impl Simulation {
-    /// Gives Python's warnings on the present state, each once.
+    /// Issues Python warnings on the present state, each once.
     fn warn(&mut self, py: Python<'_>) -> PyResult<()> {
         let notes = self.watch.look(self.mooring.change());
         for note in notes {

@@ -39,7 +39,7 @@ impl Sweep {
         self.sweep.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does something with the open sweep.
+    /// Calls a function with the open sweep.
     fn opened<T>(
         &self,
         act: impl FnOnce(&mut moorline_sweep::Sweep) -> Result<T, SweepError>,

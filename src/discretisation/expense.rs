@@ -4,11 +4,11 @@ use crate::dynamics::node_time;
 use crate::scene::{Integrator, Note, Scene};
 use crate::simulation::Simulation;
 
-/// Time from which a run is noted [s]: an hour.
+/// Run time above which a note is given [s]: an hour.
 const LONG: f64 = 3600.0;
 
-/// Returns a note on a scene whose run in communication steps of a length [s] takes longer than an hour on one thread, by the costs of steps
-/// that integrators are chosen by; waves are not counted. The note is on the network that takes longest.
+/// Returns a note on a scene whose run in communication steps of a length [s] takes longer than an hour on one thread, by the step costs used to choose
+/// integrators; waves are not counted. The note is on the network that takes longest.
 pub fn expense(scene: &Scene, simulation: &Simulation, interval: f64) -> Option<Note> {
     let (model, duration) = (simulation.model(), scene.output.duration);
     let (mut time, mut longest, mut note) = (0.0, 0.0, None);

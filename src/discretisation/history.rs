@@ -1,4 +1,4 @@
-//! What the tolerance of a scene refers to, in time: the tension at the driven end of a line, or the positions of three of its points.
+//! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, or the positions of three of its points.
 
 use super::search::driven;
 use crate::math::hermite::Hermite;
@@ -7,9 +7,9 @@ use crate::model::Model;
 use crate::scene::{Scene, ToleranceOf};
 use crate::simulation::Simulation;
 
-/// Standard deviation of a tension that its errors are relative to at least, over its mean [-].
+/// Least standard deviation of a tension to which its errors are related, over its mean [-].
 const STILL_TENSION: f64 = 0.01;
-/// Deviation of positions that their errors are relative to at least, over the length of the line [-].
+/// Least deviation of positions to which their errors are related, over the length of the line [-].
 const STILL_POSITION: f64 = 1e-3;
 /// Points of a line whose positions are compared, by unstretched length from end A over that of the line [-].
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
@@ -73,7 +73,7 @@ impl History {
         squares.sum::<f64>().sqrt()
     }
 
-    /// Standard deviation, of positions in space, or the least that counts, in its unit.
+    /// Standard deviation, of positions in space, or the least value used, in its unit.
     pub(super) fn deviation(&self) -> f64 {
         let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
         let squares = self.series.iter().map(|series| {

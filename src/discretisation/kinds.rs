@@ -1,5 +1,5 @@
-//! Networks of lines that are copies of one another: the same lines between points in the same places but for a displacement along the
-//! seabed, moved alike. The errors of their meshes are the same, over any time in waves, so that one network of each kind is tried.
+//! Networks of lines that are copies of one another: the same lines between points at the same positions except for a displacement along the seabed, moved
+//! in the same way. The errors of their meshes are the same, over any time in waves, so one network of each kind is tried.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::scene::{Line, MotionPath, Point, Scene, Vessel};
 
 use super::{Discretisation, Mesh, Networks, elements_of, short_sections};
 
-/// Distance that makes no difference between two networks [m].
+/// Distance within which two positions count as the same [m].
 const SAME_PLACE: f64 = 1e-3;
 
 /// The networks of a scene by kind.
@@ -21,7 +21,7 @@ pub(super) struct Kinds {
 }
 
 impl Kinds {
-    /// None where no two networks are of one kind.
+    /// None if no two networks are of the same kind.
     pub(super) fn of(scene: &Scene, networks: &Networks) -> Option<Kinds> {
         let level = scene
             .seabed
@@ -45,7 +45,7 @@ impl Kinds {
         })
     }
 
-    /// The result for the whole scene, of that for the scene with one network of each kind.
+    /// Result for the whole scene, from that for the scene with one network of each kind.
     pub(super) fn expanded(
         &self,
         found: &Discretisation,
@@ -123,7 +123,7 @@ impl Part {
         reduced
     }
 
-    /// Gives lines, points and vessels numbers for names, and positions along the seabed from its first vessel or point, in steps of [`SAME_PLACE`].
+    /// Replaces names by numbers, and measures positions along the seabed from its first vessel or point, in steps of [`SAME_PLACE`].
     fn displaced(mut self) -> Part {
         let vessels = self.vessels.iter().map(|vessel| vessel.position);
         let mut places = vessels.chain(self.points.iter().map(|point| point.position));

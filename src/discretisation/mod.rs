@@ -16,13 +16,12 @@
 //! standard deviation of that line's tension. All networks run together, at the elements of the mesh level until
 //! their error is small enough.
 //!
-//! The runs of the ladder take axial-implicit steps where these cost less than explicit ones. Their length is the longest whose error, 4/3 of the
-//! distance to a run with half of it, is a quarter of the tolerance on a coarse mesh; the same is required on the mesh found, or else the
-//! ladder is run again with half the step, if the work allows. Of networks that are displaced copies of one another, moved alike, one is tried.
+//! The runs of the ladder take axial-implicit steps where these cost less than explicit ones. Their length is the longest whose error, 4/3 of the distance
+//! to a run with half the step, is a quarter of the tolerance on a coarse mesh; the same is required on the mesh found, or else the ladder is run again
+//! with half the step, if the work allows. Of networks that are displaced copies of one another, moved in the same way, only one is tried.
 //!
-//! The axial-implicit leapfrog costs about three times as much a step as the explicit one. On the mesh found it is tried with steps from the
-//! longest allowed down, as long as that is cheaper, and taken with the first step that keeps the error against the finest mesh; else
-//! steps are explicit.
+//! The axial-implicit leapfrog costs about three times as much per step as the explicit one. On the mesh found it is tried with decreasing steps from the
+//! longest allowed, as long as these are cheaper; the first step that keeps the error against the finest mesh is taken, else steps are explicit.
 //!
 //! Where a line bends, or needs fully implicit steps for another reason, all networks are run with the integrators that the rules choose, on lines that bend
 //! in the longest stable steps. The step of the trials and of the run is found in the same way, or extrapolated at first order from the last one tried.
@@ -55,9 +54,9 @@ pub use expense::expense;
 
 /// Part of the tolerance that the estimated error is to keep [-].
 const AIM: f64 = 0.7;
-/// Most elements that are extrapolated to [-].
+/// Greatest number of elements that is extrapolated to [-].
 const ELEMENTS_MAX: f64 = 400.0;
-/// Names of lines in a sentence [-].
+/// Greatest number of line names in a sentence [-].
 const NAMES: usize = 3;
 
 /// A mesh that was tried.
@@ -79,7 +78,7 @@ pub struct Mesh {
     pub trials: Vec<Trial>,
     /// Elements of a line alone [-].
     pub elements: usize,
-    /// Estimated error with them, an upper estimate where they were extrapolated [-].
+    /// Estimated error with these elements, an upper estimate where they were extrapolated [-].
     pub error: f64,
     /// True if a trial was run on this mesh, or none is needed; false if it was extrapolated, or no trial could be run.
     pub tried: bool,
@@ -358,8 +357,8 @@ pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
     }
 }
 
-/// Scene with a discretisation that is as fine as each of those found for its lines in other motions and seas: of every network the greatest
-/// number of elements; integrator and shortest step where all agree on the integrator, else those of the scene. None where nothing was found.
+/// Scene with a discretisation that is as fine as each of those found for its lines in other motions and seas: for every network the greatest number of
+/// elements; integrator and shortest step if all agree on the integrator, else those of the scene. None if nothing was found.
 pub fn finest(scene: &Scene, found: &[Discretisation]) -> Option<Scene> {
     let networks = Networks::of(scene)?;
     let open: Vec<usize> = (0..networks.lines.len()).filter(|&i| networks.open[i]).collect();
@@ -418,7 +417,7 @@ impl Networks {
         Some(Networks::new(scene, &Model::new(scene).ok()?))
     }
 
-    /// Those of a model of the scene.
+    /// Networks of a model of the scene.
     fn new(scene: &Scene, model: &Model) -> Networks {
         let networks = model.networks.iter();
         let lines: Vec<Vec<usize>> = networks.map(|network| network.lines.clone()).collect();
@@ -430,7 +429,7 @@ impl Networks {
         }
     }
 
-    /// Values of one number a network for those whose elements are open.
+    /// Values for the networks whose elements are open, from one value per network.
     fn open<'a, T>(&'a self, values: &'a [T]) -> impl Iterator<Item = &'a T> {
         values
             .iter()

@@ -6,7 +6,7 @@ use crate::simulation::Simulation;
 
 use super::search::driven;
 
-/// Part of an error at rest that the most elements must take away to be worth it, where they do not keep the tolerance [-].
+/// Fraction of an error at rest that the most elements must remove to be worthwhile, if they do not keep the tolerance [-].
 const GAIN: f64 = 0.5;
 
 /// Adds elements to the meshes whose tension at rest does not keep the tolerance; none where more do not help. `given` is a simulation on

@@ -1,8 +1,8 @@
 //! Sections that are one element on all mesh levels.
 //!
-//! Such a section is the same on all levels, whose runs then say nothing about its error: on 2400 m of polyester rope between 150 and 100 m of chain
-//! 5 to 20 elements agree within 0.1 %, and are all off by 0.9 %. On the mesh found, the run is repeated with twice the elements in these
-//! sections, of which 4/3 of the distance is their error, until that is small enough.
+//! Such a section is the same on all levels, whose runs then say nothing about its error: on 2400 m of polyester rope between 150 and 100 m of chain, 5 to
+//! 20 elements agree within 0.1 %, and are all off by 0.9 %. On the mesh found, the run is repeated with twice the elements in these sections until their
+//! error, 4/3 of the distance between the two runs, is small enough.
 
 use super::search::Run;
 use crate::scene::Scene;
@@ -54,7 +54,7 @@ pub(super) fn with_elements(scene: &Scene, sections: &[(usize, usize)], elements
     scene
 }
 
-/// Gives sections that are left open the elements of the same sections of another line, where these are more.
+/// Gives sections that are left open the elements of the same sections of another line, if these are more.
 pub(super) fn take_over(scene: &mut Scene, line: usize, from: &Scene, other: usize) {
     let sections = scene.lines[line].sections.iter_mut();
     for (own, found) in sections.zip(&from.lines[other].sections) {

@@ -97,7 +97,7 @@ impl Integrators {
         }
     }
 
-    /// Discards the leapfrogs' copy of the state. Required when the state is another than the one that
+    /// Discards the leapfrogs' copy of the state. Required when the state is not the one that
     /// [`Self::advance`] left.
     pub fn forget(&mut self) {
         self.holds = false;
@@ -295,7 +295,7 @@ impl Integrators {
         Ok(total)
     }
 
-    /// Prepares scratch of this number of threads for a step from `state`.
+    /// Prepares scratch for this number of threads for a step from `state`.
     fn prepare_scratch(&mut self, state: &State, threads: usize) {
         while self.scratch.len() < threads {
             self.scratch.push(self.scratch[0].clone());
@@ -342,7 +342,7 @@ impl Done {
     }
 }
 
-/// Puts held points, and the velocities of the nodes at all lines' ends except quasi-static ones, at their values at
+/// Sets held points, and the velocities of the end nodes of all lines except quasi-static ones, to their values at
 /// the time of `state`.
 fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
     for (index, point) in state.points.iter_mut().enumerate() {

@@ -12,11 +12,11 @@
 //! loads alone, and both momenta by their impulses, to rounding.
 //!
 //! Loads are means over the step, so that an impulse is exact wherever the load jumps. Viscous damping adds D (E₁ − E)/Δt to S̄. Added mass
-//! and drag take the tangent in the middle of the step from the angular velocity before it: second order, and no part of the slopes.
+//! and drag take the tangent in the middle of the step from the angular velocity before it: second order, and not part of the slopes.
 //! J is the lumped rotary inertia; held unknowns follow their points.
 //!
-//! The iteration starts from mean rates extrapolated from the last three steps ([`crate::model::Course`]) and uses a tangent again while changes fall
-//! quickly. Where that does not converge, it starts from the velocities before the step, with exact tangents.
+//! The iteration starts from mean rates extrapolated from the last three steps ([`crate::model::Course`]) and reuses a tangent while changes fall
+//! quickly. If that does not converge, it starts from the velocities before the step, with exact tangents.
 //!
 //! Source: Simo, Tarnow & Doblaré (1995), Int. J. Numer. Methods Eng. 38, 1431-1473 (momenta and Cayley update); Romero & Armero (2002), ibid.
 //! 54, 1683-1716, and Betsch & Steinmann (2003), Multibody Syst. Dyn. 8, 367-391 (directors, discrete gradient). Valid for turns below half a
@@ -50,9 +50,9 @@ pub use drive::{Driven, attitude, drive, held};
 pub use measures::{BeamView, Momentum};
 use nodes::FourNodes;
 
-/// Change of position over the beam's length, and of θ, that ends the iteration [-].
+/// Change of position relative to the beam's length, and of θ, that ends the iteration [-].
 const TOLERANCE: f64 = 1e-12;
-/// Sum of all further changes by the same tangent that are left out [-].
+/// Sum of all further changes with the same tangent that may be omitted [-].
 const REMAINDER: f64 = 0.01 * TOLERANCE;
 /// Change [-] below which a change that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-7;
@@ -60,7 +60,7 @@ const ROUNDING: f64 = 1e-7;
 const REUSED_MAX: f64 = 0.1;
 /// Ratio of successive changes above which the tangent is evaluated again [-].
 const FALL: f64 = 0.1;
-/// Iterations of a step [-].
+/// Greatest number of iterations of a step [-].
 const SOLVES_MAX: usize = 30;
 /// Largest change of θ in an iteration [-].
 const TURN_MAX: f64 = 1.0;
@@ -121,7 +121,7 @@ impl StuckReason {
     }
 }
 
-/// Guess from which the sections after a step are found: the second where the first does not lead to them.
+/// Guess from which the sections after a step are found: the second if the first does not converge.
 #[derive(Debug, Clone, Copy)]
 enum Guess {
     /// The course of the last steps continues.
@@ -162,7 +162,7 @@ impl BeamWork {
         }
     }
 
-    /// Moves `shape` by one step; returns the tangents that were factorised and the energy that crossed the boundary of the beam.
+    /// Moves `shape` by one step; returns the number of factorised tangents and the energy that crossed the boundary of the beam.
     ///
     /// # Errors
     /// The iteration did not converge; the shape is unchanged.
@@ -178,7 +178,7 @@ impl BeamWork {
         Ok((solves, flow))
     }
 
-    /// Finds the sections after the step from a guess; returns the tangents that were factorised.
+    /// Finds the sections after the step from a guess; returns the number of factorised tangents.
     fn converge(&mut self, case: &BeamStep, shape: &LineState, guess: Guess) -> Result<usize, Stuck> {
         self.predict(case, shape, guess);
         let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
@@ -368,7 +368,7 @@ impl BeamWork {
         }
     }
 
-    /// Places of a node before and after the step [m].
+    /// Positions of a node before and after the step [m].
     fn places(&self, i: usize) -> [&Vector3<f64>; 2] {
         [&self.before[i].position, &self.now[i].position]
     }
@@ -530,8 +530,8 @@ impl BeamWork {
     }
 }
 
-/// Whether no correction is needed after two with these changes [-], the second of them with the `exact` tangent or that of the first: changes
-/// by one tangent go on to fall as the last one did, and those that do not fall are rounding.
+/// Returns whether no correction is needed after two with these changes [-], the second of them with the `exact` tangent or that of the first: changes
+/// with one tangent keep falling as the last one did, and those that do not fall are rounding.
 fn is_last(exact: bool, [before, change]: [f64; 2]) -> bool {
     match exact {
         true => change <= ROUNDING && change >= 0.5 * before,

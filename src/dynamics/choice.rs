@@ -4,17 +4,17 @@
 //! explicit leapfrog costs least per step, and uses steps up to its axial limit. Its axial-implicit variant costs
 //! about three times as much. Its steps follow from accuracy: from the axial waves of single lines and the elastic
 //! oscillation of free points, or, where the scene selects it, the longest that transverse waves allow under the
-//! current tensions: on lindahl_slow 0.7 as many as under three times the static tension throughout, with the same
-//! errors. Generalised-α costs about fifty times as much. It handles networks joined at free points, and single lines
-//! whose slowest wave passes through them within one step of the longest allowed, such as a taut line almost without
-//! mass: they are at rest in every step, at any step size.
+//! current tensions: on lindahl_slow 0.7 times as many steps as under three times the static tension throughout, with
+//! the same errors. Generalised-α costs about fifty times as much. It handles networks joined at free points, and single lines
+//! whose slowest wave passes through them within one step of the greatest length allowed, such as a taut line of almost
+//! no mass: they are at rest in every step, at any step size.
 //!
 //! Where axial waves are much faster than transverse ones the line stretches quasi-statically, and longer steps do. A host whose positions jump by
-//! ½aΔt² at communication points (`input_reconstruction = "jump"`) starts axial waves there, which the steps then resolve: else they are not over
-//! when the host reads the force, which on a cable of 30 elements in steps of 10 ms was off by 6 % on the mean.
+//! ½aΔt² at communication points (`input_reconstruction = "jump"`) starts axial waves there, which the steps then resolve: otherwise they persist
+//! when the host reads the force, which on a cable of 30 elements in steps of 10 ms was off by 6 % on average.
 //!
 //! Lines that bend may cost least in fully implicit steps too: where elements are short their joints are as stiff as a tension of 4EI/l². Their steps,
-//! axial-implicit or fully implicit, are as long as they are stable: trials judge the error of these steps ([`crate::discretisation`]). Lines that mix
+//! axial-implicit or fully implicit, are as long as stability allows: trials judge the error of these steps ([`crate::discretisation`]). Lines that mix
 //! strain measures, have nodes without mass or damped joints are integrated fully implicitly at any cost. Beams have a separate integrator.
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
@@ -150,7 +150,7 @@ impl Choice {
     }
 }
 
-/// Time [s] in the suitable multiple of the second, with four digits.
+/// Time [s] in a suitable multiple of the second, with four digits.
 fn seconds(time: f64) -> String {
     let (scale, unit) = match time {
         t if t >= 1.0 => (1.0, "s"),

@@ -20,12 +20,12 @@
 //!
 //! E − E₀ − external work + dissipation + algorithmic dissipation is the error of the time integration.
 //!
-//! The leapfrogs sum over every internal step the work of springs, weight and water on the free nodes, forces at t_n times the mean of the
+//! In every internal step, the leapfrogs add the work of springs, weight and water on the free nodes: forces at t_n times the mean of the
 //! velocities around it (`leapfrog/balance`, `axial_implicit/balance`). The work that is not kinetic energy when the balance is read has been
 //! dissipated. Energy is exact at t − Δt/2, the time of the velocities, and E is evaluated there. The implicit integrators sum the work of the
-//! forces of each step ([`implicit`]), and so do beams, whose laws are discrete gradients. Quasi-static networks have no kinetic energy; the work of ends and loads
-//! is that of the mean of the forces before and after a step (`at_rest`). Closed-form catenaries are evaluated as wholes, half
-//! segments at prescribed ends included:
+//! forces of each step ([`implicit`]), and so do beams, whose laws are discrete gradients. Quasi-static networks have no kinetic energy; the work of
+//! ends and loads is that of the mean of the forces before and after a step (`at_rest`). Closed-form catenaries are evaluated as a whole, including
+//! the half segments at prescribed ends:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
 //!
@@ -71,7 +71,7 @@ pub struct Energy {
     pub shear: f64,
     /// Strain energy of torsion [J].
     pub torsion: f64,
-    /// Potential energy of weight less buoyancy, above z = 0 [J].
+    /// Potential energy of weight less buoyancy, relative to z = 0 [J].
     pub gravitational: f64,
 }
 
@@ -242,7 +242,7 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
 
 /// Flow of energy into a leapfrog's line whose prescribed ends jump to `ends`, positions [m] and velocities [m/s] at the time of the other
 /// velocities, while its nodes stay where they are. The change of kinetic energy due to the rotation of the segments counts as dissipation, as in the flow of a
-/// leapfrog. `moved` is room for its shape.
+/// leapfrog. `moved` is scratch for its shape.
 pub fn jump_flow(
     model: &Model,
     state: &State,
@@ -298,8 +298,8 @@ fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64
     then
 }
 
-/// Distance that the material at a winch has moved beyond the winch in `lag` [s], by which its velocity misses the
-/// winch's place [m].
+/// Displacement of the material at a winch relative to the winch in `lag` [s], by which a step at the velocity of the
+/// material misses the winch [m].
 fn material_transport(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     let Some(winch_state) = shape.winch_state else {
         return Vector3::zeros();
@@ -309,7 +309,7 @@ fn material_transport(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> 
     lag * winch_state.half_step[1] / line.segments.length[last - 1] * chord
 }
 
-/// Kinetic energy of a node at a velocity [m/s], with the masses that it carries across and along the line [J].
+/// Kinetic energy of a node at a velocity [m/s], with its masses across and along the line [J].
 fn node_motion(line: &Line, shape: &LineState, i: usize, velocity: Vector3<f64>, water: WaterAlong) -> f64 {
     let masses = line.nodes.masses(i, dry_part(line, shape, i, water));
     0.5 * Slender::new(masses).square(velocity, tangent(shape, i))

@@ -9,8 +9,8 @@
 //!   (1 − α_f) M' b' + α_f M a = (1 − α_f) f(r', v', t') + α_f f(r, v, t),   (1 − α_f) b' = (1 − α_m) a' + (α_m − α_f) a.
 //!
 //! With a constant mass this is (1 − α_m) M a' + α_m M a on the left, as it is usually written. a is the acceleration
-//! at a time (α_f − α_m) Δt after that of r and v. With M' a' a mass that turns with its line, or added mass that
-//! enters the water, would be taken at the wrong time, and the scheme would be of first order. b' is the acceleration
+//! at a time (α_f − α_m) Δt after that of r and v. With M' a', a mass that turns with its line, or added mass that
+//! enters the water, would be evaluated at the wrong time, and the scheme would be of first order. b' is the acceleration
 //! at t'.
 //!
 //! * Generalised-α of spectral radius ρ at infinite frequency: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f,
@@ -21,14 +21,14 @@
 //!
 //! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The
 //! seabed's damper fades in over two static penetrations above and below the seabed, or over the displacement of the
-//! node in a step if that is larger. A damper that switches on at touch would prevent the convergence of Newton's
+//! node in a step if that is larger. A damper that switches on at contact would prevent convergence of Newton's
 //! method. Nodes at rest on the seabed are not affected.
 //!
 //! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer.
-//! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound
+//! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1. In its usual form, the method gains energy without bound
 //! where slack cables snap taut without damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to
-//! 10 ms, ρ = 0.5 and more): the forces before and after a step do not determine the energy that a spring takes in
-//! between. The segments therefore pull by the discrete gradient of their energy over a step ([`crate::elements`]).
+//! 10 ms, ρ = 0.5 and more): the forces before and after a step do not determine the energy that a spring absorbs in
+//! between. The tension of a segment is therefore the discrete gradient of its energy over a step ([`crate::elements`]).
 //! The same cable then never gains energy at any ρ, and conserves it at ρ = 1.
 
 use nalgebra::{Matrix3, Vector3};
@@ -44,15 +44,15 @@ use crate::scene::{Integrator, Solver};
 pub const SPECTRAL_RADIUS: f64 = 0.2;
 /// Bossak's α where the scene gives none [-].
 pub const BOSSAK_ALPHA: f64 = -0.3;
-/// Last correction, over the shortest segment [-].
+/// Last correction relative to the shortest segment [-].
 const NEWTON_TOLERANCE: f64 = 1e-7;
-/// Greatest strain and rotation of a segment in a first correction after which the second one uses the same tangent [-]: it is about their square.
+/// Greatest strain and rotation of a segment in a first correction after which the second, about their square, reuses the tangent [-].
 const REUSED_MAX: f64 = 1e-4;
-/// Newton iterations of a step, of which one may use the tangent of the one before.
+/// Greatest number of Newton iterations of a step, one of which may reuse the tangent.
 const ITERATIONS_MAX: usize = 16;
 /// Iterations after which corrections that fall too slowly are taken for a cycle.
 const CIRCLING: usize = 6;
-/// Parts that a step may be cut into by halving: twelve halvings.
+/// Greatest number of parts of a step: twelve halvings.
 const PARTS_MAX: usize = 4096;
 
 /// Parameters of the integrator [-].
@@ -185,7 +185,7 @@ fn acceleration(mass: Matrix3<f64>, residual: Vector3<f64>) -> Vector3<f64> {
         .map_or(Vector3::zeros(), |inverse| -(inverse * residual))
 }
 
-/// Puts the held points of a network where they are at time `t` [s].
+/// Sets the held points of a network to their motion at time `t` [s].
 fn hold<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     network: &Network,
@@ -217,7 +217,7 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
     place_ends(model, network, state);
 }
 
-/// A span of time to pass in equal steps.
+/// Time span divided into equal steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     /// Start of the step [s].
@@ -228,7 +228,7 @@ pub struct Span {
     pub step_max: f64,
 }
 
-/// Advances one network through a span of time, not at all where its end is not after its start; `held` returns
+/// Advances one network through a time span; does nothing unless its end is after its start. `held` returns
 /// position, velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
 ///
 /// # Errors
@@ -258,11 +258,11 @@ pub struct Driving<'a, K> {
     pub scheme: &'a Scheme,
 }
 
-/// [`advance`], showing every internal step, and once more with a step of no length where ends were released after
-/// it.
+/// [`advance`] with a call of `observe` after every internal step, and one more with a step of zero length where ends
+/// were released after it.
 ///
 /// # Errors
-/// As there.
+/// As for [`advance`].
 pub fn advance_observed<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -301,7 +301,7 @@ pub fn advance_observed<K: Fn(usize, f64) -> Kinematics>(
 }
 
 impl Span {
-    /// Number of steps; rounding of the times makes no extra one.
+    /// Number of steps; rounding of the times adds none.
     fn steps(&self) -> usize {
         (((self.end - self.start) / self.step_max - 1e-9).ceil() as usize).max(1)
     }
@@ -365,7 +365,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
     }
 
-    /// Releases the ends whose tension at `t` [s] or time is due; returns whether there were any.
+    /// Releases the ends that have reached their release tension or time at `t` [s]; returns whether there were any.
     fn release_ends(&self, state: &mut State, t: f64) -> bool {
         let mut any = false;
         for &index in &self.network.lines {
@@ -422,8 +422,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             if !correction.is_finite() {
                 return false;
             }
-            // A part p of Newton's step leaves 1 − p of it where forces are smooth; a ratio of corrections midway
-            // between that and the last means a cycle.
+            // Where forces are smooth, a part p of Newton's step leaves 1 − p of it; a correction above the midpoint of
+            // that and the last one indicates a cycle.
             let left_over = (1.0 - 0.5 * part) * last;
             let circles = iteration >= CIRCLING && correction > left_over.max(tolerance);
             part = if circles { 0.5 } else { 1.0 };
@@ -435,7 +435,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
                 self.shift_accelerations(state, before);
                 return true;
             }
-            // In a smooth step the second correction is small by any tangent; where it is not, the others of the step use exact ones.
+            // In a smooth step the second correction is small with any tangent; otherwise the remaining ones use exact tangents.
             again = iteration == 0 && consistent && work.greatest_strain(self.network) <= REUSED_MAX;
         }
         false
@@ -455,7 +455,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         work.solve_again(self.model, self.number)
     }
 
-    /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments
+    /// Solves again if the exact tangent is not positive definite: with row exchanges, since stiff segments
     /// that turn within the step make it unsymmetric, and with positive semi-definite joints of lines that bend.
     fn solve_indefinite(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         let mut lines = self.model.lines_of(self.network);
@@ -497,7 +497,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
     }
 
-    /// From b' to a' = [(1 − α_f) b' + (α_f − α_m) a] / (1 − α_m), wherever forces move something.
+    /// Converts b' to a' = [(1 − α_f) b' + (α_f − α_m) a] / (1 − α_m) for all nodes and points that forces move.
     fn shift_accelerations(&self, state: &mut State, before: &State) {
         let Scheme { alpha_m, alpha_f, .. } = *self.scheme;
         let of_new = (1.0 - alpha_f) / (1.0 - alpha_m);

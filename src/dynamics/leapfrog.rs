@@ -1,13 +1,13 @@
 //! Leapfrogs of lumped two-node segments: the integrators of cables.
 //!
-//! Positions live at t_n, velocities at t_{n−½}. A step of a network has the stages
+//! Positions are defined at t_n, velocities at t_{n−½}. A step of a network has the stages
 //!
 //! 1. tension of the segments and forces of the joints at t_n, and ends that are released;
 //! 2. free points, which take the forces of the lines at them;
 //! 3. prescribed points, at t_{n+1};
 //! 4. velocities of the nodes at t_{n+½}, with water and seabed, and positions at t_{n+1}.
 //!
-//! A [`Kernel`] makes the stages of a line: [`Explicit`], or [`AxialImplicit`], whose tension is solved for in stage 4. Everything else is common: the
+//! A [`Kernel`] implements the stages of a line: [`Explicit`], or [`AxialImplicit`], whose tension is solved for in stage 4. Everything else is common: the
 //! striped layout, release, surface, loading and storing the state, the energy balance.
 
 mod axial_implicit;
@@ -83,13 +83,13 @@ pub trait Kernel: Debug + Clone + Sized {
     /// Sets the coefficients of the nodes at the water's surface.
     fn meet_surface(work: &mut LeapfrogLine<Self>);
 
-    /// Returns whether prescribed ends are yet to be put where they start.
+    /// Returns whether prescribed ends still have to be moved to their start.
     fn starts(work: &LeapfrogLine<Self>) -> bool;
 
-    /// Sets the path of the winch from a time [s] on, after the end was put where it is then; `fresh` before the first step from rest.
+    /// Sets the path of the winch from a time [s] on, after the end was moved to its position then; `fresh` before the first step from rest.
     fn start_winch(_: &mut LeapfrogLine<Self>, _: &AxisPath, (_t, _fresh): (f64, bool), _: Step) {}
 
-    /// A step of a network from one time to another [s], after its water is set and its ends are released. Returns the number of solutions.
+    /// Takes a step of a network from one time to another [s], after its water is set and its ends are released. Returns the number of solutions.
     fn step(
         network: &mut LeapfrogNetwork<Self>,
         model: &Model,
@@ -174,14 +174,14 @@ impl<K: Kernel> LeapfrogLine<K> {
         }
     }
 
-    /// Loads the motion of the water by waves over a span of time, unless it is that already.
+    /// Loads the water motion due to waves over a time span, unless it is already loaded.
     fn load_waves(&mut self, span: &WaveSpan) {
         if self.layout.lacks_waves(span) {
             self.layout.load_waves(span);
         }
     }
 
-    /// Releases the ends whose tension at t_n, `t` [s], or time is due.
+    /// Releases the ends that have reached their release tension or time at t_n, `t` [s].
     fn release_ends(&mut self, releases: &[Release; 2], t: f64, step: Step) {
         for end in ENDS {
             let side = end as usize;
@@ -198,12 +198,12 @@ impl<K: Kernel> LeapfrogLine<K> {
         }
     }
 
-    /// Puts the ends somewhere that are not released from their points.
+    /// Moves the ends that are not released from their points.
     fn put_ends(&mut self, ends: [&EndMotion; 2]) {
         self.layout.vector_unit.dispatch(PutEnds(&mut self.layout, ends));
     }
 
-    /// Makes viscoelastic segments and the work of the ends start from the present position and velocity of the ends, half the `last` step [s] ago: a
+    /// Restarts viscoelastic segments and the work of the ends from the present position and velocity of the ends, half the `last` step [s] ago: a
     /// jump is not part of their motion.
     fn set_out_anew(&mut self, last: f64) {
         let lag = 0.5 * last;

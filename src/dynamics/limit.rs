@@ -1,30 +1,30 @@
 //! Largest stable time step of the explicit leapfrog, in closed form.
 //!
 //! With axial segment stiffness k = EA/l and lumped masses M, Gershgorin's bound on the highest frequency of the chain is
-//! ω² = max_i 2(k_{i−1} + k_i)/M_i. Axial damping of ratio ζ = BA·ω/(2EA), taken with the lagged velocity, lowers the
+//! ω² = max_i 2(k_{i−1} + k_i)/M_i. Axial damping of ratio ζ = BA·ω/(2EA), evaluated at the lagged velocity, lowers the
 //! limit 2/ω of the undamped leapfrog to
 //!
 //! Δt_max = (2/ω)(√(1 + ζ²) − ζ),
 //!
-//! of which 0.9 is used. That is the limit of springs that pull and push. The springs of a line only pull, and change
-//! between two maps where it slackens. With θ from ωΔt = 2 sin(θ/2), the trace of k taut steps and a slack one is 2
-//! cos((k + ½)θ)/cos(θ/2), whose size exceeds 2 about (k + ½)θ = π, for θ between π/(k + 1) and π/k. One taut step
+//! of which 0.9 is used. That is the limit for springs that pull and push. The springs of a line only pull, and the
+//! map of a step changes where it slackens. With θ from ωΔt = 2 sin(θ/2), the trace of k taut steps and a slack one is 2
+//! cos((k + ½)θ)/cos(θ/2), whose magnitude exceeds 2 near (k + ½)θ = π, for θ between π/(k + 1) and π/k. One taut step
 //! and a slack one in alternation are unstable above ωΔt = √2, two and one from 1 to √2, three and one from 0.77 to
-//! 1, and longer sequences, ever more weakly, below: a slack line without damping gathers energy in its shortest
-//! waves. Lines with little damping use 0.38 of the limit, ωΔt ≤ 0.76: of random scenes whose leapfrog keeps an
-//! energy balance, 97 % close within 2 % in equal steps and 99 % in irregular ones, where 0.5 of the limit left 95
-//! and 96 %. A line that may be released needs more damping to use more of the limit: a loose end cracks like a whip,
-//! alternately slack and taut.
+//! 1, and longer sequences, progressively more weakly, below: a slack line without damping accumulates energy in its
+//! shortest waves. Lines with little damping use 0.38 of the limit, ωΔt ≤ 0.76: the energy balance of the leapfrog
+//! closes within 2 % in 97 % of random scenes with equal steps and in 99 % with irregular ones, compared with 95 and
+//! 96 % at 0.5 of the limit. A line that may be released needs more damping to use more of the limit: a loose end
+//! cracks like a whip, alternately slack and taut.
 //!
-//! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c, or 1.2/ω with k = T/l. Lines that may come out of the water are taken with the mass that
-//! they have in air, and with the stiffness of their waterplane.
+//! Transverse waves of speed c = √(T/m) limit every variant, including the axial-implicit one: Δt < 0.6 h/c, or 1.2/ω with k = T/l.
+//! Lines that may come out of the water have their mass in air here, and the stiffness of their waterplane.
 //!
-//! Quadratic drag is taken explicitly, at v* = 1.5 v_{n−½} − 0.5 v_{n−3/2}. A velocity that changes its sign in every
+//! Quadratic drag is explicit, evaluated at v* = 1.5 v_{n−½} − 0.5 v_{n−3/2}. A velocity that changes sign in every
 //! step has v* = 2v and drag 4K|v|v, which turns it into −v for K|v|Δt/M = ½. A steady velocity is stable against
-//! disturbances, of which drag takes 2K|v|v*, up to the same limit. Beyond it velocities grow with every step, and
-//! the faster the greater they are: a communication step that ends beyond is repeated in shorter steps.
+//! disturbances, whose drag is 2K|v|v*, up to the same limit. Beyond it, velocities grow in every step, and
+//! faster the greater they are: a communication step that ends beyond it is repeated in shorter steps.
 //!
-//! In the shortest wave velocities change their sign in every step for springs, dampers, damping by mass (α) and drag
+//! In the shortest wave, velocities change sign in every step for springs, dampers, mass damping (α) and drag
 //! alike, so that the terms add up:
 //!
 //! ω²Δt²/4 + (ζω + ½α + 2K|v|/M)Δt ≤ 1,
@@ -40,25 +40,25 @@ use std::ops::{Range, RangeInclusive};
 use crate::model::{End, Line, Model, SHORTEST, Segments};
 use crate::physics::stretch::StretchLaw;
 
-/// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast diverges with five times the drag
+/// Fraction of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast diverges with five times the drag
 /// and 20 elements.
 const SAFETY: f64 = 0.9;
-/// The same of a line without damping [-].
+/// The same for a line without damping [-].
 const SAFETY_UNDAMPED: f64 = 0.38;
-/// Damping ratio of the shortest waves from which slackening gathers no energy at the full safety [-].
+/// Damping ratio of the shortest waves from which slackening adds no energy at the full safety factor [-].
 const DAMPING_RATIO_ENOUGH: f64 = 0.016;
-/// Damping ratio of the same for a line that may be released [-]. Measured on a folded chain released at an end, 2 %
+/// The same for a line that may be released [-]. Measured on a folded chain released at an end, 2 %
 /// damped, of 40 to 160 elements: with 0.9, 0.72, 0.63 and 0.54 of the limit the crack gains up to 3.2, 1.1, 0.5 and
 /// 0 % of its energy.
 const DAMPING_RATIO_WHIP: f64 = 0.1;
-/// Steps to the first axial period that leave an error of 1 % in a tension with snaps [-]: half of the tolerance they
-/// belong to; the other half is left to the mesh. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
+/// Steps per first axial period that leave an error of 1 % in a tension with snaps [-]: half of the corresponding
+/// tolerance; the other half is left to the mesh. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
 /// Strain up to which a stiffening measure is stable [-]; beyond it the steps shorten as it stiffens.
 const STRAIN_EXPECTED: f64 = 0.05;
-/// Greatest K|v|Δt/M that explicit drag damps at [-].
+/// Greatest K|v|Δt/M at which explicit drag damps [-].
 const DRAG_COURANT: f64 = 0.5;
-/// Part of the limit that a communication step starts with, as nodes may accelerate in it [-].
+/// Fraction of the limit used at the start of a communication step, as nodes may accelerate in it [-].
 const DRAG_MARGIN: f64 = 0.8;
 /// Halvings of the interval in which the square of a frequency is sought [-].
 const HALVINGS: usize = 30;
@@ -92,8 +92,8 @@ impl ExplicitLimit {
         }
     }
 
-    /// Limit for a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; the full safety from the damping ratio
-    /// `enough` on.
+    /// Limit for a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; with the full safety factor from the damping
+    /// ratio `enough`.
     fn new(omega: f64, lag: f64, alpha: f64, enough: f64) -> ExplicitLimit {
         let dampers = 0.5 * (omega * omega * lag + alpha);
         let damped = match omega > 0.0 {
@@ -110,7 +110,7 @@ impl ExplicitLimit {
         limit
     }
 
-    /// Returns the limit that allows less.
+    /// Returns the stricter limit.
     pub fn or(self, other: ExplicitLimit) -> ExplicitLimit {
         if other.step < self.step { other } else { self }
     }
@@ -158,7 +158,7 @@ pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     limit
 }
 
-/// Rate α at which damping by mass decelerates a node [1/s].
+/// Rate α at which mass damping decelerates a node [1/s].
 fn fading(line: &Line, node: usize) -> f64 {
     let damping = line.nodes.mass_damping.as_ref();
     damping.map_or(0.0, |damping| damping[node] / line.least_mass(node))
@@ -227,7 +227,7 @@ pub fn free_point_limit(model: &Model, point: usize) -> ExplicitLimit {
         return ExplicitLimit::none();
     };
     let own = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
-    let mut alone = 0.0_f64; // greatest k/M of one line, should all others part
+    let mut alone = 0.0_f64; // greatest k/M of one line if all others are released
     let (mut enough, mut alpha) = (DAMPING_RATIO_ENOUGH, 0.0_f64);
     let (mut mass, mut sum, mut longest) = (free.mass, 0.5 * own, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
@@ -262,7 +262,7 @@ fn lone_rates(model: &Model, point: usize) -> f64 {
     attached.map(rate).fold(0.0, f64::max)
 }
 
-/// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure; with the push P that joints are as stiff as, (EA + P)/l.
+/// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure; (EA + P)/l with joints as stiff as a tension P.
 fn stiffness(line: &Line, i: usize) -> f64 {
     let segments = &line.segments;
     let slope = expected_slope(&segments.law[i]);
@@ -288,7 +288,7 @@ fn damping_enough(line: &Line) -> f64 {
     }
 }
 
-/// Square of the greatest frequency of axial waves in a line whose ends are at prescribed points, or have shares of
+/// Square of the greatest frequency of axial waves in a line whose ends are at prescribed points, or carry shares of
 /// free ones [1/s²]. The nodes have their masses in air and move along the line only. Infinite where the springs may
 /// be stiffer than the axial stiffness. Found by bisection with Sturm's theorem (Golub & Van Loan 2013, Matrix
 /// Computations, section 8.4).
@@ -372,7 +372,7 @@ pub fn transverse_period(line: &Line, tension: f64) -> f64 {
     2.0 * travel_time(line, mass, |_| tension.max(0.0))
 }
 
-/// Time that a wave takes along a line [s] with masses of its nodes [kg] and a force that restores its segments [N].
+/// Travel time of a wave along a line [s], from the masses of its nodes [kg] and the restoring force of its segments [N].
 fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64 {
     let (nodes, lengths) = (&line.nodes, &line.segments.length);
     let time = |i: usize| {
@@ -417,8 +417,8 @@ pub fn heave_step(line: &Line) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Transverse step limit [s] of a line with shares of free points under a tension [N]; infinite without tension. Gershgorin's bound again, with the transverse stiffness
-/// T/l of the segments: where these are alike it is 0.6 h/c.
+/// Transverse step limit [s] of a line with shares of free points under a tension [N]; infinite without tension. Gershgorin's bound again, with the
+/// transverse stiffness T/l of the segments: where these are alike it is 0.6 h/c.
 pub fn transverse_step(line: &Line, tension: f64, shares: EndShares) -> f64 {
     let lengths = &line.segments.length;
     let mut limit = f64::INFINITY;
@@ -512,8 +512,8 @@ mod tests {
         );
     }
 
-    /// Ratio of the speed of a node after 200 steps to the initial one, K|v|Δt/M being `courant` at first; the node
-    /// starts in the velocity that changes its sign.
+    /// Ratio of the speed of a node after 200 steps to the initial one, for an initial K|v|Δt/M of `courant`; the node
+    /// starts with the velocity that changes sign.
     fn flipping(courant: f64) -> f64 {
         let step = Step::after([1.0; 2], 1.0);
         let mut velocities = [1.0, -1.0];

@@ -1,7 +1,7 @@
 //! The path of a coupled point or a vessel, axis by axis, between communication points.
 //!
 //! A host sets the displacement x_k (and optionally the velocity v_k) at t_k and requests t_k + h. A step to x_k at
-//! that moment would be a jump, the most common noise of coupled simulations. Instead the point follows one C1 curve:
+//! that moment would be a jump, the most common source of noise in coupled simulations. Instead the point follows one C1 curve:
 //! on every communication step a cubic Hermite segment from the end of the path to the predicted position of the
 //! point.
 //!
@@ -10,15 +10,15 @@
 //! t_k), with the divided difference of the last two sets of samples. Smooth motion gets the third degree (error
 //! O(h⁴)), noise and jumps a low one. On equal steps the remainder is the error that each degree would have had at
 //! the last two samples. From rest it is always that error, since a jump within a short step does not continue at its
-//! rate. A degree is kept until another would be better by more than a factor: two of them often are equally good,
-//! where a harmonic motion is sampled symmetrically, and rounding of the host's times would then choose between them.
+//! rate. A degree is kept until another would be better by more than a factor: two of them are often equally good
+//! where a harmonic motion is sampled symmetrically, and rounding of the host's times would then decide between them.
 //! With velocities the polynomial is fitted to them and integrated from x_k.
 //!
 //! The velocity of the third degree at the end of the step is off by (25/12) m/h on equal steps, with the fourth difference m of the samples, which
-//! is also the error of the position. A cubic with this error of velocity at both ends has accelerations that are off by up to 12.5 m/h²: 18 %
+//! is also the error of the position. A cubic with this velocity error at both ends has accelerations that are off by up to 12.5 m/h²: 18 %
 //! RMS with 40 steps in a period, where positions are off by 0.06 % and velocities by 0.4 %. The tension of a light line follows the
 //! acceleration of its end. On equal steps the velocity is therefore that of the polynomial of degree four: accelerations are
-//! then off by 1.7 % and velocities by 0.07 %, and noise of the samples counts 1.3 times as much. The term of degree four fades out as
+//! then off by 1.7 % and velocities by 0.07 %, and noise in the samples has 1.3 times the effect. The term of degree four fades out as
 //! the longest of the steps grows to twice the shortest: the errors of the positions at the ends of uneven steps differ and shake the path as much.
 //!
 //! The error of a prediction, e = path − P at t_k with its rate ė, is removed within the coming step if that is no
@@ -30,7 +30,7 @@
 //! T = (√(ė² + 6a|e|) − |ė|)/a   where e ė < 0 and ė² ≤ 2a|e|,   else (2|ė| + √(4ė² + 6a|e|))/a
 //!
 //! from ë = −6e/T² − 4ė/T at the start and 6e/T² + 2ė/T at the end. With a = 0.2 m/s² (0.02 rad/s²), plus half the
-//! mean acceleration of P over the step, the path is five metres further 12 s after a step of minutes.
+//! mean acceleration of P over the step, the path has moved five metres 12 s after a step of several minutes.
 //!
 //! A host that has the motion in advance, or that steps the moving body first, sets the position at t_k + h instead
 //! ([`Reconstruction::Interpolate`]): cubics through the samples then need no prediction. A velocity that the host leaves out follows from the newest
@@ -62,7 +62,7 @@ pub use fading::Fading;
 
 /// Acceleration that the removal of a prediction error may use in any case [m/s²]: a fiftieth of g.
 const EASE: f64 = 0.2;
-/// The same for angles [rad/s²], on levers of some ten metres.
+/// The same for angles [rad/s²], with lever arms of some ten metres.
 const EASE_OF_ANGLES: f64 = 0.02;
 /// Additional share of the motion's acceleration for the removal of an error [-].
 const SHARE: f64 = 0.5;
@@ -81,7 +81,7 @@ pub struct InputSample {
 }
 
 impl InputSample {
-    /// Sample of N axes, the last of which stands for missing ones.
+    /// Sample of N axes, the last of which also fills the missing ones.
     #[inline(always)]
     pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> InputSample {
         InputSample::rated(position, rates(velocity))
@@ -144,9 +144,9 @@ impl AxesPath {
         }
     }
 
-    /// Becomes the path `before` continued by a communication step from the host's sample at its start; at its end
-    /// with [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: reading the values again at
-    /// once would stall the step on the stores.
+    /// Sets the path to `before`, continued by a communication step from the host's sample at its start, or at its end
+    /// with [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: reading the values back
+    /// immediately would stall the step on the stores.
     #[inline(always)]
     pub fn extend(
         &mut self,
@@ -205,7 +205,7 @@ impl AxesPath {
     }
 
     /// Velocity at the newest sample [m/s, rad/s]: that of the polynomial of degree four where the third predicts the samples best, else that of
-    /// the parabola through the last three places.
+    /// the parabola through the last three positions.
     #[inline(never)]
     fn derive(&mut self, before: &AxesPath, extrapolation: &Extrapolation) -> Lanes {
         let differences = Differences::new(extrapolation, extrapolation.pick(&self.positions));
@@ -219,8 +219,8 @@ impl AxesPath {
         above(degree, DEGREE_MAX).choose(smooth * Lanes::splat(extrapolation.unit[1]), parabola)
     }
 
-    /// [`AxesPath::extend`] where the host goes back in time, where samples are dropped, or where the axes with a
-    /// velocity change or are only some.
+    /// [`AxesPath::extend`] where the host goes back in time, where samples are dropped, or where the set of axes with
+    /// a velocity changes or is incomplete.
     #[cold]
     #[inline(never)]
     fn turn(&mut self, before: &AxesPath, extrapolation: &Extrapolation, sample: &InputSample) {
@@ -304,7 +304,7 @@ impl AxesPath {
         self.end = to;
     }
 
-    /// Leads over a span of time [s] from the end of the path `before` to given positions [m, rad] and velocities [m/s, rad/s], and not to its own
+    /// Continues the path `before` over a time span [s] to given positions [m, rad] and velocities [m/s, rad/s] in place of its own
     /// prediction.
     pub fn lead(&mut self, before: &AxesPath, [start, length]: [f64; 2], to: [Lanes; 2]) {
         self.curve = Hermites::bridge([start, length, 1.0 / length], before.end, to);
@@ -316,7 +316,7 @@ impl AxesPath {
         (!self.rated.any_positive()).then_some(self.positions[0])
     }
 
-    /// Becomes parabolas from a time [s] over a length [s], from positions [m, rad] at velocities [m/s, rad/s] with accelerations [m/s², rad/s²].
+    /// Sets the path to parabolas from a time [s] over a length [s], from positions [m, rad] at velocities [m/s, rad/s] with accelerations [m/s², rad/s²].
     pub fn glide(&mut self, [start, length]: [f64; 2], from: [Lanes; 2], acceleration: Lanes) {
         let ([position, velocity], h) = (from, Lanes::splat(length));
         let gained = h * acceleration;
@@ -349,7 +349,7 @@ impl AxesPath {
         self.curve.at(t)
     }
 
-    /// The same at both ends of the present segments; the last one is to the last bit where the next ones start.
+    /// The same at both ends of the present segments; the end is bit-identical to the start of the next segments.
     #[inline(always)]
     pub fn ends(&self) -> [[Lanes; 3]; 2] {
         let [start, [.., curvature]] = self.curve.ends();
@@ -394,7 +394,7 @@ impl AxesPath {
 type Prediction = [Lanes; 3];
 
 /// Remainder after a step [s] of an error in position [m, rad] and velocity [m/s, rad/s] of a path, along the cubic
-/// from both to zero over the shortest time, of those from `soon` to `late` [s], in which an acceleration [m/s²,
+/// from both to zero over the shortest time between `soon` and `late` [s] for which an acceleration [m/s²,
 /// rad/s²] suffices.
 fn left(missed: [f64; 2], step: f64, [soon, late]: [f64; 2], acceleration: f64) -> [f64; 2] {
     let time = time_to_meet(missed, acceleration).max(soon).min(late);
@@ -496,7 +496,7 @@ impl VesselPath {
         ])
     }
 
-    /// Becomes the path `before` continued by a communication step from a pose [m, rad] and optionally its rates
+    /// Sets the path to `before`, continued by a communication step from a pose [m, rad] and optionally its rates
     /// [m/s, rad/s] at its start.
     #[inline(always)]
     pub fn extend(

@@ -1,13 +1,13 @@
 //! Quasi-static stepping: at the end of every step the lines are in equilibrium.
 //!
 //! Positions are the equilibrium for the held points and the loads at that time, found from the one before. Nodes
-//! have neither velocity nor acceleration, so there is no damping, no inertia and no drag but that of a current.
-//! Flexible lines of engineering strain are closed-form catenaries, joined at free points; others, and those without
-//! a solution that way, are chains of elements. Valid where motions are slow compared with the lowest natural period
+//! have neither velocity nor acceleration, so there is no damping, no inertia and no drag except that of a current.
+//! Flexible lines with engineering strain are closed-form catenaries, joined at free points; others, and those without
+//! such a solution, are chains of elements. Valid where motions are slow compared with the lowest natural period
 //! and drag is small compared with weight.
 //!
-//! A step is one equilibrium. It is halved where none is found. Where an energy balance is asked for and the mean of the forces before and after a step gives
-//! the work too roughly, equilibria in between are found for the balance alone.
+//! A step is one equilibrium. It is halved where none is found. If the scene has an energy balance and the mean of the forces before and after a step gives
+//! too rough a value of the work, equilibria in between are found for the balance alone.
 
 use nalgebra::Vector3;
 
@@ -19,13 +19,13 @@ use crate::statics::catenary_network::solve_network;
 use crate::statics::equilibrium::continue_network;
 use crate::statics::{StaticsError, catenary_network};
 
-/// Parts that a step may be cut into by halving: six halvings.
+/// Greatest number of parts of a step: six halvings.
 const PARTS_MAX: usize = 64;
-/// Halvings of a step for its energy flow, at most.
+/// Greatest number of halvings of a step for its energy flow.
 const FLOW_HALVINGS: usize = 6;
-/// Energy of a step that may be unaccounted for, over its work [-].
+/// Energy of a step that may be unaccounted for, relative to its work [-].
 const OPEN_MAX: f64 = 0.1;
-/// Energy that rounding may bring, over what is stored [-].
+/// Energy error due to rounding, relative to the stored energy [-].
 const ROUNDING: f64 = 1e-9;
 
 /// Network between two equilibria.
@@ -96,7 +96,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
-    /// Takes the network from its rest `before`, equal to `state`, to that at the end of a part of the step [s].
+    /// Moves the network from its equilibrium `before`, equal to `state`, to that at the end of a part of the step [s].
     fn rest(
         &self,
         before: &State,
@@ -137,7 +137,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         solve_network(model, self.number, state, end, work)
     }
 
-    /// Takes the network from rest on its elements at time `t` [s] to its nearby catenaries, where it has them.
+    /// Moves the network from its equilibrium on elements at time `t` [s] to its nearby catenaries, if it has any.
     fn lay_down(&self, state: &mut State, t: f64, work: &mut Workspace) {
         if !solve_network(self.model, self.number, state, t, work) {
             for &line in &self.network.lines {
@@ -146,7 +146,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         }
     }
 
-    /// Flow of energy between two equilibria, by halves of the step where its error is large.
+    /// Flow of energy between two equilibria; the step is halved where its error is large.
     fn flow(&self, states: [&State; 2], times: [f64; 2], halvings: usize, work: &mut Workspace) -> Flow {
         let mut flow = work_at_rest(self.model, self.network, states, times);
         let [before, after] = states.map(|state| energy(self.model, self.network, state));
@@ -165,7 +165,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         flow
     }
 
-    /// Leaves the nodes at rest after a part of the step of `dt` [s]; free points keep the rate at which they moved, for the next guess.
+    /// Leaves the nodes at rest after a part of the step of `dt` [s]; free points keep their mean velocity, for the next guess.
     fn stop(&self, before: &State, state: &mut State, dt: f64) {
         for &point in &self.network.free_points {
             let way = state.points[point].position - before.points[point].position;

@@ -4,35 +4,35 @@
 //!
 //! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_seabed],
 //!
-//! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Without the
-//! half node the end force would be of first order in the segment length. A line on its closed-form catenary uses the
-//! forces of the catenary.
+//! with T q pointing into the line, S the shear of a line with bending stiffness, and v and a of the point. Without the
+//! half node the error of the end force would be of first order in the segment length. A line on its closed-form
+//! catenary uses the forces of the catenary.
 //!
 //! The bracket assumes a load per length p on the half node that is constant at its end value, p_e. Over the last
 //! element it is better described as linear to the p_k of the next node, which follows from its two segments: p_k h_k
-//! = T₁q₁ − T₂q₂ − (own weight). The load on the half node is then h(⅜p_e + ⅛p_k), and T q, which is that of the
-//! middle of the chord but for (h²/24)p', adds (h/24)(p_k − p_e):
+//! = T₁q₁ − T₂q₂ − (own weight). The load on the half node is then h(⅜p_e + ⅛p_k), and T q, which is that at the
+//! middle of the chord except for (h²/24)p', adds (h/24)(p_k − p_e):
 //!
-//! h(⅓p_e + ⅙p_k) for (h/2)p_e,
+//! h(⅓p_e + ⅙p_k) in place of (h/2)p_e,
 //!
 //! the reaction of consistent loads. p excludes the weight, whose share is exact, and p_e belongs to the tangent at
-//! the end, along 3q₁ − q₂. Drag is proportional to the square of a velocity that decreases along the line, and is no
-//! linear load even where the velocity is linear: with d_m in the middle of the element, d_e and d_k at its ends,
+//! the end, along 3q₁ − q₂. Drag is proportional to the square of a velocity that decreases along the line, and is not
+//! a linear load even where the velocity is linear: with d_m in the middle of the element, d_e and d_k at its ends,
 //! Simpson's rule for the consistent load adds
 //!
 //! (h/3)(d_m − ½(d_e + d_k)).
 //!
-//! The velocities in d are relative to the water, that of the middle being the mean of the ends', so that a line in a
+//! The velocities in d are relative to the water, with the mean of both ends at the middle, so that a line in a
 //! current has the end forces of one that is towed in still water. Where the line bends, S adds to T q on both sides
-//! of the next node; the contact force of the seabed is given at both nodes and is treated as their weight.
+//! of the next node; the contact force of the seabed is given at both nodes and is treated like their weight.
 //!
-//! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴), and at the surface by |p_e|²/(|p_e|² + 16 |Δ|²), Δ being the part of the load, buoyancy included,
-//! that p_e would gain or lose were the end as far out of the water as the next node.
+//! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴), and at the surface by |p_e|²/(|p_e|² + 16 |Δ|²), with Δ the part of the load,
+//! including buoyancy, that p_e would gain or lose if the end were as far out of the water as the next node.
 //!
-//! On a taut rope that follows its fairlead (`taut_polyester`) the tension has 0.18 of its error with 3 elements, 0.2
-//! with 4, 0.3 with 6 and 0.5 with 10; with 20 and more, where it is below 0.2 % either way, 1.1 to 1.4 times, as the
-//! plain half node's error then compensates that of the waves along the line. A load that changes by more than its
-//! value, as to a next node that snaps or lands, is not linear: unscaled, the error of chains that slacken in every
+//! On a taut rope that follows its fairlead (`taut_polyester`) the error of the tension is reduced to 0.18 with 3 elements, 0.2
+//! with 4, 0.3 with 6 and 0.5 with 10; with 20 and more, where it is below 0.2 % either way, it is 1.1 to 1.4 times as large, as
+//! the error of the plain half node then compensates that of the waves along the line. A load that changes by more than its
+//! value, as towards a next node that snaps or lands, is not linear: unscaled, the error of chains that slacken in every
 //! cycle grows by up to 6 %, scaled by 2 % at most. The law requires one line on both sides of the next node: it is
 //! left out where sections meet there, and where the line is on a winch.
 //!
@@ -95,7 +95,7 @@ pub fn end_force(
     })
 }
 
-/// Force [N] of the end node on its point as codes of lumped masses report it: pull of the end's segment, weight, drag and contact of its
+/// Force [N] of the end node on its point as lumped-mass codes report it: pull of the end's segment, weight, drag and contact of its
 /// half, all lumped at the node, without inertia. Beams and closed-form catenaries have no such node: theirs is [`end_force`].
 pub fn nodal_force(
     line: &Line,
@@ -113,8 +113,8 @@ pub fn nodal_force(
 
 /// Mass [kg] of a line at one of its ends, −∂F/∂a of [`end_force`] at the present positions and velocities.
 ///
-/// With the load uniform over the half node it is the mass M(t) of the half node, added mass included. With the load linear to the next node
-/// F holds ⅔ of the end's own load, the rest being that of the next node, whose acceleration is a state of the line: ⅔ M(t₀), t₀ the tangent at
+/// With the load uniform over the half node it is the mass M(t) of the half node, including added mass. With the load linear to the next node
+/// F contains ⅔ of the end's own load, and the rest is that of the next node, whose acceleration is a state of the line: ⅔ M(t₀), t₀ the tangent at
 /// the end. The share of the linear load is taken as it is. The force of a beam is linear in a, so that its mass follows from unit
 /// accelerations; a closed-form catenary and a released end have none.
 pub fn end_mass(
@@ -233,7 +233,7 @@ impl<'a> HalfNode<'a> {
         (chord, inward, pull + self.shear(state, segment))
     }
 
-    /// Mass of which the acceleration of the end is a part of the force [kg], see [`end_mass`].
+    /// Mass [kg] that multiplies the acceleration of the end in the force, see [`end_mass`].
     fn mass(&self, state: &LineState, is_linear: bool, negative_tension: bool) -> Matrix3<f64> {
         let (_, inward, pull) = self.pull(state, negative_tension);
         let masses = Slender::new(self.line.nodes.masses(self.node, self.dry.part));
@@ -255,8 +255,8 @@ impl<'a> HalfNode<'a> {
         shear(self.line, nodes, segment, at, self.moments)
     }
 
-    /// Load without weight and seabed [N] of a half node of which a part `dry` [-] is out of the water: inertia, water and damping in proportion
-    /// to mass. The second part is the drag alone.
+    /// Load without weight and seabed [N] of a half node of which a part `dry` [-] is out of the water: inertia, water and mass damping. The
+    /// second vector is the drag alone.
     fn load(&self, inward: Vector3<f64>, dry: f64) -> [Vector3<f64>; 2] {
         let (nodes, node) = (&self.line.nodes, self.node);
         let (velocity, acceleration) = (self.point.velocity, self.point.acceleration);
@@ -383,7 +383,7 @@ mod tests {
         .model()
     }
 
-    /// The line at the turn of a harmonic motion of its end B along itself, u = U sin(ks)/sin(kL), where nothing moves.
+    /// The line at the turning point of a harmonic axial motion of its end B, u = U sin(ks)/sin(kL), where nothing moves.
     fn turning(elements: usize, wave_number: f64) -> (LineState, PointState) {
         let u = |s: f64| (wave_number * s).sin() / (wave_number * LENGTH).sin();
         let place = |i: usize| {

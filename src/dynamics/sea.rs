@@ -1,9 +1,9 @@
-//! Wave kinematics at the nodes: evaluated once for every span of time, at the extrapolated places of the nodes at
+//! Wave kinematics at the nodes: evaluated once for every time span, at the extrapolated positions of the nodes at
 //! its end.
 //!
 //! Every line and every point has a separate span: as long as cubics bridge it at its highest node
 //! ([`Waves::interval_below`]), rounded down to whole communication steps. Lines therefore do not affect each other's
-//! waves. A communication step that is longer than cubics bridge at still water is cut into parts. The place of a
+//! waves. A communication step that is longer than cubics bridge at still water is cut into parts. The position of a
 //! node is extrapolated from its velocity at the start of the span, r + τ v. The values at the end of a span are the
 //! start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
@@ -22,13 +22,13 @@ const ROUNDING: f64 = 1e-9;
 /// Scratch of the spans.
 #[derive(Debug)]
 pub(super) struct SeaWork {
-    /// Best vectors of this machine; results do not depend on them.
+    /// Best vector unit of this machine; results do not depend on it.
     unit: VectorUnit,
     /// Per thread.
     instants: Vec<Instant>,
     /// Spans that began last.
     due: Vec<Due>,
-    /// Wave kinematics at the start of the span before, or room for the end of the next, by line and then by point.
+    /// Wave kinematics at the start of the span before, or storage for the end of the next, by line and then by point.
     spare: Vec<Vec<Orbit>>,
 }
 
@@ -138,7 +138,7 @@ impl SeaWork {
         state.waves = Some(spans);
     }
 
-    /// A span that is over as it begins.
+    /// Begins a span of zero length at the time of the state.
     fn begin(&mut self, waves: &Waves, state: &State, place: Place, span: &mut WaveSpan) {
         let [first, last] = &mut span.ends;
         let nodes = place.nodes(state);
@@ -153,8 +153,8 @@ impl SeaWork {
         span.times = [state.time; 2];
     }
 
-    /// Length of the next step [s] within `length` [s]: not beyond the end of a span. A span that ends with an equal
-    /// part but for rounding does not change that part.
+    /// Length of the next step [s] within `length` [s]: not beyond the end of a span. A span that ends with the
+    /// part, except for rounding, does not shorten it.
     pub(super) fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
         let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
         let part = length / parts.ceil().max(1.0);
@@ -240,7 +240,7 @@ impl SeaWork {
     }
 }
 
-/// Motion of the water where nodes, from their positions [m] and velocities [m/s] at a time [s], will be some time [s] later.
+/// Motion of the water at the positions of nodes some time [s] later, extrapolated from their positions [m] and velocities [m/s] at a time [s].
 fn sample(
     waves: &Waves,
     (time, ahead): (f64, f64),

@@ -4,8 +4,8 @@
 //! number of threads, and sums over networks are formed afterwards in their order. Results are therefore bit-identical on any number
 //! of threads. Each thread gets an equal, contiguous part of the networks.
 //!
-//! Worker threads are used from [`WORTH`] of work on; the work of a step is estimated from its nodes and internal
-//! steps.
+//! Worker threads are used if each thread has at least [`WORTH`] of work; the work of a step is estimated from its
+//! nodes and internal steps.
 //!
 //! Worker threads are created on first use, sleep between steps and are joined when the pool is dropped, so that a host may unload the
 //! library after it has freed its instances. Where the system grants no threads, all work is done on the calling thread. A forked process
@@ -35,7 +35,7 @@ pub fn make_threads_aside(aside: Aside) {
     let _ = ASIDE.set(aside); // every instance sets the same
 }
 
-/// Name of the worker threads, by which they can be told from those of the host.
+/// Name of the worker threads, which distinguishes them from those of the host.
 const THREAD_NAME: &str = "moorline";
 /// Work per thread from which `auto` adds a thread [ns].
 const WORTH: f64 = 25e3;
@@ -114,7 +114,7 @@ impl ThreadPool {
         let own = self.workers.as_ref().filter(|workers| workers.is_here());
         let present = own.map_or(0, |workers| workers.handles.len());
         if present < count && !self.refused {
-            self.workers = None; // joins the fewer ones
+            self.workers = None; // joins the smaller pool
             self.workers = Workers::aside(count);
             self.refused = self.workers.is_none();
         }

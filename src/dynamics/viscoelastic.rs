@@ -174,7 +174,7 @@ impl ViscoelasticArrays {
         }
     }
 
-    /// Takes over the slow strains of a line [-], at t_n and half a step before, and its strains then [-].
+    /// Loads the slow strains of a line [-] at t_n and half a step before, and its strains at the latter time [-].
     pub fn load(&mut self, [slow, half]: [&[f64]; 2], strains: impl Iterator<Item = f64>) {
         for (column, values) in [(&mut self.slow, slow), (&mut self.half[1], half)] {
             column.fill(0.0);
@@ -222,8 +222,8 @@ impl ViscoelasticArrays {
         (stiffness * strain + memory * relaxed, stiffness + memory * last)
     }
 
-    /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and
-    /// a whole one; returns the values of both halves around t_n.
+    /// Advances the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to the strains half a step and a whole
+    /// step after t_n; returns the values over both halves around t_n.
     #[inline(always)]
     pub fn advance(&mut self, at: usize, strains: [Lanes; 2], step: Step) -> Relaxed {
         let load = |values: &Column| values.load(at);
@@ -238,8 +238,8 @@ impl ViscoelasticArrays {
         self.pass_half(at, [strains[0], half * (slow + after)], step.kick)
     }
 
-    /// Advances by a step of `kick` [s] to a strain and a slow strain of half a step later: the fast part pulls with
-    /// the discrete gradient of its energy and with its damper, as in [`Viscoelastic::step`].
+    /// Advances by a step of `kick` [s] to a strain and a slow strain of half a step later: the tension of the fast part
+    /// is the discrete gradient of its energy plus the force of its damper, as in [`Viscoelastic::step`].
     #[inline(always)]
     fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Relaxed {
         let load = |values: &Column| values.load(at);

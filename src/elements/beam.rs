@@ -5,7 +5,7 @@
 //!
 //!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact.
 //!
-//! The elements of a step in time are the same with the gradient at the mean of both of its ends. Four elements are computed side by
+//! The elements of a time step are the same with the gradient at the mean of both of its ends. Four elements are computed side by
 //! side.
 //!
 //! A beam whose ends do not prevent its rotation about its axis has no resistance to it: its first node then resists
@@ -171,7 +171,7 @@ impl BeamCase<'_> {
         }
     }
 
-    /// Sets the changes of the prescribed unknowns to zero, and adds the resistance of the first node to the turn of a beam about itself.
+    /// Sets the changes of the prescribed unknowns to zero, and adds the resistance of the first node to the turn of a beam about its axis.
     pub(crate) fn constrain(&self, chain: &mut PivotedChain, sections: &[Section]) {
         let turns_freely = self.ends.iter().all(|end| end.held[3..].iter().all(|held| !held));
         if turns_freely {
@@ -231,7 +231,7 @@ pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
     sections.windows(2).position(|pair| cosine(pair) < COSINE_MIN)
 }
 
-/// The indices of four items from `first` on, the last of them again beyond it.
+/// Indices of four items from `first` on; `last` is repeated beyond it.
 #[inline(always)]
 pub(crate) fn four(first: usize, last: usize) -> [usize; LANES] {
     each!(i in [first, first + 1, first + 2, first + 3] => i.min(last))
@@ -345,7 +345,7 @@ impl FourElements {
     }
 }
 
-/// What [`add_elements`] does to a chain.
+/// Operation of [`add_elements`] on a chain.
 struct AddElements<'a> {
     chain: &'a mut PivotedChain,
     elements: &'a [FourElements],
@@ -433,7 +433,7 @@ impl AddElements<'_> {
     }
 }
 
-/// Subtracts forces and moments of elements from those on their nodes. As a call, it does not break the vectors of the caller into numbers.
+/// Subtracts forces and moments of elements from those on their nodes. Not inlined, so that the vectors of the caller are not split into scalars.
 #[inline(never)]
 fn subtract_actions(right: &mut [Sextuple], count: usize, actions: &[Pair<Vectors>; 2]) {
     for (side, [force, moment]) in actions.iter().enumerate() {

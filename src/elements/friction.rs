@@ -5,10 +5,10 @@
 //!
 //!   f* = k_t P (a − r),  P = I − n nᵀ,   f = the point of the ellipse of N closest to f*,   a ← r + f/k_t after every step.
 //!
-//! A node at rest therefore stays in place under any load inside the ellipse, at a distance f/k_t from its anchor. −∂f/∂r = k_t B S Bᵀ − B g ⊗ ∂N/∂r with the axes B of the
-//! plane, the slope S of f with f* and that of f with N, g = (f − S f*)/N, for f is homogeneous in f* and N.
+//! A node at rest therefore stays in place under any load inside the ellipse, at a distance f/k_t from its anchor. −∂f/∂r = k_t B S Bᵀ − B g ⊗ ∂N/∂r
+//! with the axes B of the plane, the slope S of f with f* and that of f with N, g = (f − S f*)/N, since f is homogeneous in f* and N.
 //!
-//! The tangent is exact on a plane, the direction of the line being frozen as for drag; on a curved seabed it leaves out the turn of the axes.
+//! The tangent is exact on a plane, with the direction of the line frozen as for drag; on a curved seabed it leaves out the turn of the axes.
 //!
 //! Source: the return mapping of Coulomb friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
@@ -21,10 +21,10 @@ use crate::physics::fading_damper::FadingContact;
 use crate::physics::friction::{Axes, Friction, node_friction};
 use crate::physics::ground::Touch;
 
-/// Part of the limit of friction that statics uses: nodes that slid to their places of rest then stick in motion, and
-/// rounding does not free them one by one [-].
+/// Fraction of the limit of friction that statics uses: nodes that slid to their positions of rest then stick in
+/// dynamics, and rounding does not free them one by one [-].
 pub(crate) const AT_REST: f64 = 1.0 - 1e-5;
-/// Part of the limit at which nodes at [`AT_REST`] slide regardless of rounding [-].
+/// Fraction of the limit at which nodes at [`AT_REST`] slide regardless of rounding [-].
 pub(crate) const SLIDING: f64 = 1.0 - 1e-3;
 
 /// Stiffness along the seabed of a point that sticks, over its stiffness across it [-].
@@ -245,7 +245,7 @@ pub fn resting_point<'a>(
         velocity,
         slip: friction.map(|(friction, anchor)| Slip {
             friction,
-            tangent: Vector3::z(), // a point is across all around
+            tangent: Vector3::z(), // a point is across in all directions
             anchor,
             stick: POINT_STICK * contact.coefficients.stiffness,
             limit: 1.0,
@@ -325,7 +325,7 @@ impl LineWork {
         (bearing.seabed.force > 0.0).then(|| Resting::on(contact, line, state, i, (bearing, after), moves))
     }
 
-    /// Keeps the friction on a node, where the seabed is more than a level plane without friction.
+    /// Stores the friction on a node, where the seabed is more than a level plane without friction.
     fn keep_friction(&mut self, node: usize, push: Option<&Push>) {
         if let Some(rubbed) = self.rubbed.get_mut(node) {
             *rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
@@ -422,7 +422,7 @@ fn stretch(force: Vector3<f64>, stiffness: f64) -> Vector3<f64> {
     }
 }
 
-/// Gives every node and point that friction may hold an anchor in its place, unless it has one.
+/// Sets an anchor at the position of every node and point that friction may hold, unless it has one.
 pub fn drop_anchors(model: &Model, state: &mut State) {
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         if line.friction().is_some() && shape.anchor.len() != shape.position.len() {
@@ -486,7 +486,7 @@ mod tests {
         seabed(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
     }
 
-    /// A node a little under the seabed that moves, `slid` from its anchor.
+    /// A moving node slightly below the seabed, `slid` from its anchor.
     fn resting(
         seabed: &Seabed,
         shift: Vector3<f64>,

@@ -18,7 +18,7 @@ pub(crate) struct BendingWork {
     pub active: bool,
     /// J of the joints in the rows of nodes and the columns of the next ones, transposed the other way.
     pub near: Vec<Matrix3<f64>>,
-    /// J in the rows of nodes and the columns of the second next ones.
+    /// J in the rows of nodes and the columns of the nodes after next.
     pub far: Vec<Matrix3<f64>>,
     /// Greatest force of a joint on a node at the last assembly [N].
     pub greatest: f64,
@@ -284,8 +284,8 @@ pub fn joint_damping_power(
 }
 
 /// Shear [N] of segment `i` of a line: the force of the joints at both of its nodes, and of the moments [N m] on the line's ends, on the
-/// node towards `end`, where the line may be clamped as the `point` is turned; the other end is taken as pinned. Without velocities nothing
-/// damps.
+/// node towards `end`, where the line may be clamped at the orientation of the `point`; the other end is taken as pinned. Without velocities
+/// there is no damping.
 pub fn shear(
     line: &Line,
     [position, velocity]: [&[Vector3<f64>]; 2],

@@ -16,11 +16,11 @@ use crate::physics::slender::Slender;
 use crate::physics::stretch::total_tension;
 use crate::physics::stretch_step::Stretched;
 
-/// Least length for the lateral stiffness of a segment, over its unstretched length: a segment folded to nothing has
-/// no direction [-].
+/// Least length for the lateral stiffness of a segment, over its unstretched length: a segment folded to zero length
+/// has no direction [-].
 const FOLDED: f64 = 0.1;
 
-/// Scratch of a line; without room for nodes by default.
+/// Scratch of a line; without nodes by default.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LineWork {
     /// R of every node, ends included [N].
@@ -385,7 +385,7 @@ impl LineWork {
         }
     }
 
-    /// Force of water that waves accelerate; it depends on the state only by the tangent, which is frozen.
+    /// Force of water that waves accelerate; it depends on the state only through the tangent, which is frozen.
     fn add_froude_krylov(&mut self, line: &Line, water: WaterAlong, weights: &Weights) {
         let (Some(pressed), Some(waves)) = (&line.nodes.froude_krylov, &water.waves) else {
             return;

@@ -17,8 +17,8 @@
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the
 //! joints of `bending` at its nodes and carries compression up to the limit of its segments, T ≥ −P; its tangent is
 //! exact, or positive semi-definite with `convex`. Statics keeps springs, weight and the drag of a current, whose
-//! forces are constant while the shape is sought. A line that may pierce the water's surface loses there the buoyancy
-//! given by `surface`.
+//! forces are constant while the shape is sought. A line that may pierce the water's surface loses the buoyancy
+//! given by `surface` there.
 
 pub mod beam;
 mod contact;
@@ -99,7 +99,7 @@ impl Workspace {
         Workspace::serving(model, |_| true)
     }
 
-    /// Scratch for `model`; lines have theirs only in networks whose number `serves` accepts.
+    /// Scratch for `model`; lines have scratch only in networks whose number `serves` accepts.
     pub(crate) fn serving(model: &Model, serves: impl Fn(usize) -> bool) -> Workspace {
         let mut points = vec![PointWork::default(); model.points.len()];
         for network in &model.networks {
@@ -131,14 +131,14 @@ impl Workspace {
         work
     }
 
-    /// Gives the lines of a network their scratch.
+    /// Allocates the scratch of the lines of a network.
     pub(crate) fn serve(&mut self, model: &Model, number: usize) {
         for &line in &model.networks[number].lines {
             self.lines[line] = LineWork::new(model, &model.lines[line]);
         }
     }
 
-    /// Drops the scratch of the lines of a network, whose memory then serves another one.
+    /// Frees the scratch of the lines of a network; its memory is then available to another one.
     pub(crate) fn release(&mut self, model: &Model, number: usize) {
         for &line in &model.networks[number].lines {
             self.lines[line] = LineWork::default();
@@ -165,7 +165,7 @@ pub(crate) struct StaticCase {
     pub anchoring: f64,
     /// True where the geometric stiffness comes from the predicted tension instead of the elastic one.
     pub predicted: bool,
-    /// True if lines with bending stiffness have it, and push.
+    /// True if bending stiffness acts, and lines with it push.
     pub bends: bool,
     /// Part of the stiffness of sticking friction, on nodes that have anchors [-].
     pub stick: f64,
@@ -179,7 +179,7 @@ pub(crate) struct StaticCase {
     /// True where every correction is limited to a moderate rotation of each segment, at the cost of more
     /// corrections.
     pub cautious: bool,
-    /// Tension of a segment that is shortened to nothing; none where slack segments carry no tension [N].
+    /// Tension of a segment that is shortened to zero length; zero where slack segments carry no tension [N].
     pub slack: f64,
 }
 
@@ -220,13 +220,13 @@ pub(crate) struct Weights {
     pub velocity: f64,
     /// c_m: weight of ∂R/∂a [1/s²].
     pub acceleration: f64,
-    /// Times at which the segments pull.
+    /// Time at which the tension of the segments is evaluated.
     pub stretch: Stretch,
     /// True where the tangent must be positive semi-definite, rather than exact.
     pub convex: bool,
 }
 
-/// Times at which the segments of a moving line pull.
+/// Time at which the tension of the segments of a moving line is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stretch {
     /// At the present state.
@@ -409,7 +409,7 @@ impl Workspace {
         solved
     }
 
-    /// Takes the solution at the free points from their system.
+    /// Copies the solution at the free points from their system.
     pub(crate) fn take_solution(&mut self, network: &Network, number: usize) {
         for (slot, &index) in network.free_points.iter().enumerate() {
             self.points[index].solution = self.systems[number].solution(slot);

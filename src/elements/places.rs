@@ -53,7 +53,7 @@ pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     }
 }
 
-/// Copies a network's points and nodes from one state to another, which allocates room for them the first time only.
+/// Copies a network's points and nodes from one state to another, which allocates the first time only.
 pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &mut State) {
     if to.lines.len() != from.lines.len() {
         to.lines

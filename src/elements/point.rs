@@ -23,7 +23,7 @@ pub(crate) struct PointWork {
     pub solution: Vector3<f64>,
     /// State before a search for the equilibrium on catenaries.
     pub before: PointState,
-    /// Position from where a step of that search begins [m].
+    /// Position from which a step of that search begins [m].
     pub start: Vector3<f64>,
     /// Terms that the time integrator carries over from the last step [N].
     pub history: Vector3<f64>,

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::LineWork;
 use crate::math::block_banded::Ends;
 
-/// Equations of a line condensed on its ends, for the released of them.
+/// Equations of a line condensed on its ends, for those released.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Released {
     ends: Ends,

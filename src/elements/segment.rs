@@ -10,7 +10,7 @@
 //! without bound.
 //!
 //! Source: Erlicher, Bonaventura & Bursi (2002), Comput. Mech. 28, 83-104, on generalised-α in nonlinear problems;
-//! the discrete gradient in place of the mean is derived here. Valid as the laws are.
+//! the discrete gradient in place of the mean is derived here. Valid where the laws are.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -73,11 +73,11 @@ pub(super) struct Response {
 pub(super) struct StepEnd {
     /// True where the segment is taut in the last solution, though its present nodes leave it slack.
     pub keeps: bool,
-    /// Tension by the last solution beyond that of its present nodes [N].
+    /// Excess of the tension of the last solution over that of its present nodes [N].
     pub excess: f64,
 }
 
-/// Force of a segment over a step beyond the weighted force at its end.
+/// Force of a segment over a step in excess of the weighted force at its end.
 pub(super) struct Beyond {
     /// [N]
     pub force: Vector3<f64>,

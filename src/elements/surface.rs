@@ -11,7 +11,7 @@ use crate::model::{Dry, Line, WaterAlong};
 
 impl LineWork {
     /// Finds the dry parts of a line at `position` [m] in the `water`, and adds their weight, times `force`, and its
-    /// tangent, times `stiffness`. Segments of a radius below `breadth` [m] are taken as that thick.
+    /// tangent, times `stiffness`. Segments of a radius below `breadth` [m] get that radius.
     pub(super) fn add_surface(
         &mut self,
         line: &Line,
@@ -50,7 +50,7 @@ impl LineWork {
     }
 }
 
-/// Slope with the node's height of a force f(1 − p), p being the `dry` part: the third column of a tangent, for f [N].
+/// Slope with the node's height of a force f(1 − p), with p the `dry` part: the third column of a tangent, for f [N].
 #[inline(always)]
 pub(super) fn by_height(dry: &Dry, force: Vector3<f64>) -> Matrix3<f64> {
     force * (-dry.slope * Vector3::z()).transpose()

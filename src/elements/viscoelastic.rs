@@ -73,7 +73,7 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling by the last
+    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling in the last
     /// solution.
     #[inline(always)]
     pub(super) fn mean(&self, i: usize, strain: f64, keeps: bool) -> Mean {

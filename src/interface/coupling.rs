@@ -107,7 +107,7 @@ pub(super) fn read(
     })
 }
 
-/// Reason for which there is no value.
+/// Reason why there is no value.
 pub(super) fn missing(name: &str, quantity: InterfaceQuantity) -> String {
     match quantity {
         InterfaceQuantity::StaticStiffness => {

@@ -1,9 +1,9 @@
-//! Variables that the static solution, and so every output during initialization, depends on.
+//! Variables on which the static solution, and so every output during initialization, depends.
 //!
-//! Lines that share free points are one network; a network depends on the displacements of the coupled points that it
-//! hangs on and on the parameters that enter its equilibrium. Velocities, rotary inertia and damping do not: nothing moves. Drag does where
-//! the water flows, added mass in waves, whose load on its last half segment a line's force holds from the start. So does a flow that the host
-//! gives, at that node. The closed-form catenary is that of the reference configuration, in still water, and so depends on no displacement.
+//! Lines that share free points are one network; a network depends on the displacements of the coupled points that it hangs on and on the parameters that
+//! enter its equilibrium. Velocities, rotary inertia and damping do not enter, since nothing moves. Drag enters where the water flows, and added mass in
+//! waves, whose load on the last half segment is part of the end force from the start. The flow that a host gives enters at that node. The closed-form
+//! catenary is that of the reference configuration, in still water, and so depends on no displacement.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -58,8 +58,8 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     add_flow(variables, model);
 }
 
-/// Adds the flow of the water that a host gives: at rest it acts on the last half segment, whose load a force at the end holds, and in the coming
-/// step on whole networks.
+/// Adds the flow of the water that a host gives. At rest it acts on the last half segment, whose load is part of the end force; in the coming step it acts
+/// on whole networks.
 fn add_flow(variables: &mut [Variable], model: &Model) {
     let flow = |(index, variable): (usize, &Variable)| match variable.binding {
         Binding::Flow {
@@ -108,7 +108,7 @@ fn add_flow(variables: &mut [Variable], model: &Model) {
     }
 }
 
-/// Returns whether a component of the flow at a node, or at all, is in the force at an end of a line: the drag of a half node whose load is linear
+/// Returns whether a component of the flow at a node, or at all nodes, enters the force at an end of a line: the drag of a half node whose load is linear
 /// follows from two velocities.
 fn acts_at(line: &Line, end: End, (component, node): (usize, Option<usize>)) -> bool {
     let count = 1 + usize::from(component < 3 && line.linear_load[end as usize]);
@@ -122,7 +122,7 @@ fn attached(model: &Model, body: Body) -> impl Iterator<Item = (usize, End)> {
 }
 
 impl Interface {
-    /// Displacements and velocities of bodies that an output of a step depends on by the motion at its end, as value references.
+    /// Displacements and velocities of bodies on which an output of a step depends through the motion at its end, as value references.
     pub fn motions_of(&self, output: &Variable) -> Vec<u32> {
         let known = |index: usize| output.initial_dependencies.contains(&Interface::reference(index));
         let rows = || self.variables.iter().enumerate();
@@ -161,7 +161,7 @@ struct Known {
     moves: Vec<usize>,
 }
 
-/// The lines whose equilibrium a variable is read from.
+/// Lines from whose equilibrium a variable is read.
 struct Scope<'a> {
     scene: &'a Scene,
     model: &'a Model,

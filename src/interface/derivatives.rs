@@ -1,13 +1,13 @@
-//! Derivatives of outputs: by the motion of the bodies at the end of the last step, and in time.
+//! Derivatives of outputs with respect to the motion of the bodies at the end of the last step, and to time.
 //!
-//! Outputs of type Float64 have derivatives with respect to displacements and velocities of points and vessels at the end of the last step. The host gave
-//! these for that time (`input_reconstruction = "interpolate"`), or they were extrapolated.
+//! Outputs of type Float64 have derivatives with respect to displacements and velocities of points and vessels at the end of the last step. The host has
+//! given these for that time (`input_reconstruction = "interpolate"`), or they were extrapolated.
 
 use super::{Binding, Causality, Interface, Kind, Variable};
 use crate::simulation::{EndMotion, Simulation};
 
 impl Interface {
-    /// Derivatives of the values of outputs, one after the other, by an input.
+    /// Derivatives of the values of outputs, one after another, with respect to an input.
     ///
     /// # Errors
     /// An output without derivatives, an input that is neither a displacement nor a velocity, or an error of [`Simulation::derivative`].
@@ -20,7 +20,7 @@ impl Interface {
         simulation.derivative(end_motion(input)?, |simulation| values(outputs, simulation))
     }
 
-    /// Rates in time of the values of outputs, one after the other.
+    /// Time derivatives of the values of outputs, one after another.
     ///
     /// # Errors
     /// An output without derivatives, or an error of [`Simulation::rates`].
@@ -61,7 +61,7 @@ fn end_motion(input: &Variable) -> Result<EndMotion, String> {
     })
 }
 
-/// Values of outputs, one after the other.
+/// Values of outputs, one after another.
 fn values(outputs: &[&Variable], simulation: &Simulation) -> Result<Vec<f64>, String> {
     let mut values = vec![0.0; outputs.iter().map(|output| output.size()).sum()];
     let mut rest = &mut values[..];

@@ -1,4 +1,4 @@
-//! Flow of the water at the nodes of a line, which a host gives, and the places for which it gives it, as variables.
+//! Variables for the flow of the water that a host gives at the nodes of a line, and for the positions at which it is due.
 
 use super::rows::{AXES, at_nodes, range, row};
 use super::{Binding, Causality, Layout, Unit, Variable};
@@ -42,7 +42,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
     }
 }
 
-/// Writes a coordinate of the places for which the next flow is to be given.
+/// Writes a coordinate of the positions at which the next flow is due.
 pub(super) fn read_place(
     simulation: &Simulation,
     line: usize,

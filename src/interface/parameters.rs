@@ -37,7 +37,7 @@ pub enum Place {
 }
 
 impl Parameter {
-    /// Value in a scene that has the key, in its unit; `None` in a scene that has not.
+    /// Value in a scene, in its unit; `None` if the scene does not have the key.
     pub fn value(&self, scene: &Scene) -> Option<f64> {
         let key = self.key;
         let value = match &self.place {
@@ -68,7 +68,7 @@ impl Parameter {
         }
     }
 
-    /// Sets it in a scene that has it.
+    /// Sets the parameter in a scene that has it.
     ///
     /// # Errors
     /// The accepted numbers, for one that stands for no choice. Ranges are left to [`Scene::check`].
@@ -111,7 +111,7 @@ pub(super) fn variables(scene: &Scene) -> Vec<Variable> {
     variables
 }
 
-/// Row of a key, where the scene gives it. `names` are that of the owner and the beginning of the variable's, `about` ends the description.
+/// Row of a key, if the scene gives it. `names` are the name of the owner and the prefix of the variable's name; `about` ends the description.
 fn variable(
     scene: &Scene,
     place: &Place,

@@ -75,7 +75,7 @@ results! {
     }
 }
 
-/// Bending at the nodes of a line; none where the host has set the bending stiffness to nothing.
+/// Bending at the nodes of a line; none if the host has set the bending stiffness to zero.
 fn nodes(simulation: &Simulation, line: usize) -> &[NodeBending] {
     simulation.bending(line).unwrap_or_default()
 }

@@ -39,8 +39,8 @@ pub(super) fn row(
     }
 }
 
-/// Adds a quantity at a number of nodes: an array, or a scalar for each node. `row` makes the variable of a name from the words for its place,
-/// with which the description ends but for "from end A", and from its only node.
+/// Adds a quantity at a number of nodes: an array, or a scalar for each node. `row` makes a variable from its name, the words for its place, with which the
+/// description ends except for "from end A", and its only node.
 pub(super) fn at_nodes(
     variables: &mut Vec<Variable>,
     (layout, count): (Layout, usize),
@@ -61,14 +61,14 @@ pub(super) fn at_nodes(
     }
 }
 
-/// Nodes of a quantity at a number of nodes: the only one, or all.
+/// Range of nodes of a quantity: the only node, or all of them.
 pub(super) fn range(node: Option<usize>, count: usize) -> Range<usize> {
     node.map_or(0..count, |node| node..node + 1)
 }
 
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Velocity of a body whose host gives none.
+/// Origin of a velocity that the host does not give.
 const NOT_GIVEN: &str = "if never set but to 0, derived from displacements that change, or 0 where solver.input_reconstruction is 1";
 
 /// Displacements of a body; a point has the first three.

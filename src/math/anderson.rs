@@ -9,7 +9,7 @@
 //! Source: Walker & Ni (2011), SIAM J. Numer. Anal. 49(4), 1715-1735, section 2. On a linear problem it is equivalent to GMRES, so that the
 //! plain iteration need not converge.
 
-/// A difference whose part across the newer ones is smaller than this share of it adds no direction [-].
+/// A difference whose component orthogonal to the newer ones is smaller than this fraction of it adds no direction [-].
 const INDEPENDENT: f64 = 1e-9;
 
 /// The last iterates.

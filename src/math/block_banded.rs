@@ -1,14 +1,14 @@
 //! Direct solution of a chain of 3×3 blocks whose two ends couple to a system of points.
 //!
-//! B_{i−1} x_{i−1} + D_i x_i + A_i x_{i+1} + F_{i−2}ᵀ x_{i−2} + F_i x_{i+2} = b_i: segments couple a node to the next one, by the blocks above and
-//! below the diagonal; joints, which bend three nodes, to the second next too, by one block, transposed on the way back. [`Chain::eliminate`]
-//! removes the nodes between the ends in order and leaves the ends' own 2 × 2 blocks, which add up over all chains that meet in a point;
-//! [`super::sparse_blocks`] solves these points; [`Chain::substitute`] gives the nodes between. The first end is a border to which every node becomes
-//! coupled, the last end is the last node.
+//! B_{i−1} x_{i−1} + D_i x_i + A_i x_{i+1} + F_{i−2}ᵀ x_{i−2} + F_i x_{i+2} = b_i: segments couple a node to the next one, by the blocks above and below
+//! the diagonal; joints, which involve three nodes, also couple it to the one after that, by one block and its transpose. [`Chain::eliminate`] removes the
+//! nodes between the ends in order and leaves the ends' own 2 × 2 blocks, which add up over all chains that meet at a point; [`super::sparse_blocks`]
+//! solves these points; [`Chain::substitute`] gives the nodes between. The first end is a border to which every node becomes coupled, the last end is the
+//! last node.
 //!
 //! Source: Golub & Van Loan (2013), Matrix Computations, 4th ed., sections 4.3.5 (band Gaussian elimination), 4.5.1 (block tridiagonal) and 3.2 (LU).
 //! Matrices that are positive definite, or close to it where damping makes them unsymmetric, need no row exchanges, and a pivot that is not
-//! positive is reported; others are eliminated with row exchanges inside of blocks, see [`Pivots`].
+//! positive is reported; others are eliminated with row exchanges within blocks, see [`Pivots`].
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 pub enum Pivots {
     /// Positive ones in the given order; any other is reported.
     Positive,
-    /// Of either sign, the greatest of the rows of a block; only one that is zero is reported.
+    /// Of either sign, the greatest of the rows of a block; only a zero pivot is reported.
     Any,
 }
 
@@ -331,7 +331,7 @@ fn positive(pivot: f64) -> Option<f64> {
     (pivot > 0.0 && pivot.is_finite()).then(|| 1.0 / pivot)
 }
 
-/// 1/pivot, if it has one.
+/// 1/pivot, if the pivot is not zero.
 fn nonzero(pivot: f64) -> Option<f64> {
     (pivot != 0.0 && pivot.is_finite()).then(|| 1.0 / pivot)
 }
@@ -403,7 +403,7 @@ mod tests {
             (matrix, DVector::from_iterator(3 * nodes, right))
         }
 
-        /// Greatest difference to the dense solution, with both ends free or both held.
+        /// Greatest difference from the dense solution, with both ends free or both held.
         fn error(&self, free: bool, pivots: Pivots) -> f64 {
             let (mut matrix, mut right) = self.dense();
             let (size, nodes) = (right.len(), self.diagonal.len());

@@ -8,9 +8,9 @@
 //!
 //! The shift σ lifts eigenvalues of 0 above rounding. Valid for matrices without negative eigenvalues beyond the greatest shift.
 //!
-//! Source: Bathe & Wilson (1976), Numerical Methods in Finite Element Analysis, section 12.4 (subspace iteration). Sparse factors are by the
-//! crate faer. All eigenvalues are by QR iteration, which keeps the low ones of a stiff chain: faer's divide and conquer has an error of
-//! rounding of the greatest eigenvalue in all of them, 2e-4 of the lowest of a hanging chain of 160 elements.
+//! Source: Bathe & Wilson (1976), Numerical Methods in Finite Element Analysis, section 12.4 (subspace iteration). Sparse factors are computed by the crate
+//! faer. All eigenvalues are found by QR iteration, which keeps the low ones of a stiff chain: with faer's divide and conquer, the rounding of the greatest
+//! eigenvalue is in all of them, 2e-4 of the lowest of a hanging chain of 160 elements.
 
 use faer::Side;
 use faer::prelude::{Mat, Solve, SparseColMat};
@@ -26,7 +26,7 @@ pub type Entry = Triplet<usize, usize, f64>;
 const SHIFTS: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-8];
 /// Change of the eigenvalues that ends the iteration, over themselves, and over the greatest entry of the diagonal [-].
 const TOLERANCE: [f64; 2] = [1e-12, 1e-15];
-/// Iterations.
+/// Greatest number of iterations.
 const ITERATIONS_MAX: usize = 300;
 
 /// Eigenvalues, lowest first, and their vectors of unit length.

@@ -11,7 +11,7 @@
 
 use super::lanes::Lanes;
 
-/// Rounds to whole numbers when it is added: the lowest bits of the sum are the whole number.
+/// Rounds a number to an integer when added to it: the lowest bits of the sum are the integer.
 const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²
 /// π in two parts, the first with zeros at its end so that n times it is exact.
 const PI_PARTS: [f64; 2] = [3.141_592_653_468_251_2, 1.215_420_101_301_238_4e-10];

@@ -1,6 +1,6 @@
 //! Hermite segments between two points: cubic with given slopes, quintic with given curvatures too.
 //!
-//! The quintic of a curve f misses it by f⁽⁶⁾ h⁶ u³(1 − u)³/720, with the sixth derivative somewhere between the ends: at most by
+//! The quintic of a curve f deviates from it by f⁽⁶⁾ h⁶ u³(1 − u)³/720, with the sixth derivative somewhere between the ends: at most by
 //! max|f⁽⁶⁾| h⁶/46080, in the middle.
 //!
 //! Source: the remainder of Hermite interpolation, e.g. Stoer & Bulirsch (2002), Introduction to Numerical Analysis, theorem 2.1.5.9.
@@ -55,7 +55,7 @@ impl Hermite {
         }
     }
 
-    /// Coefficients of powers of the part of its span that is passed.
+    /// Coefficients of powers of the elapsed fraction of its span.
     pub fn powers(&self) -> [f64; 4] {
         self.powers
     }
@@ -164,7 +164,7 @@ impl Quintic {
         ])
     }
 
-    /// At a part u of the span, of which there are `rate` in a unit of time.
+    /// Values at the fraction u of the span, whose inverse is `rate`.
     #[inline]
     pub fn at(&self, u: f64, rate: f64) -> Motion {
         let [a, b, c, d, e, f] = self.0;

@@ -7,8 +7,8 @@
 //! Both passes together have no phase, gain ½ at f_c and fourth order beyond it. Each pass starts from the steady
 //! state of its first value.
 //!
-//! Source: Butterworth (1930), Experimental Wireless 7, 536-541; the transform as in Oppenheim & Schafer (2010), Discrete-Time
-//! Signal Processing, section 7.2. Valid for f_c < 1/(2Δt); above, the signal is returned as it is.
+//! Source: Butterworth (1930), Experimental Wireless 7, 536-541; the transform as in Oppenheim & Schafer (2010), Discrete-Time Signal Processing, section
+//! 7.2. Valid for f_c < 1/(2Δt); above, the signal is returned unchanged.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -48,7 +48,7 @@ mod tests {
 
     const INTERVAL: f64 = 0.01;
 
-    /// Gain of a sine of this frequency [Hz] behind a cut-off of 1 Hz.
+    /// Gain of a sine of this frequency [Hz] after a filter with a cut-off of 1 Hz.
     fn gain(frequency: f64) -> f64 {
         let sine = |i: usize| (2.0 * PI * frequency * INTERVAL * i as f64).sin();
         let signal: Vec<f64> = (0..4000).map(sine).collect();

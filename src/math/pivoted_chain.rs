@@ -1,9 +1,8 @@
-//! Block-tridiagonal systems of 6×6 blocks, with exchanges of rows inside of the blocks that need them.
+//! Block-tridiagonal systems of 6×6 blocks, with row exchanges within the blocks that need them.
 //!
-//! Row i reads L_{i−1} x_{i−1} + D_i x_i + U_i x_{i+1} = b_i; blocks need not be symmetric. Elimination runs from the first node
-//! to the last: D_i ← D_i − L_{i−1} D_{i−1}⁻¹ U_{i−1}. A block is inverted in place on its diagonal, in vectors, and where a pivot there is small
-//! against its column, by LU factors with partial pivoting. An inverse takes a right-hand side in one product, where factors take two
-//! substitutions of dependent steps.
+//! Row i reads L_{i−1} x_{i−1} + D_i x_i + U_i x_{i+1} = b_i; blocks need not be symmetric. Elimination runs from the first node to the last:
+//! D_i ← D_i − L_{i−1} D_{i−1}⁻¹ U_{i−1}. A block is inverted in place on its diagonal, in vectors; if a pivot there is small compared with its column, by LU
+//! factors with partial pivoting. An inverse takes a right-hand side in one product, where factors take two substitutions of dependent steps.
 //!
 //! Source: block Thomas algorithm, e.g. Golub & Van Loan, Matrix Computations, section 4.5. Valid where all leading block minors
 //! are regular: chains held from either end, and chains with mass, are of that kind.

@@ -1,4 +1,4 @@
-//! Numbers and vectors that a pointwise law is written for: single ones, or those in the lanes of a vector of the machine.
+//! Numbers and vectors for which a pointwise law is written: single ones, or those in the lanes of a machine vector.
 
 use std::ops::{Add, Mul, Sub};
 

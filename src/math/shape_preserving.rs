@@ -1,9 +1,8 @@
 //! Slopes of piecewise cubics through the rows of a table, which leave the range of neighbouring rows at smooth extrema only.
 //!
-//! [`slopes`] applies to values that may rise and fall: displacements in time, soundings in x and in y. The slope at
-//! a row is that of the quartic through the row and its two neighbours on either side, one order less for each
-//! missing neighbour; its error is of the order h⁴, that of the cubics likewise. The first and the last slope are
-//! given by [`End`]. Where a cubic then turns between two rows i and i + 1, its excursion beyond both is that of a
+//! [`slopes`] applies to values that may rise and fall: displacements in time, soundings in x and in y. The slope at a row is that of the quartic through
+//! the row and its two neighbours on either side, one order less for each missing neighbour; its error, like that of the cubics, is of the order h⁴. The
+//! first and the last slope are given by [`End`]. Where a cubic then turns between two rows i and i + 1, its excursion beyond both is that of a
 //! smooth extremum if, with the divided second differences d_k = (s_k − s_{k−1})/(h_k + h_{k−1}) of the secants s and
 //! spans h,
 //!
@@ -11,9 +10,9 @@
 //!
 //! three times the excursion of a parabola with the curvature 2d between equal rows; at the ends of the table three
 //! d_k suffice, and fewer never do.
-//! Any other extremum has no support in the rows: both slopes are then limited to 0 … 3 minmod(s_{k−1}, s_k), with which the cubics at a
-//! row are monotone from row to row. A harmonic of unit amplitude with 20 rows a period is met within 3·10⁻⁵ (8 rows: 2·10⁻³) away from the ends, and
-//! within 2·10⁻⁴ where the rows are shifted at random by up to 0.3 of their distance.
+//! Any other extremum has no support in the rows: both slopes are then limited to 0 … 3 minmod(s_{k−1}, s_k), with which the cubics at a row are monotone
+//! from row to row. A harmonic of unit amplitude with 20 rows per period is reproduced within 3·10⁻⁵ (8 rows: 2·10⁻³) away from the ends, and within 2·10⁻⁴
+//! where the rows are shifted at random by up to 0.3 of their distance.
 //!
 //! [`rising_slopes`] applies to values that rise from row to row, such as tension over strain, and keeps them rising: the weighted harmonic mean
 //!
@@ -266,7 +265,7 @@ mod tests {
         })
     }
 
-    /// Greatest error away from three rows at either end of a sine with `count` rows a period, shifted at random by up to a part of their distance.
+    /// Greatest error away from three rows at either end of a sine with `count` rows per period, shifted at random by up to a part of their distance.
     fn error_of_sine(count: f64, phase: f64, mut shift: impl FnMut() -> f64) -> f64 {
         let at: Vec<f64> = (0..=(3.0 * count) as usize).map(|i| i as f64 + shift()).collect();
         let sine = |t: f64| (TAU * t / count + phase).sin();

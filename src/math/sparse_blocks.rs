@@ -10,10 +10,10 @@
 //! Pivots stay in their blocks, so that signs of pivots keep their meaning: a matrix is positive definite where all of them are positive, see
 //! [`Pivots`]. Values need not be symmetric. The arithmetic is the same on every machine, for any width of its vectors.
 //!
-//! Source: Davis (2006), Direct Methods for Sparse Linear Systems, chapters 4 (symbolic analysis) and 6 (LU with a symmetric pattern);
-//! Amestoy, Davis & Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886-905 (order). Order and pattern are by the crate faer, whose numeric
-//! factors are not suitable here: its Cholesky factors need symmetric values, its LU factors exchange rows between points, and both round differently on
-//! machines with other vectors.
+//! Source: Davis (2006), Direct Methods for Sparse Linear Systems, chapters 4 (symbolic analysis) and 6 (LU with a symmetric pattern); Amestoy, Davis &
+//! Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886-905 (order). Order and pattern are computed by the crate faer, whose numeric factors are not suitable
+//! here: its Cholesky factors need symmetric values, its LU factors exchange rows between points, and both round differently on machines with other
+//! vectors.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::block_banded::{Lu3, Pivots};
 
-/// Order of elimination, and where the factors have blocks.
+/// Order of elimination, and positions of the blocks of the factors.
 #[derive(Debug, Default)]
 struct Order {
     /// Place of every point in the order.
@@ -97,7 +97,7 @@ impl Order {
     }
 }
 
-/// The system of the points that chains meet in, three unknowns each.
+/// The system of the points at which chains meet, three unknowns each.
 #[derive(Debug, Clone)]
 pub struct PointSystem {
     order: Arc<Order>,

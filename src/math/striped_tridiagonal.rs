@@ -7,9 +7,9 @@
 //!
 //! x_r = g_r − s_r p − c_r x_{r+1},  c_r = u_r/δ,  s_r = −l_r s_{r−1}/δ,  g_r = (b_r − l_r g_{r−1})/δ,  δ = d_r − l_r c_{r−1},
 //!
-//! from x_{−1} = p, and the piece's first unknown, carried along, x_0 = G − F p + E x_r. The last equation of every piece, with these
-//! two, couples the last unknowns of three pieces: a system of four, which one step of cyclic reduction splits into pairs for Cramer's rule. Then
-//! x_r follows from the last row up. Systems of other sizes are filled up with rows x = 0.
+//! from x_{−1} = p, and the piece's first unknown, carried along, x_0 = G − F p + E x_r. The last equation of every piece, with these two, couples the last
+//! unknowns of three pieces: a system of four, which one step of cyclic reduction splits into pairs for Cramer's rule. The x_r then follow from the last
+//! row up. Systems of other sizes are filled up with rows x = 0.
 //!
 //! The elimination has no pivoting. A = 1 + K S with a diagonal K ≥ 0 and S positive semidefinite is similar to 1 +
 //! √K S √K, whose pivots are ≥ 1 in any order of elimination, and a diagonal similarity does not change pivots.

@@ -107,7 +107,7 @@ impl Slot {
     }
 }
 
-/// A number for every node of a folded chain.
+/// A number for every node of a striped chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     rows: Vec<Lanes>,
@@ -192,7 +192,7 @@ impl IndexMut<Slot> for Column {
     }
 }
 
-/// A vector for every node of a folded chain.
+/// A vector for every node of a striped chain.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Field {
     rows: Vec<Vectors>,

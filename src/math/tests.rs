@@ -22,7 +22,7 @@ where
     central(h, |h| f(h * Vector3::ith(axis, 1.0)))
 }
 
-/// Claims that the columns of a matrix are the central differences of a vector by displacements of its argument.
+/// Claims that the columns of a matrix are the central differences of a vector with respect to its argument.
 pub(crate) fn assert_columns(
     slope: &Matrix3<f64>,
     h: f64,

@@ -8,8 +8,8 @@ use super::real::{Real, RealVector};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triad<V>(pub [V; 3]);
 
-/// The values of an expression for every one of some items. Closures, as `map` takes them, are compiled as functions of their own where they are
-/// large, without the vector instructions of the function around them.
+/// Values of an expression for each of some items. Large closures, as taken by `map`, are compiled as separate functions, without the vector instructions
+/// of the function around them.
 macro_rules! each {
     ($item:ident in [$($value:expr),+] => $result:expr) => {
         [$({

@@ -1,8 +1,8 @@
 //! Vector unit of the machine on which a kernel runs; results do not depend on it.
 //!
-//! The kernels compute with four numbers at a time. Where a machine has vectors of eight, compilers combine two of four: values that were just written
-//! as two vectors and are read again as one wait until both are in the cache. Vectors of eight are 5 to 20 % slower than those of four on an Intel Xeon
-//! (Sapphire Rapids), and 3 to 8 % faster on lines of forty elements on Zen 5; they would be a third of the compiled code. They are not used.
+//! The kernels compute with four numbers at a time. Where a machine has vectors of eight, compilers combine two of four: values that were just written as
+//! two vectors and are read again as one wait until both are in the cache. Vectors of eight are 5 to 20 % slower than those of four on an Intel Xeon
+//! (Sapphire Rapids), and 3 to 8 % faster on lines of forty elements on Zen 5. They would make up a third of the compiled code and are not used.
 
 use pulp::NullaryFnOnce;
 #[cfg(target_arch = "x86_64")]

@@ -47,8 +47,8 @@ pub struct BeamState {
     pub course: Course,
 }
 
-/// Mean rates of the nodes of a beam over the last steps, from which the next one is predicted. The unknowns of a step are the rates over it, and a
-/// motion that alternates from step to step, as those do that a step does not resolve, is not in them.
+/// Mean rates of the nodes of a beam over the last steps, from which the next one is predicted. The unknowns of a step are the rates over it. They do not
+/// contain motion that alternates from step to step, such as motion that the step does not resolve.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Course {
     /// Length of the last step [s].
@@ -66,13 +66,13 @@ impl Course {
         }
     }
 
-    /// Mean rates of node `i` over a next step of a length [s], on the parabola through the last three.
+    /// Mean rates of node `i` over the next step of a length [s], on the parabola through the last three.
     pub fn predict(&self, i: usize, length: f64) -> Sextuple {
         let ([rate, first, second], apart) = self.scaled(i, length);
         rate + apart * (first + 0.5 * (apart + 1.0) * second)
     }
 
-    /// Takes the mean rates of node `i` over a step of a length [s].
+    /// Records the mean rates of node `i` over a step of a length [s].
     pub fn follow(&mut self, i: usize, rate: Sextuple, length: f64) {
         let ([last, first, _], apart) = self.scaled(i, length);
         let change = (rate - last) / apart;

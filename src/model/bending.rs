@@ -17,7 +17,7 @@ pub struct Bending {
     pub length: Vec<f64>,
     /// |κb| of the unstressed shape per node [-].
     pub rest: Vec<f64>,
-    /// Greatest push that a segment carries [N].
+    /// Greatest compressive force that a segment carries [N].
     pub compression_max: Vec<f64>,
     /// Damping of the joints [N m s], where a line type has it.
     pub damping: Option<Vec<f64>>,
@@ -112,14 +112,14 @@ impl Line {
         [self.clamp(End::A, a), self.clamp(End::B, b)]
     }
 
-    /// Greatest push that a segment carries [N]: none without bending stiffness.
+    /// Greatest compressive force that a segment carries [N]: none without bending stiffness.
     pub fn compression_max(&self, segment: usize) -> f64 {
         self.bending
             .as_ref()
             .map_or(0.0, |bending| bending.compression_max[segment])
     }
 
-    /// The greatest push that any of its segments carries [N].
+    /// The greatest compressive force that any of its segments carries [N].
     pub fn greatest_push(&self) -> f64 {
         let pushes = self.bending.iter().flat_map(|bending| &bending.compression_max);
         pushes.fold(0.0, |greatest, push| push.max(greatest))

@@ -98,8 +98,7 @@ impl Model {
         })
     }
 
-    /// Number and lengths [m] of the lines' elements with the reasons, where this is the model of that scene: one
-    /// sentence a line.
+    /// Number and lengths [m] of the lines' elements with the reasons, where this is the model of that scene: one sentence per line.
     pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
         spacing::in_words(scene, self)
     }

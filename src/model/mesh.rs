@@ -20,13 +20,12 @@
 //! Alternatives that were measured and rejected, on the public scenes and ten variants with n = 14 to 40:
 //! * elements of three times the length on the part that always lies on the seabed: 12 % less work on average, 26 % at most, and 8 % more
 //!   RMS error, 24 to 36 % on the lines that lie most: worse than fewer elements all along;
-//! * unstretched lengths shortened by (hκ)²/24 of the static curvature κ, chords for arcs: with 14 elements the position half-way along has 0.45
-//!   of its error on oc3_catenary and 0.64 on oc4_chain, the tension 0.94 on average, and none less where the line slackens. It moves
-//!   the discrete equilibrium, which is held to published values. With the give of that sag in the stiffness too, 1/EA' = 1/EA +
-//!   (qh)²/(12T³) as Ernst (1965) has it for a whole cable, q the weight across and T the tension at rest, the tension has 1.3 to 1.4 times its
-//!   error on both (14 to 28 elements): a weight is too slow to follow waves along the line. On taut_polyester neither does
-//!   anything, (hκ)²/24 being 5e-8 with 10 elements: the curvature of that rope comes from drag. Its tension was wrong at
-//!   the end, see `dynamics/reaction.rs`.
+//! * unstretched lengths shortened by (hκ)²/24 of the static curvature κ, chords for arcs: with 14 elements the position half-way along has 0.45 of its
+//!   error on oc3_catenary and 0.64 on oc4_chain, the tension 0.94 on average, with no gain where the line slackens. It moves the discrete equilibrium,
+//!   which is held to published values. With the compliance of that sag in the stiffness too, 1/EA' = 1/EA + (qh)²/(12T³) as Ernst (1965) has it for a
+//!   whole cable, q the transverse weight and T the tension at rest, the tension has 1.3 to 1.4 times its error on both (14 to 28 elements): a weight is
+//!   too slow to follow waves along the line. On taut_polyester neither does anything, (hκ)²/24 being 5e-8 with 10 elements: the curvature of that rope
+//!   comes from drag. Its tension was wrong at the end, see `dynamics/reaction.rs`.
 //!
 //! Elements of half the length at the touchdown of a line without bending stiffness were measured with the same total
 //! number of elements (oc3 and oc4 scenes, n = 20 to 120, regularised contact): the error of the tension did not
@@ -215,7 +214,7 @@ impl Field<'_> {
         others.chain(fine).fold(f64::INFINITY, f64::min)
     }
 
-    /// Arc lengths from the start of a section [m], and how many elements lie before them by ∫ ds/h.
+    /// Arc lengths from the start of a section [m], and the number of elements before them, ∫ ds/h.
     fn counted(&self, index: usize) -> Vec<(f64, f64)> {
         let piece = &self.pieces[index];
         let h = |s: f64| piece.size.min(self.least_near(s, index));

@@ -45,7 +45,7 @@ pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
 pub use winch::{LONGEST, Passage, SHORTEST, Winch};
 
-/// Part of a property below which two are one [-].
+/// Fraction of a property below which two values count as equal [-].
 const ROUNDING: f64 = 1e-9;
 
 /// Discretised scene. Immutable; shared by reference.
@@ -53,7 +53,7 @@ const ROUNDING: f64 = 1e-9;
 pub struct Model {
     /// Gravitational acceleration [m/s²].
     pub gravity: f64,
-    /// z of the seabed [m]: of a level one; of others at the depth that the scene gives.
+    /// z of the seabed [m] if it is level; for others, z at the depth that the scene gives.
     pub seabed_level: Option<f64>,
     /// Coulomb friction of the seabed along a line [-].
     pub seabed_friction: f64,
@@ -463,7 +463,7 @@ impl Line {
         self.nodes.drag.is_some() && model.current.is_some()
     }
 
-    /// Segment `segment` at a strain [-] by its law alone, as if it could push.
+    /// Segment `segment` at a strain [-] by its law alone, without its limit in compression.
     #[inline(always)]
     pub fn uncut_spring(&self, segment: usize, strain: f64) -> Spring {
         let ea = self.segments.axial_stiffness[segment];
@@ -534,7 +534,7 @@ impl Line {
             && (self.surface.is_none() || self.nodes.mass.iter().all(|mass| *mass > 0.0))
     }
 
-    /// Returns whether a leapfrog can take the joints of the line, and the push of its segments.
+    /// Returns whether a leapfrog can take the joints of the line, and the compression of its segments.
     fn joints_serve_leapfrog(&self, bending: &Bending) -> bool {
         let proportional = self.uniform_law() == Some(StretchLaw::Engineering);
         proportional && self.segments.viscoelastic.is_none() && bending.damping.is_none()
@@ -733,7 +733,7 @@ impl Model {
         network.lines.iter().map(|&line| &self.lines[line])
     }
 
-    /// Returns whether a network starts in static equilibrium, which holds where any of its lines does.
+    /// Returns whether a network starts in static equilibrium, as it does if any of its lines does.
     pub fn starts_at_rest(&self, network: usize) -> bool {
         let mut lines = self.lines_of(&self.networks[network]);
         lines.any(|line| line.initial == InitialShape::Static)
@@ -754,7 +754,7 @@ impl Model {
         (0..self.points.len() + self.vessels.len()).map(|index| self.body(index))
     }
 
-    /// The body at a place of the list of all points followed by all vessels.
+    /// The body at an index in the list of all points followed by all vessels.
     pub fn body(&self, index: usize) -> Body {
         match index.checked_sub(self.points.len()) {
             None => Body::Point(index),

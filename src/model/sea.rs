@@ -68,7 +68,7 @@ impl WaveSpan {
         }
     }
 
-    /// Length [s]; 0 where it is over as it begins.
+    /// Length [s]; 0 if it ends at its start.
     pub fn length(&self) -> f64 {
         self.times[1] - self.times[0]
     }
@@ -95,7 +95,7 @@ impl WaveSpan {
 pub struct WavesAlong<'a> {
     ends: [&'a [Orbit]; 2],
     times: [f64; 2],
-    /// [s]
+    /// Time [s].
     time: f64,
 }
 

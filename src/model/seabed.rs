@@ -94,7 +94,7 @@ impl Contact {
         }
     }
 
-    /// Force of springs and dampers [N] on a node among nodes at places [m] with velocities [m/s]; friction is not in it.
+    /// Force of springs and dampers [N] on a node among nodes at places [m] with velocities [m/s], without friction.
     pub fn push(
         &self,
         node: usize,

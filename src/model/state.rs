@@ -141,7 +141,7 @@ impl PointState {
         }
     }
 
-    /// The point there, without motion.
+    /// The point at the same position, without motion.
     pub fn stopped(self) -> PointState {
         let zero = Vector3::zeros();
         PointState {
@@ -152,7 +152,7 @@ impl PointState {
         }
     }
 
-    /// The point as its support was turned `lag` [s] ago.
+    /// The point with the rotation that its support had `lag` [s] ago.
     pub fn before(self, lag: f64) -> PointState {
         PointState {
             orientation: UnitQuaternion::from_scaled_axis(-lag * self.spin) * self.orientation,
@@ -160,7 +160,7 @@ impl PointState {
         }
     }
 
-    /// The point there in its present motion, as if it were not accelerated.
+    /// The point in its present position and motion, as if it were not accelerated.
     pub fn without_acceleration(self) -> PointState {
         PointState {
             acceleration: Vector3::zeros(),

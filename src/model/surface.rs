@@ -1,4 +1,4 @@
-//! The water's surface over a line: the buoyancy that its nodes lose where they are dry.
+//! The water's surface over a line: the buoyancy that its nodes lose where they are out of the water.
 
 use nalgebra::Vector3;
 

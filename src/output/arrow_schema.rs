@@ -25,7 +25,7 @@ const DOUBLE: i16 = 2;
 
 type Table = WIPOffset<TableFinishedWIPOffset>;
 
-/// Offset in a table of its field of a number.
+/// Offset in a table of the field with this number.
 const fn slot(number: VOffsetT) -> VOffsetT {
     4 + 2 * number
 }

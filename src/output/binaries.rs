@@ -27,7 +27,7 @@ impl Binaries {
     /// Libraries in the folder of the running program.
     ///
     /// # Errors
-    /// As of [`Binaries::of_folder`].
+    /// As for [`Binaries::of_folder`].
     pub fn beside_the_program() -> Result<Binaries, PackageError> {
         Binaries::of_folder(&folder_of_the_program()?)
     }
@@ -44,7 +44,7 @@ impl Binaries {
         }
     }
 
-    /// Libraries in a file, as of [`Binaries::of_bytes`].
+    /// Libraries in a file, as for [`Binaries::of_bytes`].
     ///
     /// # Errors
     /// A file that cannot be read.

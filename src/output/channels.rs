@@ -53,7 +53,7 @@ impl Channels {
         self.list.iter().map(|(column, _)| column.clone())
     }
 
-    /// The channels' values now, each in its column's unit.
+    /// Present values of the channels, each in its column's unit.
     pub fn values(&self, simulation: &Simulation) -> impl Iterator<Item = f64> {
         let sources = self.list.iter();
         sources.map(|(_, source)| value(*source, simulation))

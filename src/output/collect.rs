@@ -12,8 +12,8 @@ use crate::simulation::{NodeBending, Simulation};
 /// Points of a catenary's drawn shape [-].
 const CATENARY_POINTS: usize = 201;
 
-/// The lines, points and surroundings of a simulation, with columns for a planned number of rows, and none yet. `still` is the same in static equilibrium, where there is
-/// one: see [`Simulation::in_equilibrium`].
+/// Record of a simulation: lines, points and surroundings, with columns for a planned number of rows and no rows yet. `still` is the same in static
+/// equilibrium, if there is one: see [`Simulation::in_equilibrium`].
 pub fn record(
     scene: &Scene,
     simulation: &Simulation,
@@ -96,7 +96,7 @@ fn catenary_profile(simulation: &Simulation, line: usize) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The shapes of all lines now, which is `time` [s].
+/// Present shapes of all lines, at `time` [s].
 pub fn frame(simulation: &Simulation, time: f64) -> Frame {
     let nodes = |line| {
         let nodes = simulation.profile(line).into_iter().map(|node| Node {

@@ -27,7 +27,7 @@ pub(super) struct CsvTable {
 }
 
 impl CsvTable {
-    /// A table in a new file, with its header row, or in one that continues behind its last row.
+    /// A table in a new file, with its header row, or in one that continues after its last row.
     pub(super) fn open(
         mut file: Growing,
         columns: &[Column],
@@ -61,7 +61,7 @@ impl CsvTable {
         Ok(())
     }
 
-    /// The file behind the rows written so far.
+    /// The file of the rows written so far.
     pub(super) fn file(&mut self) -> &mut Growing {
         &mut self.file
     }
@@ -141,7 +141,7 @@ pub fn write_units(columns: &[Column], out: impl Write) -> io::Result<()> {
     table.flush()
 }
 
-/// The fewest digits that read back to the same bits, in scientific notation where it is far from one.
+/// The fewest digits that read back to the same bits, in scientific notation for values far from 1.
 pub(super) fn shortest(value: f64) -> String {
     format!("{value:?}")
 }

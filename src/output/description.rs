@@ -17,7 +17,7 @@ use crate::scene::{Profile, Scene, SceneError};
 
 /// Beginning of the name of every library.
 const IDENTIFIER: &str = "moorline";
-/// Length of a title in the name of the library, at most [-].
+/// Greatest length of the title in the name of the library [-].
 const TITLE_MAX: usize = 40;
 
 /// Version of this program, part of the token.
@@ -56,7 +56,7 @@ impl Description {
     /// Describes a scene, given as the text in the FMU and as read from it.
     ///
     /// # Errors
-    /// A scene that makes no model, or names that clash.
+    /// A scene from which no model can be made, or names that clash.
     pub fn new(text: &str, scene: &Scene, version: FmiVersion) -> Result<Description, SceneError> {
         Description::stamped(text, scene, version, &Stamp::default())
     }
@@ -89,7 +89,7 @@ impl Description {
     }
 }
 
-/// SHA-256 in hexadecimal; every part goes in with its length.
+/// SHA-256 in hexadecimal; every part is hashed with its length.
 fn token(xml: &str, scene: &str) -> String {
     let mut hash = Sha256::new();
     for part in [VERSION, xml, scene] {
@@ -161,7 +161,7 @@ fn write_root(
     })
 }
 
-/// Title of the scene, without characters that XML cannot carry.
+/// Title of the scene, without characters that XML does not allow.
 fn model_name(scene: &Scene) -> String {
     let illegal = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     let title = scene.title.replace(illegal, " ");
@@ -171,7 +171,7 @@ fn model_name(scene: &Scene) -> String {
     }
 }
 
-/// Name of the library: the title of the scene as a name of C, so that the FMUs of different scenes have different ones.
+/// Name of the library: the title of the scene as a C identifier, so that the FMUs of different scenes have different ones.
 fn model_identifier(scene: &Scene) -> String {
     let mut identifier = IDENTIFIER.to_string();
     let title = scene.title.to_lowercase();
@@ -423,7 +423,7 @@ fn write_structure(
             .enumerate()
             .filter(move |(_, variable)| causalities.contains(&variable.causality))
     };
-    // without derivatives outputs change with a step alone
+    // without derivatives, outputs change only with a step
     let outputs = of(&[Causality::Output]).map(|(index, variable)| match derivatives {
         true => (index, interface.motions_of(variable)),
         false => (index, Vec::new()),

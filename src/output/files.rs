@@ -20,7 +20,7 @@ use crate::scene::{Format, Frames, Output};
 /// Shapes of a run whose scene does not give their interval, about [-].
 const FRAMES_MAX: usize = 240;
 
-/// Opens the table of a stem, in the format of the scene: a new one, or one that continues behind a mark.
+/// Opens the table with this file stem, in the format of the scene: a new one, or one that continues after a mark.
 fn open_table(
     stem: &Path,
     mark: Option<&Mark>,
@@ -142,7 +142,7 @@ impl RunFiles {
         }
     }
 
-    /// Adds a row, the number `index` of the run from 0: to the record and the table, and where one is due the shape of the lines.
+    /// Adds row `index` of the run, counted from 0, to the record and the table, and the shape of the lines if one is due.
     ///
     /// # Errors
     /// A file that the operating system refuses.
@@ -215,7 +215,7 @@ impl Shapes {
         })
     }
 
-    /// Writes a shape, and then its place in the collection.
+    /// Writes a shape, and then its entry in the collection.
     fn add(&mut self, folder: &Path, frame: &Frame) -> Result<(), OutputError> {
         let path = folder.join(vtk::frame_name(self.written));
         write_file(&path, |w| vtk::write_frame(frame, w))?;

@@ -26,12 +26,12 @@ pub(super) struct Mark {
     end: u64,
     /// The last of them.
     tail: Vec<u8>,
-    /// Ending behind the data.
+    /// Ending after the data.
     ending: Vec<u8>,
 }
 
 impl Growing {
-    /// A new file in place of an old one of the name; the target of a link is replaced.
+    /// A new file in place of an old one of the same name; the target of a link is replaced.
     pub(super) fn create(path: &Path) -> Result<Growing, OutputError> {
         let file = target_of(path).and_then(|target| create(&target));
         Ok(Growing {
@@ -41,7 +41,7 @@ impl Growing {
         })
     }
 
-    /// Continues a file behind a mark; the data behind it is removed.
+    /// Continues a file after a mark; the data after it are removed.
     ///
     /// # Errors
     /// A file that is not there, or has other data at the mark.
@@ -101,19 +101,19 @@ impl Growing {
         self.file.write_all(ending)
     }
 
-    /// The place up to which the file is written, once the disk has it.
+    /// Mark up to which the file is written, once that is on the disk.
     pub(super) fn mark(&mut self) -> Result<Mark, OutputError> {
         let stored = self.file.sync_data();
         stored.map_err(|source| OutputError::of_file(&self.path, source))?;
         Ok(self.mark.clone())
     }
 
-    /// Bytes of the data [-]; 0 of a new file.
+    /// Bytes of the data [-]; 0 for a new file.
     pub(super) fn end(&self) -> u64 {
         self.mark.end
     }
 
-    /// Ending behind the data.
+    /// Ending after the data.
     pub(super) fn ending(&self) -> &[u8] {
         &self.mark.ending
     }

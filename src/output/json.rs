@@ -106,7 +106,7 @@ pub struct Hold {
     pub stiffness: Option<[[f64; 6]; 6]>,
 }
 
-/// Writes the equilibrium as indented JSON with a line end behind it.
+/// Writes the equilibrium as indented JSON with a trailing newline.
 ///
 /// # Errors
 /// Writing to `out` fails.

@@ -106,7 +106,7 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
 /// Makes a folder like [`make_folder`], and checks that files can be written there.
 ///
 /// # Errors
-/// As there, and where it takes none.
+/// As for [`make_folder`], and if no file can be written there.
 pub fn open_folder(path: &Path) -> Result<(), OutputError> {
     make_folder(path)?;
     let probe = partial_name(&path.join("probe"));
@@ -176,7 +176,7 @@ pub fn check_file(path: &Path) -> Result<(), OutputError> {
 /// The regular file, or the free name, that a path leads to; links are followed.
 fn target_of(path: &Path) -> io::Result<PathBuf> {
     let refuse = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
-    // the link that /dev/stdout is leads to no name where standard output is a pipe
+    // /dev/stdout is a link that leads to no name if standard output is a pipe
     if let Ok(found) = fs::metadata(path) {
         let what = match (found.is_file(), found.is_dir()) {
             (true, _) => return fs::canonicalize(path),
@@ -197,7 +197,7 @@ fn target_of(path: &Path) -> io::Result<PathBuf> {
 
 /// New file for writing, in place of a temporary file that an ended process may have left.
 fn create(partial: &Path) -> io::Result<File> {
-    // where nothing is left there is nothing to remove
+    // there may be nothing to remove
     let _ = fs::remove_file(partial);
     File::create_new(partial)
 }
@@ -215,10 +215,10 @@ fn replace_file(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> io:
     made
 }
 
-/// Links that are followed to a file, at most [-].
+/// Greatest number of links that are followed to a file [-].
 const LINKS_MAX: usize = 40;
 
-/// Writes what a run leaves to see into its folder: every figure as SVG, and `report.html`.
+/// Writes the figures of a run as SVG, and `report.html`, into its folder.
 ///
 /// # Errors
 /// The first file that the operating system refuses.

@@ -142,7 +142,7 @@ impl NodeShape {
     }
 }
 
-/// The `count` lowest modes of all networks of a simulation that stands in equilibrium.
+/// The `count` lowest modes of all networks of a simulation that is in equilibrium.
 ///
 /// # Errors
 /// As [`Modes::lowest`].
@@ -270,7 +270,7 @@ impl LineShape {
     }
 }
 
-/// Writes the modes as indented JSON with a line end behind it.
+/// Writes the modes as indented JSON with a trailing newline.
 ///
 /// # Errors
 /// Writing to `out` fails.

@@ -1,8 +1,7 @@
 //! The .fmu container: description, scene, libraries, documentation, terminals and reference results in one zip file; and the .ssp container
 //! around it.
 //!
-//! Deterministic: the same scene, libraries, version and stamp give the same bytes. Names have forward slashes, a library
-//! its run bit.
+//! Deterministic: the same scene, libraries, version and stamp give the same bytes. Names have forward slashes; libraries have the executable bit.
 
 mod documentation;
 mod icon;
@@ -33,7 +32,7 @@ use crate::simulation::{self, Simulation};
 /// Name of the scene below `resources/`.
 pub const SCENE_FILE: &str = "scene.toml";
 
-/// Reason for which an FMU was not written.
+/// Reason why an FMU was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum PackageError {
     /// The scene cannot be described.
@@ -85,9 +84,8 @@ pub enum Container {
     Ssp,
 }
 
-/// Packages a scene with FMU libraries into `target`, which gets its name when it is complete. `text` is the text
-/// of the file that the scene was read from. The mesh is the present one of the scene, regardless of later inputs of
-/// a host.
+/// Packages a scene with FMU libraries into `target`, which appears under its name when it is complete. `text` is the text of the file that the scene was
+/// read from. The mesh is the present one of the scene, regardless of later inputs of a host.
 ///
 /// # Errors
 /// A scene that cannot be described or has no equilibrium, a target that cannot be written.

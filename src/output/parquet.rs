@@ -1,7 +1,7 @@
 //! Tables in Apache Parquet: plain columns without compression, in groups of rows of a bounded size.
 //!
-//! The footer is written behind every group, and replaced by the next one: the file can be read at any time. Units and descriptions
-//! are metadata of the fields, in the schema of Apache Arrow that the file carries. With 6 digits or fewer, numbers are 32-bit ones.
+//! The footer is written after every group, and replaced by the next one: the file can be read at any time. Units and descriptions are metadata of the
+//! fields, in the schema of Apache Arrow that the file carries. With 6 digits or fewer, numbers are 32-bit ones.
 //! Sources: Apache Parquet format 2.11; Apache Arrow format 1.5, `Schema.fbs` and `Message.fbs`.
 
 use std::io;
@@ -27,7 +27,7 @@ use super::record::{Column, Form};
 
 /// Beginning and end of a file.
 const MAGIC: &[u8; 4] = b"PAR1";
-/// Bytes behind the metadata: their length, and the end.
+/// Bytes after the metadata: their length, and the end.
 const FOOTER_END: usize = 8;
 /// Values of a group of rows [-]: 2 MiB.
 const GROUP_VALUES: usize = 1 << 18;
@@ -57,7 +57,7 @@ struct Buffer {
 }
 
 impl ParquetTable {
-    /// A table in a new file, without rows, or in one that continues behind its last group.
+    /// A table in a new file, without rows, or in one that continues after its last group.
     pub(super) fn open(
         file: Growing,
         columns: &[Column],
@@ -118,7 +118,7 @@ impl ParquetTable {
         }
     }
 
-    /// Writes the rows that are kept as a group.
+    /// Writes the pending rows as a group.
     pub(super) fn flush(&mut self) -> Result<(), OutputError> {
         if self.columns[0].values.is_empty() {
             return Ok(());
@@ -132,7 +132,7 @@ impl ParquetTable {
         self.file.append(&bytes, footer)
     }
 
-    /// The file behind the groups written so far.
+    /// The file of the groups written so far.
     pub(super) fn file(&mut self) -> &mut Growing {
         &mut self.file
     }
@@ -141,7 +141,7 @@ impl ParquetTable {
         self.file.failure(io::Error::other(error))
     }
 
-    /// Bytes of the rows that are kept, and their metadata at the end of the file.
+    /// Bytes of the pending rows as a group, and their metadata at the end of the file.
     fn encode_group(&mut self) -> Result<(Vec<u8>, RowGroupMetaData), ParquetError> {
         let mut bytes = TrackedWrite::new(Vec::new());
         let mut group = SerializedRowGroupWriter::new(
@@ -240,7 +240,7 @@ fn write_column(column: &Buffer, writer: &mut ColumnWriter<'_>) -> Result<(), Pa
     .map(|_| ())
 }
 
-/// Metadata of a group that stands a number of bytes further on.
+/// Metadata of a group that is shifted by a number of bytes.
 fn shifted(group: &RowGroupMetaData, by: i64) -> Result<RowGroupMetaData, ParquetError> {
     let chunk = |chunk: &ColumnChunkMetaData| {
         let (data, dictionary) = (chunk.data_page_offset(), chunk.dictionary_page_offset());

@@ -169,7 +169,7 @@ impl Counters {
     }
 }
 
-/// Everything that the rows and shapes of a run leave behind. Saved with the state of a run that is to be continued.
+/// Everything that is retained of the rows and shapes of a run. Saved with the state of a run that is to be continued.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Course {
     /// Number of rows [-].
@@ -246,7 +246,7 @@ pub struct Record {
     /// Description of the run, in a line.
     pub title: String,
     columns: Vec<Column>,
-    /// Remains of rows and shapes.
+    /// Retained data of rows and shapes.
     pub course: Course,
     /// The lines.
     pub lines: Vec<LineRecord>,

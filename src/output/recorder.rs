@@ -60,7 +60,7 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Columns behind the time.
+    /// Columns after the time.
     pub fn columns(&self, model: &Model) -> Vec<Column> {
         let mut all = columns(&self.variables);
         let elevation = "elevation of the surface at x = y = 0";
@@ -70,7 +70,7 @@ impl Recorder {
         all
     }
 
-    /// The time [s] and the values then, each in its column's unit.
+    /// Row of the time [s] and the values then, each in its column's unit.
     pub fn row(&mut self, simulation: &Simulation, time: f64) -> &[f64] {
         let (row, model) = (&mut self.row, simulation.model());
         row.clear();
@@ -116,15 +116,15 @@ pub fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Col
     variables.into_iter().map(column).collect()
 }
 
-/// An output now, in its unit.
+/// Present value of an output, in its unit.
 fn output_of(variable: &Variable, simulation: &Simulation) -> f64 {
     let mut value = [f64::NAN];
-    // An output that cannot be computed is no number; the table marks it so.
+    // An output that cannot be computed stays NaN, which the table marks.
     let _ = Interface::read(variable, simulation, &mut value);
     value[0]
 }
 
-/// An input by the scene's motion at `time` [s], where it has `moving` bodies, in its unit; `None` of an output.
+/// An input by the scene's motion at `time` [s], where it has `moving` bodies, in its unit; `None` for an output.
 pub fn input_of(variable: &Variable, model: &Model, moving: &[Moving], time: f64) -> Option<f64> {
     let of = |body: Body, part: fn(&Moving) -> [f64; 6], axis: usize| {
         let found = moving.iter().find(|moving| moving.body == body);

@@ -1,6 +1,6 @@
 //! The saved state of a run that is to be continued.
 //!
-//! Bytes: mark with the version, SHA-256 of what follows, then the state in postcard. Bytes of another version, cut short or changed are refused.
+//! Bytes: mark with the version, SHA-256 of what follows, then the state in postcard. Bytes of another version, truncated or changed ones are refused.
 
 use std::fs;
 use std::path::Path;

@@ -18,7 +18,7 @@ pub(super) enum Table {
 }
 
 impl Table {
-    /// A table in a new file, without rows, or in one that continues behind its last row.
+    /// A table in a new file, without rows, or in one that continues after its last row.
     pub(super) fn open(
         file: Growing,
         format: Format,

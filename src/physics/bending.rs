@@ -14,7 +14,7 @@
 //! them is a hinge. A clamp is a fixed direction.
 //!
 //! Under a tension T a line leaves a clamp in a bend of length λ = √(EI/T), with the moment M = EI Θ/λ at the angle Θ between the clamp and the line
-//! beyond. In a chain of equal segments of length l, each direction deviates from that of the line beyond by a factor r less than the one before,
+//! beyond. In a chain of equal segments of length l, the deviation of each direction from that of the line beyond is r times that of the one before,
 //! r + 1/r = 2 + l²/λ²; that is r = e^(−2x) with sinh x = l/2λ = u. The chain acts on the clamp as a stiffness (EI/l)(1/r − 1) in series with B,
 //! and M is that of the line on every mesh if
 //!
@@ -24,19 +24,19 @@
 //! error of 0.05 (l/λ)² ln(T'/T) where l < λ, and of 0.15 ln(T'/T) at l = 2λ.
 //!
 //! A moment M on an end of a line turns its last segment, of the end-to-end vector e and direction q. A turn δθ = q ×
-//! δq across the line takes the work M·δθ = (M × q)·δe/l. M is therefore a couple of forces ± f on the segment's two
+//! δq across the line does the work M·δθ = (M × q)·δe/l. M is therefore a couple of forces ± f on the segment's two
 //! nodes,
 //!
 //! f = M × e/|e|²,   ∂f/∂e = ([M]ₓ − 2 (M × q) qᵀ)/l²,
 //!
 //! which bends a line by M/EI there, with an error in (κl)². The part of M along the line does no work, since no
-//! torsional stiffness is modelled. ∂f/∂e is unsymmetric, as that of a load without a potential.
+//! torsional stiffness is modelled. ∂f/∂e is unsymmetric, as for a load without a potential.
 //!
 //! The module also holds EI of a solid round section and of a bundle of loose fibres, and the compression a segment
 //! can carry. A bundle of N equal loose strands of area A/N, d' = d/√N each, that slide on each other has
 //! N·(A/N)²E/4π = EI/N. The alternative definition, EI/N², is the stiffness of a single strand. A chain of segments
 //! of length l buckles in its shortest wave, a zigzag, at 4EI/l²: the bending energy of a zigzag of amplitude a is
-//! ½(EI/l)(4a/l)² a node, and a push P gives ½P(2a)²/l. The mesh cannot resolve the shape under a greater push, so a
+//! ½(EI/l)(4a/l)² per node, and a push P gives ½P(2a)²/l. The mesh cannot resolve the shape under a greater push, so a
 //! segment carries no more. Without EI it carries no compression.
 //!
 //! Source: Bergou, Wardetzky, Robinson, Audoly & Grinspun (2008), Discrete Elastic Rods, ACM Trans. Graph. 27(3), eq. 1 and
@@ -268,7 +268,7 @@ impl Turn {
         ]
     }
 
-    /// Stiffness of a damper of `damping` [N m s] on the rate of k across the line, the section not spinning about
+    /// Stiffness of a damper of `damping` [N m s] on the rate of k across the line, for a section that does not spin about
     /// its axis: [N s/m]. Rotation of the line as a whole is not damped.
     #[inline(always)]
     pub fn damper(&self, damping: f64) -> Hessian {

@@ -4,9 +4,9 @@
 //!
 //!   F = (V(p₁) − V(p₀))/(p₁ − p₀),   V(p) = ½ k max(p, 0)²,
 //!
-//! and the damper's c s(p̄) (p₁ − p₀)/Δt, with p̄ the mean and s as in `fading_damper`. Their sum pushes only.
+//! and the damper's c s(p̄) (p₁ − p₀)/Δt, with p̄ the mean and s as in `fading_damper`. Their sum can only push.
 //!
-//! Source: discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid as `seabed` is.
+//! Source: discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid where `seabed` is.
 
 use super::fading_damper::fade;
 use super::seabed::ContactCoefficients;
@@ -22,7 +22,7 @@ pub struct ContactStep {
     pub spring: f64,
 }
 
-/// Force over a step [s] from penetration `before` to `after` [m], the damper fading in over ± `reach` [m].
+/// Force over a step [s] from penetration `before` to `after` [m], with the damper fading in over ± `reach` [m].
 #[inline]
 pub fn contact_step(k: ContactCoefficients, [before, after]: [f64; 2], reach: f64, step: f64) -> ContactStep {
     let (spring, spring_slope) = spring(k.stiffness, before, after);

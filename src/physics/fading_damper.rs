@@ -1,13 +1,13 @@
-//! Contact with the seabed whose damper fades in with the penetration, instead of switching on at touch.
+//! Contact with the seabed whose damper fades in with the penetration, instead of switching on at contact.
 //!
 //! f = max(0, k max(p, 0) − c s(p) ż),   s = 3u² − 2u³,   u = ½ (1 + p/r) between 0 and 1,
 //!
-//! so that the damper is off at p = −r, fully active from p = r on, and smooth between. A damper that switches breaks
+//! so that the damper is off at p = −r, fully active from p = r on, and smooth between. A damper that switches defeats
 //! Newton's method: an iterate that lifts a node releases it, and the next falls back. r is the greatest of
 //! [`damper_reach`], two penetrations of the node at rest, and its displacement in a step. At rest the force is that
 //! of `seabed`.
 //!
-//! Source: the cubic step as a C¹ switch; contact as in `seabed`, and valid as that is, for r well below the length of a segment.
+//! Source: the cubic step as a C¹ switch; contact as in `seabed`, and valid where that is, for r well below the length of a segment.
 
 use super::seabed::ContactCoefficients;
 
@@ -45,7 +45,7 @@ pub struct FadingContact {
 }
 
 impl FadingContact {
-    /// Contact at a penetration [m] and vertical velocity ż [m/s], the damper fading in over ± `reach` [m]; `None`
+    /// Contact at a penetration [m] and vertical velocity ż [m/s], with the damper fading in over ± `reach` [m]; `None`
     /// where the seabed does not act.
     #[inline(always)]
     pub fn new(k: ContactCoefficients, penetration: f64, velocity: f64, reach: f64) -> Option<FadingContact> {

@@ -7,14 +7,14 @@
 //! same bit for bit.
 //!
 //! Source: piecewise linear interpolation; relative velocity in Morison's formula as in Hall & Goupee (2015), Ocean Engineering 104,
-//! 590-603, section 2. Valid for currents that change slowly: the force on a line by the acceleration of the water, ρA(1 + C_a) ∂u/∂t,
+//! 590-603, section 2. Valid for currents that change slowly: the force on a line due to the acceleration of the water, ρA(1 + C_a) ∂u/∂t,
 //! is left out, as it vanishes in a steady current.
 
 use nalgebra::Vector3;
 
 use crate::math::lanes::{Lanes, Vectors};
 
-/// Velocity of the water over the height, at one time or as a shape that a factor multiplies.
+/// Velocity of the water over height, at one time or as a shape that a factor multiplies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Velocity at and below the lowest height [m/s].

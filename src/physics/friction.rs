@@ -6,7 +6,7 @@
 //! (f_a/D_a)² + (f_b/D_b)² ≤ 1,   D_a = N √(μ_a² s² + μ_b² (1 − s²)),   D_b = μ_b N
 //! ```
 //!
-//! with s the part of the line's tangent that lies in the plane: a line that stands on the seabed is across it all around. Inside the
+//! with s the part of the line's tangent that lies in the plane: for a line that stands on the seabed every direction is across. Inside the
 //! ellipse nothing slides. On it the line slides in the direction of greatest dissipation, v_i ∝ −f_i/D_i², so that
 //! the friction is D_a against a line dragged along its axis, D_b across.
 //! With the velocity v⁰ at which a node would slide without friction, and the compliance C_i of sliding to force along the axes,
@@ -15,7 +15,7 @@
 //! f_i = −v⁰_i m_i² N/(C_i m_i² N + γ),   v_i = v⁰_i γ/(C_i m_i² N + γ),   m_i = D_i/N,   γ ≥ 0 such that f lies in the ellipse.
 //! ```
 //!
-//! A node sticks with γ = 0. The force that would hold it, −v⁰_i/C_i, need not be known, and neither need the sign of v⁰: its square suffices, which
+//! A node sticks with γ = 0. Neither the force that would hold it, −v⁰_i/C_i, nor the sign of v⁰ is required: its square suffices, which
 //! axes of any length give without a root.
 //!
 //! Source: maximal dissipation for anisotropic friction, Michałowski & Mróz (1978), Archives of Mechanics 30, 259-276; γ by the
@@ -49,7 +49,7 @@ pub struct Axes<V: RealVector = Vector3<f64>> {
 
 /// Part of the tangent below which a line stands on the seabed [-].
 const STANDING: f64 = 1e-9;
-/// Nodes closer to the ellipse than this slide: rounding of their places must not decide [-].
+/// Nodes closer to the ellipse than this slide: rounding of their positions must not decide [-].
 const BORDER: f64 = 1e-7;
 /// Relative error of the size of the ellipse that one more correction of γ reduces to rounding [-]: each correction squares it.
 const NEAR: f64 = 1e-8;
@@ -58,7 +58,7 @@ const ITERATIONS_MAX: usize = 30;
 
 impl<V: RealVector> Axes<V> {
     /// Axes of a line along a vector of any length on a seabed with the unit normal `normal`; `inverse_square` is 1 over the square of that length.
-    /// The axes are as long as the part of the vector in the plane; those of a line that stands on the seabed have another length.
+    /// The axes are as long as the part of the vector in the plane; those of a line that stands on the seabed have a different length.
     #[inline(always)]
     pub fn new(normal: V, line: V, inverse_square: V::Real) -> Axes<V> {
         let [zero, one] = [0.0, 1.0].map(V::Real::splat);
@@ -164,7 +164,7 @@ pub fn slide<R: Real>(velocity: [R; 2], compliance: [R; 2], squares: [R; 2], nor
         if !open.any_positive() {
             break;
         }
-        // Newton's method on 1/|f/D|, as a function of γ nearly a straight line, with one root and one quotient that do not wait for each other
+        // Newton's method on 1/|f/D|, as a function of γ nearly a straight line, with one root and one quotient that do not depend on each other
         let (p, q) = (a + gamma, b + gamma);
         let (along, across) = (weights[0] * q * q, weights[1] * p * p);
         let slope = (along * q + across * p).max(R::splat(f64::MIN_POSITIVE));

@@ -19,7 +19,7 @@
 //! ```
 //!
 //! Source: backward Euler on Coulomb's law, as in Moreau (1988), Unilateral contact and dry friction in finite freedom
-//! dynamics, CISM 302; friction by [`super::friction`]. Stable for any stiffness; valid as `seabed` is.
+//! dynamics, CISM 302; friction by [`super::friction`]. Stable for any stiffness; valid where `seabed` is.
 
 use super::friction::{Axes, Friction, Slide, slide};
 use super::slender::Slender;
@@ -69,7 +69,7 @@ pub struct Footing<V: RealVector> {
 }
 
 impl<V: RealVector> Footing<V> {
-    /// Footing of an inverse mass [1/kg] of a line along a vector of any length, 1 over the square of its length being `inverse_square`.
+    /// Footing of an inverse mass [1/kg] of a line along a vector of any length, with `inverse_square` 1 over the square of its length.
     #[inline(always)]
     pub fn new(inverse: Slender<V::Real>, normal: V, line: V, inverse_square: V::Real) -> Footing<V> {
         let Slender { across, excess } = inverse;

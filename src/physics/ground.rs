@@ -7,12 +7,12 @@
 //! n is the unit normal and p the distance below the surface along it, exact on a plane. On a grid h is the bicubic Hermite interpolant: it takes the
 //! soundings at the grid's points, with the slopes of [`crate::math::shape_preserving`] along x and along y, at the edges those of
 //! the chord, and with the mean of the slope of h_x along y and of h_y along x as its twist. At every point the two slopes, and then the twist, are
-//! reduced until the control points of all cells around it lie within the soundings of their cell, or beyond by a twentieth of their range. A
-//! bicubic is a convex combination of its control points, so the surface lies within these bounds too. It is continuously differentiable, since cells share what is
-//! reduced, and reproduces planes.
+//! reduced until the control points of all cells around it lie within the soundings of their cell, or exceed them by a twentieth of their range. A
+//! bicubic is a convex combination of its control points, so the surface lies within these bounds too. It is continuously differentiable, since cells share the
+//! reduced derivatives, and reproduces planes.
 //! A bilinear surface would need a normal that is not its gradient to be smooth, and a node that slides
-//! without friction would gain or lose energy with every crossing of a cell; here the normal is the gradient's, and the force k p n is conservative but for p
-//! times the curvature of the surface. Outside the grid the surface continues with the values at its edge.
+//! without friction would gain or lose energy at every crossing of a cell; here the normal is the gradient's, and the force k p n is conservative except for
+//! p times the curvature of the surface. Outside the grid the surface continues with the values at its edge.
 //!
 //! Source: bicubic interpolation as in Press et al. (2007), Numerical Recipes, 3rd ed., section 3.6.3; convex hull of a Bézier net as in Farin
 //! (2002), Curves and Surfaces for CAGD, 5th ed., chapter 14. Valid where penetrations are small compared with the

@@ -1,6 +1,6 @@
 //! A free point in the water: buoyancy, drag and added mass of a sphere that may pierce the surface.
 //!
-//! With the sphere's radius R, the height z of its centre over the surface and u = (R − z)/2R, kept within 0 and 1,
+//! With the sphere's radius R, the height z of its centre above the surface and u = (R − z)/2R, kept within 0 and 1,
 //!
 //!   s = u²(3 − 2u),   ds/dz = −3u(1 − u)/R                 submerged part of its volume V
 //!   B = ρ g V s,      ∫ B dz = −2R ρ g V (u³ − u⁴/2)        buoyancy, and its potential
@@ -10,7 +10,7 @@
 //! includes ρV (1 + Ca) s ∂u/∂t, the Froude-Krylov force and that of the added mass.
 //!
 //! s is exact: it is the volume of a spherical cap. Drag and added mass are taken in proportion to it. A point with a
-//! drag area and no volume is submerged as the sphere of that cross-section.
+//! drag area and no volume is submerged like the sphere of that cross-section.
 //!
 //! Where s changes, the equation of motion is M a = f without the impulse Ṁ v, so that a point which enters the water
 //! loses ½ Ṁ v² and regains it where it leaves. Slamming is not modelled.
@@ -49,7 +49,7 @@ pub struct Wetted {
 
 impl Sphere {
     /// A sphere of `volume` [m³], drag area CdA `drag_area` [m²] and added-mass coefficient `added_mass` [-] in water of `density`
-    /// [kg/m³] under `gravity` [m/s²]; `None` where the water does nothing to it.
+    /// [kg/m³] under `gravity` [m/s²]; `None` where the water exerts no force on it.
     pub fn new([volume, drag_area, added_mass]: [f64; 3], density: f64, gravity: f64) -> Option<Sphere> {
         let radius = if volume > 0.0 {
             (0.75 * volume / PI).cbrt()
@@ -66,7 +66,7 @@ impl Sphere {
         })
     }
 
-    /// Submergence of the sphere with its centre at `height` [m] over the surface.
+    /// Submergence of the sphere with its centre at `height` [m] above the surface.
     #[inline]
     pub fn wetted(&self, height: f64) -> Wetted {
         if height <= -self.radius {
@@ -94,7 +94,7 @@ impl Sphere {
             true => mean,
             false => (mean * (b - a) + under(high) - under(low)) / (high - low),
         };
-        // ∫ t s' dt along the way, 0 ≤ t ≤ 1, by Simpson's rule
+        // ∫ t s' dt along the path, 0 ≤ t ≤ 1, by Simpson's rule
         let slope = |height: f64| self.wetted(height).slope;
         Wetted {
             part,
@@ -107,7 +107,7 @@ impl Sphere {
         (0.5 * (1.0 - height / self.radius)).clamp(0.0, 1.0)
     }
 
-    /// Potential energy of the buoyancy [J] at `height` [m] over the surface; 0 out of the water.
+    /// Potential energy of the buoyancy [J] at `height` [m] above the surface; 0 out of the water.
     pub fn energy(&self, height: f64) -> f64 {
         if height <= -self.radius {
             return -self.buoyancy * height;

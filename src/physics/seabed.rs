@@ -3,8 +3,8 @@
 //! f = max(0, k·p − c·ż) per unstretched length, for a penetration p = z_seabed − z > 0, else 0.
 //!
 //! A segment is straight between its nodes: p and ż are linear in ξ from 0 to 1. The integral of f over it is the sum over four equal parts, each
-//! with the f in its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A segment that
-//! is laid down therefore takes up its load gradually. With contact at nodes alone every node that lands is an impact. The tension of a chain with
+//! with f at its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A segment that
+//! is laid down therefore takes up its load gradually. With contact at nodes alone, every node that lands causes an impact. The tension of a chain with
 //! 40 elements in a storm then has noise of a quarter of its standard deviation, at the frequency at which nodes land.
 //!
 //! k = kbot·d and c = cbot·d. Regularised contact softens both together,
@@ -12,7 +12,7 @@
 //! k_eff = min(k, w/(δ d h)·d),    c_eff = max(c·k_eff/k, min(c, 2ζ √(k_eff m))),    m the mass across the line,
 //!
 //! so that a segment at rest penetrates by δ times its length h: with the usual kbot of 3 MPa/m the static penetration would be micrometres and
-//! every part that lands would ring. `model/build/resting.rs` sets the level of the contact so that the suspended part is right. A damper that is
+//! every part that lands would ring. `model/build/resting.rs` sets the level of the contact so that the suspended part is correct. A damper that is
 //! softened like its spring becomes too weak: of the chains in the tank 1 % of critical damping is left. It therefore keeps the part ζ of
 //! critical damping, 2√(k m) of a mass on a spring, unless the damping of the scene is less. Both tend to the values of the scene as the mesh
 //! is refined, and reach them where the spring does.
@@ -29,7 +29,7 @@ use crate::math::real::Real;
 /// Static penetration of a resting segment under regularised contact, per segment length [-].
 pub const REGULARISED_PENETRATION: f64 = 0.03;
 
-/// Part of critical damping that a segment on a softened spring keeps, if its damper as given has as much [-].
+/// Part of critical damping that a segment on a softened spring keeps, if its given damper has as much [-].
 const REGULARISED_DAMPING: f64 = 0.2;
 
 /// Part of a segment, seen from one of its nodes.
@@ -69,7 +69,7 @@ impl Part {
     }
 }
 
-/// Static penetration of a point that rests with all of its weight, the stiffness being chosen for it [m].
+/// Static penetration of a point that rests with its whole weight, for which the stiffness is chosen [m].
 pub const POINT_PENETRATION: f64 = 0.02;
 
 /// Contact coefficients of a segment, or of a point.
@@ -81,7 +81,7 @@ pub struct ContactCoefficients {
     pub damping: f64,
 }
 
-/// Softens the contact of a segment of `weight` [N] in water, `mass` across the line [kg], water included, and `length` [m]; buoyant segments are
+/// Softens the contact of a segment of `weight` [N] in water, `mass` across the line [kg], including water, and `length` [m]; buoyant segments are
 /// left as they are.
 pub fn regularised(
     contact: ContactCoefficients,

@@ -10,7 +10,7 @@
 //! bilinear in positions and directors: over a step, their change is exactly their gradient at the mean of both ends of the step times the
 //! change of positions and directors.
 //!
-//! Across a turn by α, LK is sin α along the axis of the turn, and Γ₃ on an unstretched arc is sin α/α. The law takes the strains
+//! Across a turn by α, LK is sin α along the axis of the turn, and Γ₃ on an unstretched arc is sin α/α. The law uses the strains
 //!
 //!   K* = h(u) K,  u = L²|K|²,      Γ₃* = Γ₃ + p(v),  v = L²(K₁² + K₂²),
 //!   h = 1 + u/6 + 3u²/40,          p = v/6 + 17v²/360,
@@ -21,7 +21,7 @@
 //!   N = C_Γ (Γ* − Γ⁰),  M = C_K (K* − K⁰),  U = ½ L [N·(Γ* − Γ⁰) + M·(K* − K⁰)],  C_Γ = (GA, GA, EA),  C_K = (EI, EI, GJ).
 //!
 //! Polynomials have exact divided differences, so that the change of the starred strains, too, is a discrete gradient D times that of the
-//! plain ones: ΔK* = [h̄ I + 2L² h[u₀,u₁] K̄ K̄ᵀ] ΔK, ΔΓ₃* = ΔΓ₃ + 2L² p[v₀,v₁] (K̄₁ΔK₁ + K̄₂ΔK₂), bars for means over the step.
+//! plain ones: ΔK* = [h̄ I + 2L² h[u₀,u₁] K̄ K̄ᵀ] ΔK, ΔΓ₃* = ΔΓ₃ + 2L² p[v₀,v₁] (K̄₁ΔK₁ + K̄₂ΔK₂), with bars for means over the step.
 //!
 //! Source: strains by Simo (1985), Comput. Methods Appl. Mech. Eng. 49, 55-70; directors interpolated as in Romero & Armero (2002),
 //! Int. J. Numer. Methods Eng. 54, 1683-1716, and Betsch & Steinmann (2002), ibid. 54, 1775-1788; discrete gradients by Gonzalez (1996),
@@ -48,11 +48,11 @@ pub type Sextuple = Vector6<f64>;
 /// Stiffness or damping of a section along its directors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionLaw {
-    /// Shear stiffness GA, alike across both directors [N], or its damping [N s].
+    /// Shear stiffness GA, the same across both directors [N], or its damping [N s].
     pub shear: f64,
     /// Axial stiffness EA [N], or its damping [N s].
     pub axial: f64,
-    /// Bending stiffness EI, alike about both directors [N m²], or its damping [N m² s].
+    /// Bending stiffness EI, the same about both directors [N m²], or its damping [N m² s].
     pub bending: f64,
     /// Torsional stiffness GJ [N m²], or its damping [N m² s].
     pub torsion: f64,

@@ -2,14 +2,14 @@
 //!
 //!   S(ω) ∝ ω⁻⁵ exp(−5/4 (ω/ω_p)⁻⁴) γ^exp(−½((ω − ω_p)/(σω_p))²),   σ = 0.07 up to ω_p, 0.09 above,   ∫S dω = m₀ = H_s²/16
 //!
-//! with γ = 1 for Pierson-Moskowitz. The factor in front is found by integration from ½ω_p to 5ω_p, which leaves out
+//! with γ = 1 for Pierson-Moskowitz. The leading factor is found by integration from ½ω_p to 5ω_p, which leaves out
 //! 0.2 % of the energy with γ = 1; an approximation of it, 5/16 H_s² ω_p⁴ (1 − 0.287 ln γ), is right to 2 % for 1 ≤ γ
 //! ≤ 7.
 //!
-//! N components of one amplitude √(2m₀/N) stand for the spectrum: the range is cut into N bands of equal energy. The
+//! N components of equal amplitude √(2m₀/N) represent the spectrum: the range is cut into N bands of equal energy. The
 //! frequency of each is drawn within its band in proportion to the energy there, so that no record repeats itself.
-//! Phases are drawn evenly from a whole turn. Directions are drawn from D(θ) ∝ cos²ˢ(½(θ − θ₀)), component by
-//! component. The same seed gives the same sea, on another machine to rounding.
+//! Phases are drawn uniformly from a whole turn. Directions are drawn from D(θ) ∝ cos²ˢ(½(θ − θ₀)), component by
+//! component. The same seed gives the same sea, to rounding on another machine.
 //!
 //! Source: Hasselmann et al. (1973), Deutsche Hydrographische Zeitschrift A8(12); Pierson & Moskowitz (1964), J. Geophys. Res. 69,
 //! 5181-5190; DNV-RP-C205 (2010), Environmental Conditions and Environmental Loads, sections 3.5.5 and 3.5.8; the spread after
@@ -22,7 +22,7 @@ use crate::math::random::Random;
 
 /// Lowest and highest frequency, over that of the peak [-].
 const RANGE: [f64; 2] = [0.5, 5.0];
-/// Pieces that a distribution is integrated in [-].
+/// Number of pieces in which a distribution is integrated [-].
 const PIECES: usize = 9000;
 
 /// A sea of one spectrum.
@@ -65,7 +65,7 @@ impl Spectrum {
         (0..count).map(component).collect()
     }
 
-    /// S at ω = x ω_p, without the factor in front [-].
+    /// S at ω = x ω_p, without the leading factor [-].
     fn shape(&self, x: f64) -> f64 {
         let sigma = if x <= 1.0 { 0.07 } else { 0.09 };
         let near = (-0.5 * ((x - 1.0) / sigma).powi(2)).exp();

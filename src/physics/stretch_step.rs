@@ -4,7 +4,7 @@
 //!
 //!   T̄ = (W(ε') − W(ε))/(ε' − ε),
 //!
-//! along q̄ = (d + d')/(l + l') of both chords d of the lengths l. T̄ q̄·(d' − d) = T̄ (l' − l) is then the change of
+//! along q̄ = (d + d')/(l + l') of both chords d of lengths l. T̄ q̄·(d' − d) = T̄ (l' − l) is then the change of
 //! the spring's energy, whether the segment turns, slackens or snaps within the step. The mean of the forces before
 //! and after conserves energy only where the law is linear and nothing turns.
 //!

@@ -1,6 +1,6 @@
 //! A line that pierces the water's surface: its emerged part, and the energy of the buoyancy it loses.
 //!
-//! A straight piece of line of radius R has the height ζ(u) = (1 − u) ζ₀ + u ζ₁ over the water, 0 ≤ u ≤ 1. With the
+//! A straight piece of line of radius R has the height ζ(u) = (1 − u) ζ₀ + u ζ₁ above the water, 0 ≤ u ≤ 1. With the
 //! dry part a(ζ/R) of its cross-section, the dry parts of the halves that are lumped to its two ends are
 //!
 //!   p₀ = 2 ∫ (1 − u) a du,   p₁ = 2 ∫ u a du,   ∂p/∂ζ = 2 ∫ [(1 − u)², u(1 − u); u(1 − u), u²] a' du,
@@ -10,14 +10,14 @@
 //!   C = 2B ∫ χ du,   χ(ζ) = ∫ a dζ from far below: 0 deep under water, ζ in the air.
 //!
 //! C is convex, so that the surface never makes an equilibrium unstable, and the p are continuous with their slopes. Drag and added mass
-//! are taken in proportion to 1 − p. The cross-section's
+//! are taken in proportion to 1 − p. The dry part of the cross-section,
 //!
 //!   a(x) = ½ + (2/π) x + (5/4 − 4/π) x³ + (2/π − 3/4) x⁵,   −1 ≤ x ≤ 1,
 //!
 //! is 0 and 1 beyond with slope 0, has the slope of a disc at half draught, so that a line afloat has the stiffness ρ g d of its
 //! waterplane, and is within 0.013 of the disc's dry part, ½ + (x √(1 − x²) + arcsin x)/π, everywhere. A steep line is wetted by the
-//! same a, which moves no buoyancy along it. All integrals are exact: the wet, the crossing and the dry stretch of u apart, the crossing one
-//! by Gauss's four points.
+//! same a, which moves no buoyancy along it. All integrals are exact: the wet, crossing and dry ranges of u are integrated separately, the
+//! crossing one by Gauss's four points.
 //!
 //! Where p changes, the equation of motion is M a = f without the impulse Ṁ v, as for [`super::point`]. Slamming is not modelled.
 //!
@@ -46,7 +46,7 @@ pub struct Emerged {
     pub slopes: [f64; 3],
 }
 
-/// Emerged part of a piece of line of `radius` R [m], positive, whose ends are at `heights` [m] over the water;
+/// Emerged part of a piece of line of `radius` R [m], positive, whose ends are at `heights` [m] above the water;
 /// `None` where all of it is under water.
 #[inline]
 pub fn emerged(radius: f64, heights: [f64; 2]) -> Option<Emerged> {
@@ -79,7 +79,7 @@ pub fn energy(radius: f64, heights: [f64; 2]) -> f64 {
         .crossing()
         .map(|(_, weight, x)| weight * radius * lifted(x))
         .sum();
-    let leaves = piece.low + piece.end * piece.rise; // height from which on all is dry
+    let leaves = piece.low + piece.end * piece.rise; // height above which all is dry
     crossing + 0.5 * (1.0 - piece.end) * (leaves + piece.low + piece.rise)
 }
 
@@ -91,9 +91,9 @@ pub fn slope_max(radius: f64) -> f64 {
 /// Piece that is not fully submerged, from its lower to its higher end.
 struct Piece {
     radius: f64,
-    /// Height of the lower end over the water [m].
+    /// Height of the lower end above the water [m].
     low: f64,
-    /// Height of the higher end over the lower [m].
+    /// Height of the higher end above the lower [m].
     rise: f64,
     /// True if the first end is the higher one.
     falls: bool,

@@ -25,7 +25,7 @@ pub struct TensionTable {
 struct Piece {
     /// Strain at the start of the piece [-].
     start: f64,
-    /// Length of the piece in strain [-]; infinite behind the last row.
+    /// Length of the piece in strain [-]; infinite beyond the last row.
     span: f64,
     /// Energy per unstretched length at the start of the piece [-].
     energy: f64,

@@ -4,7 +4,7 @@
 //!
 //!   T = EA₁ ε₁ + BA_s ε̇₁ = EA_d (ε − ε₁) + BA_d (ε̇ − ε̇₁),   1/EA_s = 1/EA₁ + 1/EA_d,
 //!
-//! so that a slow motion meets EA_s, a fast one EA_d. With B = BA_s + BA_d the tension is linear in ε, ε̇ and the memory ε₁,
+//! so that the stiffness is EA_s in slow motion and EA_d in fast motion. With B = BA_s + BA_d the tension is linear in ε, ε̇ and the memory ε₁,
 //!
 //!   T = K ε + C ε̇ + G ε₁,  K = BA_s EA_d/B,  C = BA_s BA_d/B,  G = (BA_d EA₁ − BA_s EA_d)/B,
 //!   B ε̇₁ = EA_d (ε − ε₁) − EA₁ ε₁ + BA_d ε̇.
@@ -12,7 +12,7 @@
 //! The trapezoidal rule closes a step Δt of the implicit integrators: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) +
 //! BA_d Δε]/(B + ½Δt (EA_d + EA₁)), ε̄ the mean strain. It accounts for the dissipation of the dampers exactly, but
 //! rings where Δt is many times the relaxation time τ = B/(EA_d + EA₁). The leapfrogs, whose forces do not depend on
-//! the end of the step, take the exact solution for a constant strain rate, z = Δt/τ, r = EA_d/(EA_d + EA₁), p = r +
+//! the end of the step, use the exact solution for a constant strain rate, z = Δt/τ, r = EA_d/(EA_d + EA₁), p = r +
 //! (BA_d/B − r)(1 − e⁻ᶻ)/z:
 //!
 //!   ε₁' = e⁻ᶻ ε₁ + (r (1 − e⁻ᶻ) − p) ε + p ε'.
@@ -21,8 +21,8 @@
 //! solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
 //!
 //! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² of e = ε − ε₁ while it is stretched; the rest of the work
-//! is dissipated. A step within which the fast one slackens or snaps creates no energy: there it pulls with the
-//! discrete gradient of its energy, and its damper with BA_d (e'₊ − e₊)/Δt.
+//! is dissipated. A step within which the fast one slackens or snaps creates no energy: its tension is then the
+//! discrete gradient of its energy, plus BA_d (e'₊ − e₊)/Δt of its damper.
 //!
 //! Source: the law of MoorDyn's `EA_s|EA_d`, `BA_s|BA_d` line types, `source/Line.cpp` of MoorDyn-C, after Hall, Duong & Lozon (2023), IOWTC2023, on
 //! semi-taut moorings with polyester ropes; closed forms derived here. Valid for small strain and EA_d > EA_s > 0, BA_s > 0.
@@ -151,7 +151,7 @@ fn gradient(ea: f64, [before, after]: [f64; 2]) -> Mean {
     }
 }
 
-/// The negative and the positive root of a x² − b x + c for a > 0; c is not positive but for rounding.
+/// The negative and the positive root of a x² − b x + c for a > 0; c is not positive except for rounding.
 fn roots([a, b, c]: [f64; 3]) -> [f64; 2] {
     let c = c.min(0.0);
     let greater = 0.5 * (b.abs() + (b * b - 4.0 * a * c).sqrt());

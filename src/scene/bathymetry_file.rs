@@ -96,7 +96,7 @@ fn corner_unit(corner: &str) -> Result<f64, String> {
     Ok(factor.unwrap_or(1.0))
 }
 
-/// Below the sizes of the grid.
+/// Table below the sizes of the grid.
 fn moordyn_table(rows: &[Row]) -> Result<DepthGrid, String> {
     let mut sizes = [0; 2];
     for (size, (row, key)) in sizes.iter_mut().zip(rows[1..].iter().zip(SIZES)) {
@@ -122,7 +122,7 @@ fn moordyn_table(rows: &[Row]) -> Result<DepthGrid, String> {
     Ok(grid)
 }
 
-/// The numbers of x and of y, where a first row is these two whole numbers.
+/// The numbers of x and of y, if a first row is these two whole numbers.
 fn counts(words: &[String]) -> Option<[usize; 2]> {
     let [x, y] = words else { return None };
     Some([x.parse().ok()?, y.parse().ok()?])
@@ -183,7 +183,7 @@ fn moordyn_c_heights(rows: &[Row], sizes: [usize; 2]) -> Result<DepthGrid, Strin
     Ok(DepthGrid { x, y, depth })
 }
 
-/// The words of a line as finite numbers [m], `factor` being one of their unit in metres.
+/// The words of a line as finite numbers [m]; `factor` is the size of their unit in metres.
 fn numbers(line: usize, words: &[String], factor: f64) -> Result<Vec<f64>, String> {
     let number = |word: &String| match word.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value * factor),
@@ -194,7 +194,7 @@ fn numbers(line: usize, words: &[String], factor: f64) -> Result<Vec<f64>, Strin
     words.iter().map(number).collect()
 }
 
-/// A row of x behind `skipped` words, and rows of y with its depths.
+/// Grid from a row of x after `skipped` words, and rows of y with its depths.
 fn table(header: &Row, rows: &[Row], skipped: usize) -> Result<DepthGrid, String> {
     let corner = header.1[..skipped].last(); // none where nothing is skipped
     let factor = corner.map_or(Ok(1.0), |word| corner_unit(word));

@@ -43,7 +43,7 @@ impl Scene {
     }
 }
 
-/// A list that rules add to.
+/// A list to which rules add.
 pub(super) trait Report {
     /// Adds a finding at a key path.
     fn add(&mut self, at: String, text: String);
@@ -96,7 +96,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Runs the check of the value at a key or an index, its `place`, and puts that in front of the paths of the findings.
+    /// Runs the check of the value at a key or an index, its `place`, and prefixes the paths of the findings with that.
     pub(super) fn below(&mut self, place: impl FnOnce() -> String, check: impl FnOnce(&mut Findings)) {
         let (mistakes, notes) = (self.mistakes.len(), self.notes.len());
         check(self);
@@ -184,7 +184,7 @@ impl Bounds {
         self == Bounds::Elsewhere || value.is_finite() && is_within
     }
 
-    /// Least and greatest number that are accepted, where the bounds alone say it.
+    /// Least and greatest number that are accepted, where the bounds alone determine it.
     pub(crate) fn range(self) -> [Option<f64>; 2] {
         match self {
             Bounds::Finite | Bounds::Elsewhere => [None, None],
@@ -267,7 +267,7 @@ fn check_name(findings: &mut Findings, at: &str, name: &str) {
     }
 }
 
-/// Checks the names of points, lines and vessels, each of which is taken once.
+/// Checks the names of points, lines and vessels, which must be unique.
 fn check_names(scene: &Scene, findings: &mut Findings) {
     let mut taken = BTreeMap::new();
     for (owner, name) in scene.names() {

@@ -1,5 +1,5 @@
-//! Tables of numbers in text files: separators, headers, units and decimal commas, as their content shows them. Blank lines and lines
-//! that begin with # are skipped.
+//! Tables of numbers in text files: separators, headers, units and decimal commas, inferred from their content. Blank lines and lines that begin with # are
+//! skipped.
 
 use std::io::{BufRead, Read};
 
@@ -9,7 +9,7 @@ use super::units;
 /// Longest line that is read [bytes].
 const LINE_MAX: u64 = 1 << 20;
 
-/// Hint on numbers with decimal commas between commas, tabs or blanks.
+/// Hint on numbers with decimal commas that are separated by commas, tabs or blanks.
 pub(super) const DECIMAL_COMMAS: &str = "; decimal commas are read where `;` stands between the columns";
 
 /// Separator of the columns.
@@ -23,7 +23,7 @@ pub(super) enum Separator {
 }
 
 impl Separator {
-    /// The separator that a row shows.
+    /// The separator inferred from a row.
     pub(super) fn of(row: &str) -> Separator {
         if row.contains(';') {
             Separator::Semicolon
@@ -74,7 +74,7 @@ impl Separator {
         joined.iter().map(|cell| Heading::of(cell)).collect()
     }
 
-    /// A finite number of a cell; decimal commas stand in columns between semicolons.
+    /// A finite number in a cell; decimal commas are read in columns between semicolons.
     ///
     /// # Errors
     /// The cell that was found instead of a number.

@@ -1,7 +1,7 @@
 //! A scene as TOML with comments: units behind numbers, and where each part stood in the file it was read from.
 //!
-//! The comments stand in lines of the TOML that [`Scene::to_toml`] writes and change nothing of it, so that what is read back
-//! is the same scene, bit for bit.
+//! The comments stand in lines of the TOML that [`Scene::to_toml`] writes and do not change it, so that the scene that is read back is the same, bit for
+//! bit.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

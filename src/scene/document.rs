@@ -69,7 +69,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// Returns a mistake in the type of this value; `expected` is given its unit where it speaks of a number.
+    /// Returns a mistake in the type of this value; `expected` gets its unit if it refers to a number.
     pub(super) fn expected(&self, expected: &str) -> SceneError {
         self.expected_instead_of(expected, &self.found())
     }
@@ -100,7 +100,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// Reads a number; `expected` says what is accepted.
+    /// Reads a number; `expected` describes the accepted values.
     pub(super) fn number(&self, expected: &str) -> Result<f64, SceneError> {
         let written = match self.value.get_ref() {
             DeValue::Integer(number) if number.radix() != 10 => {
@@ -124,7 +124,7 @@ impl<'n> Node<'n> {
         parsed.map_err(|_| self.refuse(format!("{number} is beyond a 64-bit whole number")))
     }
 
-    /// Reads a whole number that is not negative; `expected` says what is accepted.
+    /// Reads a whole number that is not negative; `expected` describes the accepted values.
     pub(super) fn count(&self, expected: &str) -> Result<u64, SceneError> {
         u64::try_from(self.integer(expected)?).map_err(|_| self.expected(expected))
     }

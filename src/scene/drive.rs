@@ -73,7 +73,7 @@ impl Drive {
 }
 
 impl Scene {
-    /// Takes motions and the duration from a drive. Returns how its motion file was read, in words.
+    /// Takes motions and the duration from a drive. Returns the interpretation of its motion file, in words.
     ///
     /// # Errors
     /// The file and line, or the body, and what would be right.
@@ -183,7 +183,7 @@ impl Scene {
         ))
     }
 
-    /// Points follow no rotation.
+    /// Refuses rotations of a point.
     fn must_turn(&self, body: &str, turns: bool) -> Result<(), String> {
         if !turns || self.vessel(body).is_some() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Keys that are given and change nothing, for what else the scene is.
+//! Keys that are given but have no effect, because of the rest of the scene.
 
 use super::check::rules;
 use super::notes::Note;
@@ -58,7 +58,7 @@ impl Scene {
         notes
     }
 
-    /// Returns notes on the keys of the solver that change nothing with the integrators that were chosen.
+    /// Returns notes on the keys of the solver that have no effect with the integrators that were chosen.
     pub fn idle_with(&self, mut chosen: impl Iterator<Item = Integrator>) -> Vec<Note> {
         let mut notes = Vec::new();
         let radius = [Integrator::AxialImplicit, Integrator::GeneralisedAlpha];
@@ -69,7 +69,7 @@ impl Scene {
         notes
     }
 
-    /// Returns notes on keys without which a scene cannot be written, and which change nothing.
+    /// Returns notes on keys without which a scene cannot be written, and which have no effect.
     pub(super) fn idle_by_need(&self) -> Vec<Note> {
         let mut notes = Vec::new();
         let sounded = self.seabed.as_ref().is_some_and(|seabed| seabed.grid.is_some());

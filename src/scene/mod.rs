@@ -165,7 +165,7 @@ impl Scene {
         self.water.as_ref()?.waves.as_ref()
     }
 
-    /// The point of a name.
+    /// The point with this name.
     fn point(&self, name: &str) -> Option<&Point> {
         self.points.iter().find(|point| point.name == name)
     }
@@ -175,7 +175,7 @@ impl Scene {
         self.points.iter().filter(|point| point.kind == PointKind::Free)
     }
 
-    /// The vessel of a name.
+    /// The vessel with this name.
     fn vessel(&self, name: &str) -> Option<&Vessel> {
         self.vessels.iter().find(|vessel| vessel.name == name)
     }

@@ -24,7 +24,7 @@ const SYNONYMS: [[&str; 2]; 6] = [
     ["rz", "ptfmyaw"],
 ];
 
-/// Most rows that are read: a day at 100 Hz.
+/// Greatest number of rows that are read: a day at 100 Hz.
 const ROWS_MAX: usize = 8_640_000;
 
 /// Motions in a file.
@@ -151,7 +151,7 @@ struct Column {
     entry: usize,
     /// Unit as written, or the SI unit.
     unit: String,
-    /// One of its unit in SI units.
+    /// Size of its unit in SI units.
     factor: f64,
 }
 
@@ -187,7 +187,7 @@ struct Table {
     has_units: bool,
     /// True if a row below the header has the units.
     has_unit_row: bool,
-    /// Mark of the decimals between semicolons, once one was found.
+    /// Decimal mark in columns between semicolons, once one was found.
     decimal: Option<char>,
 }
 
@@ -268,7 +268,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Refuses columns twice, columns with and without names, and those of half a motion.
+    /// Refuses duplicate columns, a mix of columns with and without names, and incomplete motions.
     fn check(&self, row: &str) -> Result<(), String> {
         for (i, column) in self.columns.iter().enumerate() {
             let same = |other: &&Column| other.entry == column.entry && other.body == column.body;
@@ -391,7 +391,7 @@ impl Table {
         said
     }
 
-    /// The rows by what they move.
+    /// The rows by the body that they move.
     fn moves(&self, rows: &[Vec<f64>]) -> Moves {
         let of = |body: Option<&str>| {
             let columns = self.columns.iter().enumerate();
@@ -421,10 +421,10 @@ impl Table {
     }
 }
 
-/// The mark of decimals that a file has, once a cell shows one.
+/// Decimal mark of a file, once a cell has one.
 ///
 /// # Errors
-/// A cell with the other one: a comma or point of thousands looks the same.
+/// A cell with the other mark, which may be a thousands separator.
 fn one_decimal(separator: Separator, known: Option<char>, cell: &str) -> Result<Option<char>, String> {
     if separator != Separator::Semicolon {
         return Ok(None);
@@ -450,7 +450,7 @@ fn wrong_header(row: &str, more: &str) -> String {
     )
 }
 
-/// Returns the refusal of columns that are no motion.
+/// Returns the refusal of columns that do not form a motion.
 fn unknown_column(row: &str, named: bool) -> String {
     wrong_header(
         row,

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{Line, Point, Scene, Vessel};
 
-/// Points and vessels of a scene by name: the first ones where names are taken twice.
+/// Points and vessels of a scene by name; the first one where a name is taken twice.
 pub(crate) struct Names<'s> {
     scene: &'s Scene,
     points: HashMap<&'s str, usize>,
@@ -12,7 +12,7 @@ pub(crate) struct Names<'s> {
 }
 
 impl<'s> Names<'s> {
-    /// Those of a scene.
+    /// Names of a scene.
     pub(crate) fn of(scene: &'s Scene) -> Names<'s> {
         let points = scene.points.iter().map(|point| &point.name[..]);
         let vessels = scene.vessels.iter().map(|vessel| &vessel.name[..]);
@@ -23,12 +23,12 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Index of the point of a name.
+    /// Index of the point with this name.
     pub(crate) fn point_index(&self, name: &str) -> Option<usize> {
         self.points.get(name).copied()
     }
 
-    /// The point of a name.
+    /// The point with this name.
     pub(crate) fn point(&self, name: &str) -> Option<&'s Point> {
         Some(&self.scene.points[self.point_index(name)?])
     }
@@ -38,12 +38,12 @@ impl<'s> Names<'s> {
         [&line.from, &line.to].map(|name| self.point(name))
     }
 
-    /// Index of the vessel of a name.
+    /// Index of the vessel with this name.
     pub(crate) fn vessel_index(&self, name: &str) -> Option<usize> {
         self.vessels.get(name).copied()
     }
 
-    /// The vessel of a name.
+    /// The vessel with this name.
     pub(crate) fn vessel(&self, name: &str) -> Option<&'s Vessel> {
         Some(&self.scene.vessels[self.vessel_index(name)?])
     }

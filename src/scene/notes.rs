@@ -41,7 +41,7 @@ impl fmt::Display for Note {
     }
 }
 
-/// Part of critical that the suggested axial damping damps the first axial mode of a line by [-].
+/// Damping ratio of the first axial mode of a line with the suggested axial damping [-].
 const FIRST_MODE_RATIO: f64 = 0.01;
 
 impl Scene {
@@ -167,7 +167,7 @@ pub(super) fn chord_between(scene: &Scene, ends: [Option<&Point>; 2]) -> Option<
     Some((0..3).map(|i| (b[i] - a[i]).powi(2)).sum::<f64>().sqrt())
 }
 
-/// Depth below a seabed that is not level from which a point is noted [m].
+/// Depth below a seabed that is not level at which a point is noted [m].
 const BURIED: f64 = 0.01;
 
 fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: &mut Vec<Note>) {
@@ -207,7 +207,7 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
     }
 }
 
-/// Distance of ends that are at one place, over the length of the line [-].
+/// Distance below which two ends count as coincident, over the length of the line [-].
 const ENDS_APART: f64 = 1e-6;
 
 /// Notes lines of the same sections between the same places, to a micrometre: a row that is written or repeated twice makes them.

@@ -22,7 +22,7 @@ fn is_bare(key: &str) -> bool {
             .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
-/// A key as TOML would have it written: quoted where it must be.
+/// A key as written in TOML: quoted where it must be.
 pub fn quoted(key: &str) -> String {
     if is_bare(key) {
         key.to_string()
@@ -46,7 +46,7 @@ pub(super) fn push(path: &mut String, step: Step<'_>) {
 /// Keys whose values may stand in the `file` of the same table.
 const IN_FILE: [&str; 3] = [".profile", ".components", ".grid"];
 
-/// The path of the `file` that holds the value at a path, where the text has that in its place.
+/// The path of the `file` that holds the value at a path, if the text has that in its place.
 pub(super) fn file_of(root: &Spanned<DeValue<'_>>, path: &str) -> Option<String> {
     let holder = IN_FILE
         .iter()

@@ -19,7 +19,7 @@ struct Place {
 }
 
 impl Places {
-    /// Keeps where a key path comes from, and what the file calls it.
+    /// Records the origin of a key path in the file, and its name there.
     pub fn put(&mut self, at: impl Into<String>, span: &Range<usize>, words: impl Into<String>) {
         let place = Place {
             span: span.clone(),

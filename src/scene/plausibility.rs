@@ -52,7 +52,7 @@ const BREAKING_DEEP: f64 = 0.142;
 /// Height over depth from which a wave breaks in shallow water (McCowan 1894) [-].
 const BREAKING_SHALLOW: f64 = 0.78;
 
-/// A rule: notes on what it finds.
+/// A rule, which adds notes on its findings.
 type Rule = fn(&Scene, &mut Vec<Note>);
 
 /// The rules, in the order of a scene.
@@ -383,7 +383,7 @@ fn weight_strain(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// A line runs from its anchor, end A, to its fairlead, end B: outputs and closed forms have their names by this.
+/// A line runs from its anchor, end A, to its fairlead, end B: outputs and closed forms are named accordingly.
 fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(seabed) = &scene.seabed else {
         return;

@@ -62,7 +62,7 @@ impl LoadedScene {
 pub const TOML: &str = "TOML";
 
 impl Scene {
-    /// Reads and checks a scene. Files it speaks of are not read: a motion must be written out.
+    /// Reads and checks a scene. Files that it names are not read: a motion must be written out.
     ///
     /// # Errors
     /// The first mistake, with its key path and its bytes in the text.
@@ -80,7 +80,7 @@ impl Scene {
         toml::to_string(&self.write()).expect("every scene can be written as TOML")
     }
 
-    /// Reads the files that a scene names, which stand relative to a folder; returns what is wrong with them.
+    /// Reads the files that a scene names, relative to a folder; returns the mistakes in them.
     pub fn read_files(&mut self, folder: &Path) -> Vec<SceneError> {
         let mut files = Files {
             folder,
@@ -128,7 +128,7 @@ pub fn part<T: Value + Default>(text: &str) -> Result<T, SceneError> {
     Document::parse(text)?.read()
 }
 
-/// Reads and checks a scene file and the files it names, which stand relative to its folder.
+/// Reads and checks a scene file and the files it names, relative to its folder.
 ///
 /// # Errors
 /// The reason why the file cannot be read, or all mistakes in it.
@@ -178,7 +178,7 @@ fn scene_of(text: &str, folder: &Path) -> Result<(Scene, Vec<Note>), Vec<SceneEr
     }
 }
 
-/// The folder that a scene's files stand in.
+/// The folder to which the paths of a scene's files are relative.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("."))
 }
@@ -310,7 +310,7 @@ fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
     }
 }
 
-/// Reads a text file; bytes that are not UTF-8 are read as Latin-1 where `is_latin_1` accepts the text that they are then.
+/// Reads a text file; bytes that are not UTF-8 are read as Latin-1 if `is_latin_1` accepts the resulting text.
 ///
 /// # Errors
 /// The reason why the file cannot be read, or the first byte that is no text.

@@ -42,7 +42,7 @@ impl<'t> Row<'t> {
         self.start + blanks..self.start + self.text.len()
     }
 
-    /// The row without what stands behind the first `mark`.
+    /// The row up to the first `mark`.
     pub fn before(&self, mark: char) -> Row<'t> {
         let end = self.text.find(mark).unwrap_or(self.text.len());
         Row {

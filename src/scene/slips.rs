@@ -1,6 +1,6 @@
 //! Common slips in TOML: words without quotes, decimal commas, units after numbers.
 
-/// Returns what a line of text that is no TOML looks like, and what would be right, where it is a slip known here.
+/// Returns the likely slip in a line of text that is not TOML, and its correction, if the slip is a known one.
 pub(super) fn slip(text: &str, place: usize) -> Option<String> {
     let start = text[..place.min(text.len())].rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].lines().next()?;
@@ -26,7 +26,7 @@ fn is_number(text: &str) -> bool {
     text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit())
 }
 
-/// Returns whether a number stands behind a number and a comma, outside of brackets.
+/// Returns whether a number follows a number and a comma, outside brackets.
 fn is_behind_comma(token: &Token) -> bool {
     token.before == ','
         && !token.in_array
@@ -35,8 +35,8 @@ fn is_behind_comma(token: &Token) -> bool {
         && is_number(token.text)
 }
 
-/// The slip in numbers with commas between them of which the second stands at `at`: a decimal comma, perhaps behind points of thousands, or a list
-/// without brackets.
+/// The slip in numbers with commas between them of which the second stands at `at`: a decimal comma, perhaps after thousands separators, or a list without
+/// brackets.
 fn comma(tokens: &[Token], at: usize) -> String {
     let more = tokens[at..].iter().take_while(|token| is_behind_comma(token));
     let numbers: Vec<&str> = [tokens[at].last]
@@ -66,7 +66,7 @@ fn comma(tokens: &[Token], at: usize) -> String {
     }
 }
 
-/// Text between two delimiters of a line, outside of quotes.
+/// Text between two delimiters of a line, outside quotes.
 struct Token<'t> {
     text: &'t str,
     /// The delimiters on both sides; a space at the ends of the line.
@@ -144,7 +144,7 @@ fn odd(token: &Token) -> Option<String> {
     word.then(|| format!("`{text}` is a word without quotes: write \"{text}\""))
 }
 
-/// A number that other languages write so.
+/// A number in the notation of other languages.
 fn unfinished(text: &str) -> Option<String> {
     let bare = text.trim_start_matches(['+', '-']);
     let sign = &text[..text.len() - bare.len()];

@@ -3,12 +3,12 @@
 use super::notes::reference_position;
 use super::{Line, MotionPath, Point, PointKind, Scene};
 
-/// Standard deviations of the elevation that a trough of waves is deep [-].
+/// Depth of a wave trough in standard deviations of the elevation [-].
 const TROUGH: f64 = 3.0;
 
 impl Scene {
-    /// Returns whether a line meets the water's surface: as `water.surface` says; else where one of its ends lies above z = 0, or above the troughs of waves, in the reference
-    /// configuration, or where it is buoyant or hangs on a free point that floats, and long enough to come up. Beams never do.
+    /// Returns whether a line meets the water's surface: as `water.surface` gives it; else where one of its ends lies above z = 0, or above the troughs of
+    /// waves, in the reference configuration, or where it is buoyant or hangs on a free point that floats, and is long enough to come up. Beams never do.
     pub fn meets_surface(&self, line: &Line) -> bool {
         self.meets_surface_between(line, [&line.from, &line.to].map(|name| self.point(name)))
     }
@@ -31,7 +31,7 @@ impl Scene {
         };
         let length = line.length();
         let buoyant = self.types_of(line).any(|line_type| self.weight(line_type) < 0.0);
-        // the highest that a line of this length could be pulled up
+        // the greatest height to which a line of this length could be pulled up
         let highest = match (a_floats, b_floats) {
             (true, true) => f64::INFINITY,
             (true, false) => b + length,

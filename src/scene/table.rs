@@ -30,7 +30,7 @@ impl Key {
         self.rule.name.unwrap_or(self.field)
     }
 
-    /// Returns whether a scene may call the key by this name.
+    /// Returns whether the key may have this name in a scene.
     fn is_called(&self, name: &str) -> bool {
         self.name() == name || self.rule.alias == Some(name)
     }
@@ -96,7 +96,7 @@ pub(crate) fn meaning(doc: &[&str]) -> String {
     first.unwrap_or_default() + letters.as_str()
 }
 
-/// Facts on a key that its type and doc comment do not say.
+/// Facts about a key that its type and doc comment do not contain.
 #[derive(Clone, Copy)]
 pub struct Rule {
     name: Option<&'static str>,
@@ -105,7 +105,7 @@ pub struct Rule {
     /// Names in decks, papers and other programs, in lower case, for "did you mean"; the first is a column of MoorDyn where it has one.
     pub spellings: &'static [&'static str],
     unit: Option<&'static str>,
-    /// Keys of the same table of which none can be given too.
+    /// Keys of the same table that cannot be given together with it.
     pub excluded: &'static [&'static str],
     /// Numbers that are accepted.
     pub bounds: Bounds,

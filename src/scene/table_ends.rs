@@ -5,7 +5,7 @@ use super::notes::Note;
 use super::path::quoted;
 use super::{MotionPath, Scene, TimeFunction};
 
-/// Remarks on them, one a table.
+/// Remarks on such tables, one per table.
 pub(super) fn notes(scene: &Scene) -> Vec<Note> {
     let duration = scene.output.duration;
     let ends = motions(scene).filter_map(|(at, motion)| note_motion(at, motion, duration));
@@ -19,7 +19,7 @@ pub(super) fn notes(scene: &Scene) -> Vec<Note> {
 const RECORD_ROWS: usize = 20;
 /// Time between two rows of a record that is a gap, over the median of all [-].
 const GAP: f64 = 10.0;
-/// Distance of the first row from the position of what is moved that is taken for none, over that position's from the origin [-].
+/// Distance of the first row from the position of the moved object that counts as none, over the distance of that position from the origin [-].
 const NEAR: f64 = 0.1;
 
 /// A record that moves on over a gap.
@@ -103,7 +103,7 @@ fn note_motion(at: String, motion: &MotionPath, duration: f64) -> Option<Note> {
     Some(Note::new(at, text))
 }
 
-/// One that has come to rest when it ends, or ends with a jump, is meant so.
+/// A function that has come to rest at its end, or ends with a jump, is intended.
 fn note_function(at: String, function: &TimeFunction, duration: f64) -> Option<Note> {
     let TimeFunction::Table(rows) = function else {
         return None;

@@ -100,8 +100,8 @@ impl Value for TensionStrain {
     }
 }
 
-/// Rows of strain [-] and tension [N] of a file: two columns between blanks, commas or semicolons, below any lines that begin with no number.
-/// Two units in brackets in the last of these, such as `(-) (kN)`, are those of the columns.
+/// Rows of strain [-] and tension [N] of a file: two columns between blanks, commas or semicolons, below any lines that do not begin with a number. Two
+/// units in brackets in the last of these, such as `(-) (kN)`, are those of the columns.
 ///
 /// # Errors
 /// The file, the line and what would be right.
@@ -114,7 +114,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     for row in Row::all(&text) {
         let line = text[..row.span().start].matches('\n').count() + 1;
         let row = row.before('#');
-        // between semicolons, a comma is that of decimals
+        // between semicolons, a comma is the decimal mark
         let decimal = row.text.contains(';');
         let cells = row.split(|c| c.is_whitespace() || c == if decimal { ';' } else { ',' });
         let value = |cell: &Field<'_>| match decimal {

@@ -14,7 +14,7 @@ pub(super) enum Quantity {
     Number,
 }
 
-/// Units that the header of a table may have, and what one of them is in SI units; the first of each quantity is the SI unit.
+/// Units that the header of a table may have, with their size in SI units; the first of each quantity is the SI unit.
 const HEADER_UNITS: &[(Quantity, &[&str], f64)] = &[
     (Quantity::Time, &["s", "sec", "seconds"], 1.0),
     (Quantity::Time, &["ms"], 1e-3),
@@ -57,14 +57,14 @@ impl Quantity {
 /// A unit of a header, with or without brackets, in SI units. Case counts only where it distinguishes units.
 ///
 /// # Errors
-/// Units that there are of the quantity.
+/// The known units of the quantity.
 pub(super) fn factor(text: &str, quantity: Quantity) -> Result<f64, String> {
     let unit = bare(text);
     let find = |same: &dyn Fn(&str) -> bool| {
         let mut units = quantity.units();
         units.find(|(names, _)| names.iter().any(|name| same(name)))
     };
-    // mN and MN are not the same, nor ms and Ms
+    // mN and MN differ, and so do ms and Ms
     let loose = |name: &str| {
         let prefixed = name == "MN" || name == "ms" || name == "mm";
         !prefixed && name.to_lowercase() == unit.to_lowercase()

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::input_file;
 use super::units::{self, Quantity};
 
-/// Most rows that are read.
+/// Greatest number of rows that are read.
 const ROWS_MAX: usize = 100_000;
 /// Lines above the rows of a current, which are not read.
 const CURRENT_HEAD: usize = 3;

@@ -1,7 +1,7 @@
 //! A scene in words: the sentences of `moorline check`.
 //!
-//! The properties that the user gave are a loop over the property table ([`given`]); each value describes itself ([`super::table::Value::in_words`]). Sentences on
-//! what follows from several keys, and on effects that are not modelled, stand in the modules here.
+//! The given properties are written by a loop over the property table ([`given`]); each value describes itself ([`super::table::Value::in_words`]).
+//! Sentences on what follows from several keys, and on effects that are not modelled, stand in the modules here.
 
 mod line_types;
 mod lines;
@@ -137,7 +137,7 @@ impl Scene {
     }
 }
 
-/// The given properties of a table that describe themselves, but those left out: "mass 126 kg/m".
+/// The given properties of a table that describe themselves, except those in `left_out`: "mass 126 kg/m".
 fn given<T: Table>(table: &T, left_out: &[&str]) -> Vec<String> {
     let defaults = (T::SCHEMA.defaults)();
     let entries = table.entries().zip(defaults);

@@ -1,12 +1,12 @@
-//! Quantities for a host that solves for the motion of a body together with its mooring: mass of the mooring's ends, forces of the coming
-//! step, and derivatives of the forces by the motion at the end of a step.
+//! Quantities for a host that solves for the motion of a body together with its mooring: mass of the mooring's ends, forces of the coming step, and
+//! derivatives of the forces with respect to the motion at the end of a step.
 //!
-//! **Why explicit coupling needs a heavy body.** A host that steps a body of mass m with the force of the last communication point feeds
-//! this force back one step h late. The force has the parts −M a of the end's half element, −Z v of the waves that the end radiates into the line, Z =
-//! √(EA m_t) along it, and −K x of the geometry. The late inertia needs m > M at any h (added-mass instability: Causin, Gerbeau & Nobile
-//! (2005), Comput. Methods Appl. Mech. Eng. 194, 4506-4527); the late damper needs m > ½Zh, since v₊ = v − (h/m) Z v₋ has a root beyond the unit circle
-//! from h Z/m = 1 to 2 on, by the lag. On the OC3 line M is 950 kg and Z 170 t/s: above h = 0.01 s the impedance decides, not the mass of the end,
-//! and moving M alone to the host's side gains little.
+//! **Why explicit coupling needs a heavy body.** A host that steps a body of mass m with the force of the last communication point feeds this force back
+//! one step h late. The force consists of −M a of the end's half element, −Z v of the waves that the end radiates into the line, with Z = √(EA m_t) along
+//! it, and −K x of the geometry. The delayed inertia requires m > M at any h (added-mass instability: Causin, Gerbeau & Nobile (2005), Comput. Methods
+//! Appl. Mech. Eng. 194, 4506-4527); the delayed damper requires m > ½Zh, since v₊ = v − (h/m) Z v₋ has a root outside the unit circle above h Z/m = 1 to
+//! 2, depending on the lag. On the OC3 line M is 950 kg and Z 170 t/s: above h = 0.01 s the impedance governs, not the mass of the end, and moving M alone
+//! to the host's side gains little.
 //!
 //! **The force of the coming step** ([`Simulation::impedance`]). Over a step the force at its end is a function of the state of the line, which is known,
 //! and of position x and velocity v that the end reaches; the cubic between them is that of [`Reconstruction::Interpolate`](crate::scene::Reconstruction).
@@ -14,23 +14,23 @@
 //!
 //! F(t+h) = F₀ − C v − K x − M a,   K = −∂F'/∂x,   C = −∂F'/∂v,   F' = F + M a,
 //!
-//! F₀ being F' + C v + K x of a trial step from the present velocity at the mean acceleration of the last step. What is left out is of second
-//! order in the distance between this prediction and the motion, O(h³), but for the share of the load of the end that depends on its acceleration
-//! ([`reaction`]), O(h). A host that puts M, C and K to its own side, (m + M) a + C v + K x = f + F₀
-//! with the Newmark or generalised-α relations between a, v and x, solves body and line together, as a Rosenbrock method solves a system; it is stable for any
-//! mass, with no iteration and no repeated step, if its own integration is. The position that it finds is then given for the true step. Interface conditions
-//! of this kind are Robin conditions (Badia, Nobile & Vergara (2008), J. Comput. Phys. 227, 7027-7051) and, where K is zero and C is Z, those of
-//! transmission-line modelling (Krus, Jansson & Palmberg (1991), Simulation of fluid power transmission lines).
+//! where F₀ is F' + C v + K x of a trial step from the present velocity at the mean acceleration of the last step. The neglected terms are of second order
+//! in the distance between this prediction and the motion, O(h³), except for the share of the load of the end that depends on its acceleration
+//! ([`reaction`]), O(h). A host that moves M, C and K to its own side, (m + M) a + C v + K x = f + F₀ with the Newmark or generalised-α relations between
+//! a, v and x, solves body and line together, as a Rosenbrock method solves a system; this is stable for any mass, without iterations or repeated steps, if
+//! its own integration is. The resulting position is then given for the true step. Interface conditions of this kind are Robin conditions (Badia, Nobile &
+//! Vergara (2008), J. Comput. Phys. 227, 7027-7051) and, where K is zero and C is Z, those of transmission-line modelling (Krus, Jansson & Palmberg (1991),
+//! Simulation of fluid power transmission lines).
 //!
 //! The inertia is kept apart because the acceleration at the end of the cubic, (6(x₀ − x) + h(2v₀ + 4v))/h², is not the host's: it turns
 //! differences of positions into forces M·6/h².
 //!
-//! **Derivatives** ([`Simulation::derivative`]). The step just made is repeated from the state at its start, with the end of the path at x ± δ or v ±
-//! δ/h, and the quotient of central differences is taken. So every integrator, its contact, friction and seabed are differentiated as they
-//! were computed: the exact derivative of the discrete step, but for O(δ²) and rounding over δ. δ is 1e-8 of the longest line: rounding
-//! of positions is 1e-8 of it, and it is small compared with ah²/6, the displacement that changes the acceleration at the end of the cubic by that of the motion
-//! itself, a, beyond which the load of the last element is not linear. Derivatives are one-sided averages where a node lands, slackens or slips within δ.
-//! A pair of steps is made for each motion that is differentiated by; nothing is computed where none is.
+//! **Derivatives** ([`Simulation::derivative`]). The last step is repeated from the state at its start, with the end of the path at x ± δ or v ± δ/h, and
+//! the quotient of central differences is taken. Every integrator, contact, friction and the seabed are thus differentiated as they were computed: the
+//! result is the exact derivative of the discrete step, except for O(δ²) and rounding over δ. δ is 1e-8 of the longest line: rounding of positions is 1e-8
+//! of it, and it is small compared with ah²/6, the displacement that changes the acceleration at the end of the cubic by that of the motion itself, a,
+//! beyond which the load of the last element is not linear. Derivatives are one-sided averages where a node lands, slackens or slips within δ. Each
+//! component of motion to differentiate with respect to costs a pair of steps; without any, nothing is computed.
 //!
 //! Before the first step, the force is that of statics, and is differentiated by solving them again.
 //!
@@ -50,7 +50,7 @@ use crate::scene::{ForceOutput, Integrator};
 pub(super) use trial::StepStart;
 use trial::{Sides, Trial};
 
-/// Part of a step over which rates in time are found [-].
+/// Fraction of a step over which time derivatives are found [-].
 const PART: f64 = 1e-3;
 /// Reason for which a vessel has no derivatives.
 const NO_RATES: &str = "the pitch of the vessel is 90 degrees, where roll and yaw have no unique rates";
@@ -80,7 +80,7 @@ pub struct Impedance {
     pub damping: Matrix6<f64>,
 }
 
-/// Mass and impedance of the bodies, each evaluated when it is read first.
+/// Mass and impedance of the bodies, each evaluated when first read.
 #[derive(Debug, Clone)]
 pub(super) struct InterfaceValues {
     masses: Vec<OnceCell<Matrix6<f64>>>,
@@ -197,7 +197,7 @@ impl Simulation {
         of_lines + Matrix3::from_columns(&axes.map(|axis| still - pushed(axis)))
     }
 
-    /// Force of the mooring on a body over the coming step, which is taken to be as long as the last one; the first as the scene's interval. `None`
+    /// Force of the mooring on a body over the coming step, whose length is taken as that of the last one, or as the scene's interval for the first. `None`
     /// where the step fails, or where the attitude of a vessel has no unique rates.
     pub fn impedance(&self, body: Body) -> Option<&Impedance> {
         let impedance = &self.interface_values().impedances[place(&self.model, body)];
@@ -235,8 +235,8 @@ impl Simulation {
         stiffness.get_or_init(|| self.vessel_stiffness(vessel)).as_ref()
     }
 
-    /// Derivatives of values that `read` returns, by a component of the motion at the end of the last step: by differences of repeated
-    /// steps, see the module. Before the first step, those of the static values.
+    /// Derivatives of the values that `read` returns with respect to a component of the motion at the end of the last step, by differences of repeated
+    /// steps (see the module). Before the first step, those of the static values.
     ///
     /// # Errors
     /// A sentence with the reason.
@@ -255,8 +255,8 @@ impl Simulation {
         Ok(pairs.map(|(above, below)| (above - below) / apart).collect())
     }
 
-    /// Rates in time of values that `read` returns, at the end of the last step: of the parabola through them there and a thousandth and two
-    /// thousandths of the step before, along the same path.
+    /// Time derivatives of the values that `read` returns at the end of the last step: those of the parabola through the values there and one and two
+    /// thousandths of the step earlier, along the same path.
     ///
     /// # Errors
     /// As [`Simulation::derivative`].
@@ -275,7 +275,7 @@ impl Simulation {
     }
 }
 
-/// Place of a body among all points followed by all vessels.
+/// Index of a body in the list of all points followed by all vessels.
 fn place(model: &Model, body: Body) -> usize {
     match body {
         Body::Point(point) => point,

@@ -1,20 +1,18 @@
 //! Flow of the water at the nodes of the lines, as a host gives it in place of waves.
 //!
 //! The host gives velocity u and acceleration a of the water at the places of the nodes, once for every communication step. With
-//! `input_reconstruction = "interpolate"` these hold for the end t + h of the coming step and for the places r + h v, where the nodes will be if
-//! they keep their velocities. Over the step the velocity follows the cubic between both ends with the slopes a, and the acceleration the
-//! parabola through its last three values, of errors h⁴u⁗/384 and h³a‴/16. Built-in waves differ in the acceleration alone: their cubic has the
-//! exact slopes.
+//! `input_reconstruction = "interpolate"` these hold for the end t + h of the coming step and for the positions r + h v that the nodes will reach if they
+//! keep their velocities. Over the step the velocity follows the cubic between both ends with the slopes a, and the acceleration the parabola through its
+//! last three values, with errors h⁴u⁗/384 and h³a‴/16. Built-in waves differ in the acceleration alone: their cubic has the exact slopes.
 //!
-//! Otherwise they hold for the start t of the step and for the present places. With the values before, h₀ earlier, the flow at the end is
+//! Otherwise they hold for the start t of the step and for the present positions. With the previous values, given h₀ earlier, the flow at the end is
 //! predicted as
 //!
 //! û = u + h (u − u₋)/h₀ + ½h (h + h₀) j,   â = a + h j,   j = (a − a₋)/h₀,
 //!
-//! with errors h³u‴/2 and h²a″ on equal steps. Over the step velocity and acceleration follow cubics from their last predictions to these, with
-//! the slopes â and j, so that neither jumps. The difference of the velocities, rather than a, is extrapolated, since it includes the change of u
-//! by the motion of the node through the water. Without values before, at the start or where the step has more than doubled, û = u + h a and
-//! â = a.
+//! with errors h³u‴/2 and h²a″ on equal steps. Over the step velocity and acceleration follow cubics from their last predictions to these, with the slopes
+//! â and j, so that neither jumps. The difference of the velocities, rather than a, is extrapolated, since it includes the change of u due to the motion of
+//! the node through the water. Without previous values, at the start or where the step has more than doubled, û = u + h a and â = a.
 //!
 //! A point moves in the flow of the first line end that is attached to it. Source: derived here.
 
@@ -39,7 +37,7 @@ const GROWTH_MAX: f64 = 2.0;
 /// Flow of the water at the nodes of the lines.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaterFlow {
-    /// Components at the nodes from end A to end B, by line, empty where the host gives none; no line where it gives none at all.
+    /// Components at the nodes from end A to end B, by line: empty for a line without a given flow; no lines if none is given at all.
     lines: Vec<[Vec<f64>; 6]>,
 }
 
@@ -89,7 +87,7 @@ impl WaterFlow {
         }
     }
 
-    /// Sets all to zero.
+    /// Sets all components to zero.
     pub fn calm(&mut self) {
         self.lines
             .iter_mut()
@@ -120,7 +118,7 @@ impl WaterFlow {
         self.lines.iter().enumerate().find_map(columns)
     }
 
-    /// Sentence on a value beyond the limits.
+    /// Message for a value beyond the limits.
     fn refusal(&self, model: &Model, (line, component, node): (usize, usize, usize)) -> String {
         let (value, limit) = (self.lines[line][component][node], LIMITS[component / 3]);
         let unit = ["m/s", "m/s²"][component / 3];
@@ -157,7 +155,7 @@ impl WaterFlow {
 pub(super) enum Course {
     /// The flow at the end or at the start of the step, as the scene says.
     Given,
-    /// That of the step before: the host has not given the next one.
+    /// That of the previous step: the host has not given the next one.
     Continued,
 }
 
@@ -216,7 +214,7 @@ impl Coming<'_> {
         }
     }
 
-    /// Motion over the step at some nodes of a line, after that over the step before.
+    /// Motion over the step at some nodes of a line, following that over the previous step.
     fn extend(&self, line: usize, nodes: std::ops::Range<usize>, old: &WaveSpan, next: &mut WaveSpan) {
         next.times = self.times;
         let [before, after] = &mut next.ends;
@@ -238,7 +236,7 @@ fn source(model: &Model, state: &State, point: &Point) -> Option<(usize, usize)>
     Some((*line, model.lines[*line].end_node(*end)))
 }
 
-/// Flow of a state from the time on at which it starts; none where no host gives one.
+/// Flow of a state from its start time on; none where no host gives one.
 pub(super) fn begin(model: &Model, state: &State, flow: &WaterFlow) -> Option<WaveSpans> {
     if !model.host_flow {
         return None;
@@ -270,7 +268,7 @@ pub(super) fn begin(model: &Model, state: &State, flow: &WaterFlow) -> Option<Wa
 }
 
 impl Simulation {
-    /// Sets the flow of the water that a host gives, with the shape of [`WaterFlow::still`]: at the end of the coming step where the scene says
+    /// Sets the flow of the water that a host gives, with the shape of [`WaterFlow::still`]: at the end of the coming step if the scene has
     /// `input_reconstruction = "interpolate"`, else now.
     pub fn set_flow(&mut self, flow: &WaterFlow) {
         self.snapshot.inputs.flow.clone_from(flow);
@@ -281,8 +279,8 @@ impl Simulation {
         &self.snapshot.inputs.flow
     }
 
-    /// Place at which a host is to give the flow next for a node of a line [m]: the node's present place, or, where it is to be given for the end
-    /// of the coming step, the place then if the node keeps its velocity and the step is as long as the last; the first as the scene's interval.
+    /// Position at which a host is to give the next flow for a node of a line [m]: the present position of the node or, if the flow is for the end of the
+    /// coming step, its position then at constant velocity. That step is taken as long as the last one, the first as long as the scene's interval.
     pub fn flow_place(&self, line: usize, node: usize) -> Vector3<f64> {
         let (model, snapshot) = (&*self.model, &self.snapshot);
         let shape = &snapshot.state.lines[line];

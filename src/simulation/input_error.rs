@@ -1,14 +1,13 @@
 //! Error of the path of a host's motion between communication points, and the resulting error of tension.
 //!
-//! Displacements that a host gives at the start of every communication step h are extrapolated over it. The next
-//! sample differs from the path's end by m, and the path has to be bent back at a velocity of m/h. With the velocity
-//! v of the given motion the relative error is
+//! Displacements that a host gives at the start of every communication step h are extrapolated over it. The next sample differs from the path's end by m,
+//! and the path must be corrected at a velocity of m/h. With the velocity v of the given motion, the relative error of the motion is
 //!
 //! e = √(⟨m²/h²⟩/⟨v²⟩)
 //!
-//! of the motion. The velocity of the path at the end of a step has an error δ of about the same size at both ends, so that the acceleration of the
-//! path jumps there by J = 12 δ/h. An error δ that changes fast compared with the motion of the line changes its tension by Z δ, with the impedance
-//! Z = √(EA m_t) of axial waves. The error of tension over its standard deviation σ is estimated as
+//! The velocity of the path at the end of a step has an error δ of about the same size at both ends, so that the acceleration of the path jumps there by
+//! J = 12 δ/h. An error δ that changes fast compared with the motion of the line changes its tension by Z δ, with the impedance Z = √(EA m_t) of axial
+//! waves. The error of tension over its standard deviation σ is estimated as
 //!
 //! √((2.5 e)² + (Z ⟨|J|⟩h/12 / σ)²).
 //!
@@ -17,15 +16,14 @@
 //! acceleration of the motion itself does not count for ten periods. A path that is interpolated passes through the samples, m = 0; its velocities,
 //! where the host gives none, have errors δ too, and δ = J h/12 takes the place of m/h. A path that jumps has jumps m.
 //!
-//! With displacements only and 12 to 40 steps in a period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and `taut_polyester`,
-//! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities up to 26 times, where both are small. Interpolated displacements: 2.5
-//! to 17 times and 0.8 to 5 times. Jumps on other lines than cables: 1.1 to 4 times. It leaves out the resonance of a line with an axial mode at the
-//! frequency of the communication points, and the curvature of interpolated cubics with exact velocities, (ωh)²/12 of an acceleration of frequency ω:
-//! 2.3 % with 12 steps in a period, 0.2 % with 40. The error falls with h³ or faster, as m/h does.
+//! With displacements only and 12 to 40 steps per period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and `taut_polyester`,
+//! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities, up to 26 times, where both are small. Interpolated displacements: 2.5
+//! to 17 times and 0.8 to 5 times. Jumps on lines other than cables: 1.1 to 4 times. It leaves out the resonance of a line with an axial mode at the
+//! frequency of the communication points, and the curvature of interpolated cubics with exact velocities, (ωh)²/12 of an acceleration of frequency ω: 2.3 %
+//! with 12 steps per period, 0.2 % with 40. The error falls with h³ or faster, as m/h does.
 //!
-//! Mean values decay with the time of ten periods, of the frequency √(⟨a²⟩/⟨v²⟩) with the acceleration a. The first
-//! samples, which do not determine a motion, are not counted. The fastest part of the motion dominates the measure,
-//! as it does the error of tension.
+//! Mean values decay with a time constant of ten periods of the frequency √(⟨a²⟩/⟨v²⟩), with the acceleration a. The first samples, which do not determine
+//! a motion, are not counted. The fastest part of the motion dominates the measure, as it does the error of tension.
 
 use std::f64::consts::TAU;
 
@@ -41,7 +39,7 @@ use crate::scene::{Integrator, Reconstruction};
 
 /// Error of tension over the relative error of velocity [-].
 const GAIN: f64 = 2.5;
-/// Jump of acceleration over the error of velocity that makes it, per step [-].
+/// Jump of acceleration over the error of velocity that causes it, per step [-].
 const JUMP: f64 = 12.0;
 /// Periods of the motion over which mean values decay [-].
 const PERIODS: f64 = 10.0;
@@ -51,7 +49,7 @@ const PERIODS_MIN: f64 = 3.0;
 const SAMPLES_MIN: usize = 8;
 /// Share of the scene's size below which an error has no effect [-].
 const NEGLIGIBLE: f64 = 1e-7;
-/// Standard deviation of tension over its mean, below which it does not vary [-].
+/// Standard deviation of tension over its mean, below which the tension counts as constant [-].
 const CONSTANT: f64 = 1e-6;
 /// Part of the tolerance that the inputs may take [-]: the mesh takes 0.8, and squares of the errors add.
 const PART: f64 = 0.6;
@@ -176,10 +174,10 @@ pub(super) struct LightEnd {
     mover: Mover,
 }
 
-/// What moves the end of a line.
+/// Source of the motion of a line end.
 #[derive(Debug, Clone, Copy)]
 enum Mover {
-    /// Coupled point, by its number among these.
+    /// Coupled point, by its index among the coupled points.
     Point(usize),
     /// Vessel by its index, with the distance of the end from its origin [m].
     Vessel(usize, f64),
@@ -283,7 +281,7 @@ impl Simulation {
         self.snapshot.input_record.error(self.scale.size, light)
     }
 
-    /// Warning on a host's inputs where the path between them costs more than the tolerance allows.
+    /// Warning on a host's inputs if the error of the path between them exceeds what the tolerance allows.
     pub fn input_warning(&self) -> Option<String> {
         let record = &self.snapshot.input_record;
         let (error, allowed) = (self.input_error(), PART * self.model.solver.tolerance);

@@ -21,7 +21,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// Inputs before any is set.
+    /// Inputs before any of them is set.
     pub(super) fn new(model: &Model) -> Inputs {
         Inputs {
             points: vec![PointInput::default(); model.points.len()],
@@ -91,8 +91,7 @@ impl Simulation {
         std::array::from_fn(|axis| (given[axis] > 0.0).then_some(velocity[axis]))
     }
 
-    /// Sets where a vessel is now: displacement from its reference position [m]; roll, pitch and yaw added to those of its reference
-    /// attitude [rad].
+    /// Sets the present pose of a vessel: displacement from its reference position [m]; roll, pitch and yaw added to those of its reference attitude [rad].
     pub fn set_pose(&mut self, vessel: usize, pose: [f64; 6]) {
         self.snapshot.inputs.vessels[vessel].pose = pose;
     }
@@ -102,7 +101,7 @@ impl Simulation {
         self.snapshot.inputs.vessels[vessel].pose
     }
 
-    /// Sets where a body is now and how it moves, along its first three axes or all six.
+    /// Sets the present pose and velocity of a body, along its first three axes or all six.
     pub fn set_body(&mut self, body: Body, pose: [f64; 6], velocity: [Option<f64>; 6]) {
         match body {
             Body::Point(point) => {
@@ -139,12 +138,12 @@ impl Simulation {
         self.snapshot.state.lines[line].released
     }
 
-    /// Sets the length that the winch of a line is to have paid out now beyond that of the scene [m], negative where it is to have hauled in.
+    /// Sets the present target length paid out by the winch of a line beyond that of the scene [m], negative for length hauled in.
     pub fn set_length_change(&mut self, line: usize, change: f64) {
         self.snapshot.inputs.length_changes[line] = change;
     }
 
-    /// Length that the winch of a line is to have paid out, as set [m].
+    /// Target length paid out by the winch of a line, as set [m].
     pub fn length_change(&self, line: usize) -> f64 {
         self.snapshot.inputs.length_changes[line]
     }

@@ -88,13 +88,13 @@ impl Paths {
         self.points.iter_mut().map(|path| &mut path.0).chain(vessels)
     }
 
-    /// Returns whether the host gives anything without velocities.
+    /// Returns whether the host gives any motion without velocities.
     pub(super) fn lack_velocities(&self) -> bool {
         self.axes().any(|path| path.unrated().is_some())
     }
 
-    /// Leads the paths of what the host gives without velocities, continued from those `before`, to the predictions of their filters
-    /// over a step from a time [s] of a length [s].
+    /// Leads the paths of motions given without velocities, continued from those `before`, to the predictions of their filters over a step of a length [s]
+    /// from a time [s].
     fn filter(&mut self, before: &Paths, span @ [time, length]: [f64; 2]) {
         let mut filters = std::mem::take(&mut self.filters);
         filters.clone_from(&before.filters);
@@ -107,7 +107,7 @@ impl Paths {
         self.filters = filters;
     }
 
-    /// Times between the newest sample, the one before and the next [s], where all are known and in order.
+    /// Times between the newest sample, the previous one and the one before that [s], if all are known and in order.
     pub(super) fn gaps(&self) -> Option<[f64; 2]> {
         self.clock.gaps()
     }
@@ -149,7 +149,7 @@ struct Extend<'a> {
     model: &'a Model,
     inputs: &'a Inputs,
     extrapolation: &'a Extrapolation,
-    /// Becomes where the points are at both ends of the step.
+    /// Motion of the points at both ends of the step, to be filled in.
     ends: &'a mut [HostEnds],
 }
 

@@ -1,10 +1,10 @@
-//! Prescribed motion of points in time: all points but the free ones.
+//! Prescribed motion in time of all points except free ones.
 //!
-//! The motion is evaluated at both ends of a communication step, where it is read most often. Between them the path of a host is a cubic. Motions of
-//! the scene and points on vessels take sines: a quintic through position, velocity and acceleration at the ends bridges the step, in as many
-//! pieces as keep its error below [`ERROR_MAX`]. Where more pieces would be needed than the networks at the point have internal steps, where a
-//! motion has a kink within the step, or where clamped lines need the rotation of a point, the motion is evaluated at every internal step. Bridges
-//! save a quarter of the instructions of a step of `bridle`, whose fairleads move with a vessel.
+//! The motion is evaluated at both ends of a communication step, where it is read most often. Between them the path of a host is a cubic. Motions of the
+//! scene and points on vessels need sines: a quintic through position, velocity and acceleration at the ends bridges the step, in as many pieces as are
+//! needed to keep its error below [`ERROR_MAX`]. Where more pieces would be needed than the networks at the point have internal steps, where a motion has a
+//! kink within the step, or where clamped lines need the rotation of a point, the motion is evaluated at every internal step. Bridges save a quarter of the
+//! instructions of a step of `bridle`, whose fairleads move with a vessel.
 //!
 //! The error of a quintic over a piece τ is at most max|r⁽⁶⁾| τ⁶/46080. For a sine, r⁽⁶⁾ ≤ A ω⁶. The rotation of an arm a by angles whose
 //! derivatives are bounded by x₁ … x₆ has r⁽⁶⁾ ≤ |a| B₆(x₁ … x₆), with the complete Bell polynomial B₆, since every derivative of it by an
@@ -108,13 +108,13 @@ impl<'a> MotionSource<'a> {
 /// Method by which the motion of a point is evaluated.
 #[derive(Debug, Clone)]
 enum Evaluation {
-    /// A point that never moves, or that forces move.
+    /// A point that never moves, or one moved by forces.
     Fixed,
-    /// The path of the host, by its place among the coupled points.
+    /// The path of the host, by its index among the coupled points.
     Host(usize),
     /// A bridge over the step.
     Bridged(Box<Bridge>),
-    /// The motion of the model at the time itself.
+    /// The motion of the model, evaluated at the time itself.
     Direct,
 }
 
@@ -275,7 +275,7 @@ impl PrescribedMotion {
         &mut self.hosted
     }
 
-    /// Makes ready for a span of time [s].
+    /// Prepares for a span of time [s].
     pub(super) fn prepare(&mut self, at: &MotionSource, span: [f64; 2]) {
         let goes_on = self.span[1] == span[0];
         self.span = span;
@@ -401,7 +401,7 @@ fn pieces(sixth: f64, most: usize) -> Option<usize> {
     (1..=most.min(PIECES_MAX)).find(|&count| (count as f64).powi(6) >= excess)
 }
 
-/// Bounds of the derivatives of angles that are cubics over a span [s], times its powers [rad].
+/// Bounds of the derivatives of angles that are cubics over a span [s], times powers of the span [rad].
 fn cubic_turn([before, after]: &[Pose; 2], span: f64) -> [f64; 6] {
     let mut bounds = [0.0; 6];
     for axis in 3..6 {
@@ -451,7 +451,7 @@ mod tests {
         .model()
     }
 
-    /// Greatest distances of a bridged point from where it is [m] and of its velocities [m/s], over steps of a length [s].
+    /// Greatest errors of the position [m] and the velocity [m/s] of a bridged point, over steps of a length [s].
     fn misses(point: &str, step: f64) -> [f64; 2] {
         let model = model();
         let inputs = Inputs::new(&model);

@@ -19,7 +19,7 @@ use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
 
-/// Displacement of a vessel in a current to either side for its difference quotients of stiffness [m, rad].
+/// Displacement of a vessel to either side in the difference quotients of its stiffness in a current [m, rad].
 const ASIDE: f64 = 1e-3;
 
 /// A node of a line's profile.
@@ -61,7 +61,7 @@ pub(super) struct Reactions {
     pub(super) interface: OnceCell<InterfaceValues>,
 }
 
-/// Those of a line.
+/// The same for a line.
 #[derive(Debug, Clone, Default)]
 struct LineReactions {
     /// Force on the points at ends A and B [N].
@@ -122,11 +122,10 @@ impl Simulation {
         sum.into()
     }
 
-    /// Stiffness of the mooring on a vessel as it is now: minus the change of the static part of [`Simulation::vessel_force`], in [N/m]
-    /// and [N], and moment, in [N] and [N m], with displacement along and small rotation about the global axes through the vessel's
-    /// origin; rows of force. `None` where the lines are not stable as they are, or one of them is a beam. See
-    /// [`statics::stiffness`]. Where a current drags lines, its force changes with them: the stiffness is then that of equilibria on both sides
-    /// of the pose that is set.
+    /// Stiffness of the mooring on a vessel in its present state: minus the change of the static part of [`Simulation::vessel_force`], in [N/m] and [N],
+    /// and of its moment, in [N] and [N m], with displacement along and small rotation about the global axes through the vessel's origin; rows of force.
+    /// `None` where the lines are not stable in this state, or one of them is a beam. See [`statics::stiffness`]. Where a current drags lines, its force
+    /// changes with them: the stiffness is then that of equilibria on both sides of the pose that is set.
     pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
         self.stiffness_with(vessel, &mut self.bare_scratch())
     }
@@ -155,7 +154,7 @@ impl Simulation {
         }
     }
 
-    /// Returns whether a current acts on anything that hangs together with a vessel.
+    /// Returns whether a current acts on anything connected to a vessel.
     fn drifts(&self, vessel: usize) -> bool {
         let model = &*self.model;
         let carrier = &model.vessels[vessel];
@@ -205,8 +204,8 @@ impl Simulation {
         Some(aside)
     }
 
-    /// This mooring at rest as it is now, without waves, with every network that has one on its closed-form catenaries and the others on
-    /// their elements. The closed form has seabed friction and no error of a mesh.
+    /// This mooring at rest in its present state, without waves, with every network on its closed-form catenaries where it has them, else on its elements.
+    /// The closed form has seabed friction and no discretisation error.
     pub fn on_catenaries(mut self) -> Simulation {
         self.snapshot.state.waves = None;
         self.reactions.clear();
@@ -251,8 +250,8 @@ impl Simulation {
         (of_lines + self.own_force(point, |state| state)).into()
     }
 
-    /// Force of the mooring on a point as codes of lumped masses report it [N]: the sum over its lines of [`reaction::nodal_force`], and
-    /// weight, buoyancy and drag of the point, without inertia. It tends to [`Simulation::end_force`] as the mesh is refined.
+    /// Force of the mooring on a point as lumped-mass codes report it [N]: the sum over its lines of [`reaction::nodal_force`], and weight, buoyancy and
+    /// drag of the point, without inertia. It tends to [`Simulation::end_force`] as the mesh is refined.
     pub fn nodal_force(&self, point: usize) -> [f64; 3] {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let at = self.point_as_it_acts(point);
@@ -265,7 +264,7 @@ impl Simulation {
         (of_lines + self.own_force(point, |state| state.without_acceleration())).into()
     }
 
-    /// Force of a point itself on its support [N], in the state that `seen` makes of its present one.
+    /// Force of a point itself on its support [N], in the state to which `seen` maps its present one.
     pub(super) fn own_force(&self, point: usize, seen: impl Fn(PointState) -> PointState) -> Vector3<f64> {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let data = &model.points[point];
@@ -284,7 +283,7 @@ impl Simulation {
         (water, model.end_moments(&model.lines[line], state.time))
     }
 
-    /// A point as its forces are found: at rest in quasi-static runs.
+    /// State of a point for the evaluation of its forces: at rest in quasi-static runs.
     fn point_as_it_acts(&self, point: usize) -> PointState {
         let state = self.snapshot.state.points[point];
         match self.model.solver.integrator {
@@ -528,7 +527,7 @@ impl Simulation {
     }
 }
 
-/// Length of which the contact springs carry the weight [m].
+/// Length whose weight the contact springs carry [m].
 fn laid_length(line: &Line, state: &LineState) -> f64 {
     let Some(contact) = &line.nodes.contact else {
         return 0.0;

@@ -1,7 +1,7 @@
 //! Size of a scene, and the limits of inputs that follow from it.
 //!
-//! Beyond some thousand times the size of a scene the equations still have solutions, dominated by rounding. Such
-//! inputs are a wrong unit or come from an unstable host, and are refused before anything is solved.
+//! Beyond some thousand times the size of a scene the equations still have solutions, dominated by rounding. Such inputs come from a wrong unit or an
+//! unstable host, and are refused before anything is solved.
 
 use nalgebra::Vector3;
 
@@ -27,7 +27,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Of a model.
+    /// Scale of a model.
     pub(super) fn new(model: &Model) -> Scale {
         let lengths = model.lines.iter().map(|line| {
             let sections = line.sections.iter();
@@ -108,7 +108,7 @@ impl Scale {
 fn check_axes(name: &str, place: &[f64], rates: &[f64], length: f64, reach: f64) -> Result<(), String> {
     for (axis, (&value, &rate)) in place.iter().zip(rates).enumerate() {
         let limit = if axis < 3 { reach } else { TURNS_MAX };
-        // no number is within any limit
+        // NaN is not within any limit
         let (is_near, is_slow) = (value.abs() <= limit, (rate * length).abs() <= limit);
         if !(is_near && is_slow && rate.is_finite()) {
             return Err(beyond(name, axis, [value, rate, length], limit, is_near));

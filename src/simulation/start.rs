@@ -21,7 +21,7 @@ use crate::statics::{self, StaticsError, catenary_network, equilibrium};
 /// Treatment of lines with an initial shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shapes {
-    /// They start on it.
+    /// Lines start on it.
     AsGiven,
     /// Initial shapes from which lines move to rest.
     Equilibrium,
@@ -85,7 +85,7 @@ pub(super) fn begin(
     ))
 }
 
-/// Sets the joints of the clamps of the lines that `rests` selects for their tension in a state of rest; returns whether there are any.
+/// Sets the clamp joints of the lines that `rests` selects for their tension in a state of rest; returns whether there are any.
 pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
     let mut any = false;
     for (index, (line, shape)) in model.lines.iter_mut().zip(&state.lines).enumerate() {
@@ -102,8 +102,8 @@ pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(us
     any
 }
 
-/// Every network in static equilibrium or, where all its lines have shapes of their own, on these, with its free points where the scene puts
-/// them. Quasi-static lines start on their catenaries; those that will move start where their elements are at rest.
+/// State with every network in static equilibrium or, if all its lines have given shapes, on these, with its free points at their positions in the scene.
+/// Quasi-static lines start on their catenaries; lines that will move start in the equilibrium of their elements.
 fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> Result<State, StaticsError> {
     let mut work = elements::Workspace::serving(model, |_| false);
     let mut state = equilibrium::place(model, places, time)?;
@@ -124,7 +124,7 @@ fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> R
     Ok(state)
 }
 
-/// Puts the lines of a network that have shapes of their own back on these, between its points as they are now.
+/// Puts the lines of a network that have given shapes back on these, between the present positions of its points.
 fn take_shapes(model: &Model, number: usize, state: &mut State) {
     for &index in &model.networks[number].lines {
         let line = &model.lines[index];
@@ -132,7 +132,7 @@ fn take_shapes(model: &Model, number: usize, state: &mut State) {
         let Some(mut nodes) = guess::start_shape(model, line, ends) else {
             continue;
         };
-        // free points are where they rest, which is not where the scene puts them
+        // free points are at their equilibrium positions, not at those of the scene
         for end in [End::A, End::B] {
             let point = line.ends[usize::from(end == End::B)];
             if model.points[point].free().is_some() {
@@ -143,8 +143,8 @@ fn take_shapes(model: &Model, number: usize, state: &mut State) {
     }
 }
 
-/// Gives beams their frames at time `t` [s], and rest where no shape is given or all start at rest; `attitude`
-/// returns the rotation of a point.
+/// Gives beams their frames at time `t` [s], and solves their equilibrium if no shape is given or all start at rest; `attitude` returns the rotation of a
+/// point.
 fn rest_beams(
     model: &Model,
     state: &mut State,

@@ -1,4 +1,4 @@
-//! Notes on likely mistakes in a run: ends that jump, inputs that are too few, lines strained beyond realistic strains, tables that are left.
+//! Notes on likely mistakes in a run: ends that jump, too few inputs, lines strained beyond realistic values, tables whose range is left.
 
 mod left_tables;
 
@@ -9,7 +9,7 @@ use super::Simulation;
 use crate::model::{End, Release};
 use crate::scene::{Note, Scene};
 
-/// Part of its unstretched length [-] that the end of a line may move by in one communication step.
+/// Fraction of the unstretched length of a line by which its end may move in one communication step [-].
 const JUMP: f64 = 0.1;
 
 /// Observes a simulation at its communication points; each note is given once.
@@ -25,7 +25,7 @@ pub struct Watch {
 struct Watched {
     /// Places of the ends at the last communication point [m].
     ends: [Vector3<f64>; 2],
-    /// Strain that is noted [-]; infinite where it was noted, or where large strains are meant.
+    /// Strain above which a note is given [-]; infinite once it was given, or if large strains are intended.
     strain_max: f64,
     /// Tension that breaks the line [N], at an end; `None` where it was compared with that of the first state.
     breaks_at: Option<(End, f64)>,
@@ -48,14 +48,14 @@ impl Watch {
         }
     }
 
-    /// Continues from a state that no step led to, such as one that was restored.
+    /// Continues from a state that was not reached by a step, such as a restored one.
     pub fn resume(&mut self, simulation: &Simulation) {
         for (index, watched) in self.lines.iter_mut().enumerate() {
             watched.ends = ends(simulation, index);
         }
     }
 
-    /// Notes on the present state that were not given before; nothing is allocated where there are none.
+    /// Notes on the present state that were not given before; nothing is allocated if there are none.
     pub fn look(&mut self, simulation: &Simulation) -> Vec<Note> {
         let mut notes = Vec::new();
         for (index, watched) in self.lines.iter_mut().enumerate() {
@@ -139,7 +139,7 @@ fn breaks_at_once(simulation: &Simulation, line: usize, end: End, limit: f64) ->
     (tension >= limit).then(|| Note::new(format!("lines[{line}].break.tension"), text))
 }
 
-/// Squares of the stretched [m²] and unstretched lengths [m] of a line's segments, without the segment that a winch changes.
+/// Squared stretched length [m²] and unstretched length [m] of a line's segments, except the segment that a winch changes.
 fn lengths(simulation: &Simulation, line: usize) -> impl Iterator<Item = (f64, f64)> {
     let data = &simulation.model.lines[line];
     let nodes = &simulation.snapshot.state.lines[line].position;
@@ -149,7 +149,7 @@ fn lengths(simulation: &Simulation, line: usize) -> impl Iterator<Item = (f64, f
     pairs.map(|(pair, length)| ((pair[1] - pair[0]).norm_squared(), *length))
 }
 
-/// Returns whether any segment of a line is strained beyond a limit [-]. Called at every communication point: needs no roots.
+/// Returns whether any segment of a line is strained beyond a limit [-]. Called at every communication point, so it takes no roots.
 fn exceeds_strain(simulation: &Simulation, line: usize, limit: f64) -> bool {
     lengths(simulation, line).any(|(square, length)| square > ((1.0 + limit) * length).powi(2))
 }

@@ -18,8 +18,7 @@ pub(super) struct WinchPath {
 }
 
 impl WinchPath {
-    /// Continues by a communication step from a host's length change [m] at a time [s]; a winch with a greatest speed
-    /// [m/s] lags behind faster inputs.
+    /// Continues by a communication step from a host's length change [m] at a time [s]; a winch with a speed limit [m/s] lags behind faster inputs.
     pub(super) fn extend(
         &mut self,
         speed_max: Option<f64>,
@@ -41,7 +40,7 @@ impl WinchPath {
     }
 }
 
-/// Length change [m] of a winch where the scene's own motion is followed from a time on [s], if it is.
+/// Length change [m] of a winch at the start: by the scene's own motion at a time [s] if that is followed, else as given.
 fn start(winch: &Winch, given: f64, follows: Option<f64>) -> f64 {
     match (follows, &winch.path) {
         (Some(time), Some(path)) => path.at(time),
@@ -55,7 +54,7 @@ pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
         return Ok(());
     };
     let (least, most) = (winch.length_min(), winch.length_max);
-    // a host's sum may round beyond the bounds
+    // rounding of a sum in the host may exceed the bounds
     let rounding = 1e-9 * (most - least);
     if change >= least - rounding && change <= most + rounding {
         return Ok(());
@@ -82,7 +81,7 @@ pub(super) fn paths(model: &Model, given: &[f64], time: f64, follows_scene: bool
     lines.map(path).collect()
 }
 
-/// Lays out the lines on winches at the lengths that they start with.
+/// Lays out the lines on winches at their initial lengths.
 ///
 /// # Errors
 /// Lengths that a winch cannot pay out.
@@ -100,7 +99,7 @@ pub(super) fn lay_out(model: &mut Arc<Model>, given: &[f64], follows: Option<f64
     Ok(())
 }
 
-/// Lays out the lines on winches as a state has them.
+/// Lays out the lines on winches at the lengths of a state.
 pub(super) fn follow(model: &mut Arc<Model>, state: &State) {
     for (index, shape) in state.lines.iter().enumerate() {
         if let (Some(winch_state), Some(_)) = (shape.winch_state, &model.lines[index].winch) {

@@ -2,13 +2,13 @@
 //!
 //! The system of [`crate::elements::beam`] is solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a
 //! fraction of a turn. A beam of many elements starts from the equilibrium of the same beam on half as many (`coarse`), so that
-//! only the coarsest starts far from where it rests, and fine meshes follow coarse ones to one of several equilibria.
+//! only the coarsest starts far from its equilibrium, and fine meshes follow coarse ones to one of several equilibria.
 //!
-//! The coarsest beam, and one that is not found from a coarser one, is sought from where its sections are. Where it is free of stress there, the
-//! loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search without the moments on the ends, which have no
-//! potential, goes down in energy: J + λ D with D the nodes' own stiffness, λ lowered where the energy falls and raised where it does not, on
-//! a beam that is soft in stretch and shear at first. So it ends at a minimum, from where the moments are raised in parts. Clamps begin along the
-//! beam and are turned to where they are prescribed. An end that can move and is not found so is sought from the beam without stress.
+//! The search for the coarsest beam, and for one that is not found from a coarser one, starts from its present sections. Where these are free of
+//! stress, the loads are raised in parts, as few as possible. Elsewhere, and where that fails, the energy is reduced without the moments on the
+//! ends, which have no potential: J + λ D with D the nodes' own stiffness, λ lowered where the energy falls and raised where it does not, on
+//! a beam that is soft in stretch and shear at first. This search ends at a minimum, from which the moments are raised in parts. Clamps begin along
+//! the beam and are turned to their prescribed attitudes. Where all this fails and an end can move, the search starts from the unstressed beam.
 
 mod coarse;
 
@@ -23,25 +23,25 @@ use crate::statics::StaticsError;
 
 /// Change of position over the beam's length, and spin [rad], that end the search [-].
 const TOLERANCE: f64 = 1e-11;
-/// A step below this [-] that no longer shrinks has met rounding.
+/// Step [-] below which a step that no longer shrinks is rounding.
 const ROUNDING: f64 = 1e-6;
 /// Longest step: change of position over the beam's length, and spin [rad].
 const STEP_MAX: [f64; 2] = [0.1, 0.3];
-/// Solves in a part of the load [-].
+/// Greatest number of solves for one part of the load [-].
 const NEWTON_SOLVES_MAX: usize = 60;
-/// Parts that the load is raised in: each of these is tried [-].
+/// Numbers of parts in which the load is raised, tried in turn [-].
 const LOAD_PARTS: [usize; 4] = [1, 5, 25, 125];
-/// Solves of the search by falling energy, for each stiffness on the way [-].
+/// Greatest number of solves of the search by falling energy, for each stiffness on the way [-].
 const DESCENT_SOLVES_MAX: usize = 400;
-/// Steps of that search below this [-] leave the rest to Newton's method.
+/// Step of that search [-] below which Newton's method takes over.
 const SETTLED: f64 = 1e-4;
 /// Least λ [-].
 const ANCHORING_MIN: f64 = 1e-12;
-/// From each axial and shear stiffness to the next on the way [-].
+/// Ratio of successive axial and shear stiffnesses on the way [-].
 const STIFFENING: f64 = 30.0;
 /// Least axial and shear stiffness on the way, over weight, loads and EI/l² [-].
 const SOFTNESS: f64 = 100.0;
-/// Elements of a beam that is not sought from a coarser one at first [-].
+/// Greatest number of elements of a beam whose search does not start from a coarser one [-].
 const COARSE_ELEMENTS_MAX: usize = 12;
 /// Linear solves of a search times their nodes: some five seconds [-].
 const WORK_MAX: usize = 4_000_000;
@@ -60,10 +60,10 @@ const TORQUE_MIN: f64 = 1e-6;
 /// Turn of a clamp from one equilibrium to the next on the way to its prescribed attitude [rad].
 const CLAMP_TURN: f64 = 0.25;
 
-/// Brings the beam `index` of `state` to rest under the loads of time `t` [s], from where its nodes and frames are.
+/// Brings the beam `index` of `state` to rest under the loads of time `t` [s], from its present nodes and frames.
 ///
 /// # Errors
-/// No equilibrium was found; the state is then as it was.
+/// No equilibrium was found; the state is then unchanged.
 pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<(), StaticsError> {
     let line = &model.lines[index];
     let (Some(beam), Some(shape)) = (&line.beam, &state.lines[index].beam) else {
@@ -214,7 +214,7 @@ impl BeamStatics {
     }
 
     /// Part of the moments on the ends along the beam where it rests without them [N m], where no end is clamped and it is more than rounding.
-    /// Nothing holds it: the torsion of a beam of round section is the same all along, and nothing at ends that turn freely.
+    /// Nothing balances it: the torsion of a beam of round section is constant along it, and zero at ends that turn freely.
     fn torque(case: &BeamCase, start: &[Section]) -> Option<f64> {
         let moments = case.ends.each_ref().map(|end| split(&end.load).1);
         let greatest = moments[0].norm().max(moments[1].norm());
@@ -260,7 +260,7 @@ impl BeamStatics {
                     sections[*node].frame = Rotation3::new(share * turn).matrix() * start;
                 }
             }
-            // an equilibrium on the way that is not found is passed over
+            // an intermediate equilibrium that is not found is skipped
             let _ = self.solve(case, sections);
         }
         for (node, _, _, target) in &clamps {
@@ -272,7 +272,7 @@ impl BeamStatics {
     /// Moves `sections` to equilibrium; prescribed unknowns stay as they are.
     ///
     /// # Errors
-    /// None was found; the sections are then where they were.
+    /// No equilibrium was found; the sections are then unchanged.
     fn solve(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), StaticsError> {
         self.search(case, sections, |search, case, sections| {
             let start = sections.to_vec();
@@ -340,7 +340,7 @@ impl BeamStatics {
         Err(error)
     }
 
-    /// From close to the equilibrium: Newton's method, else down in energy.
+    /// Search from close to the equilibrium: Newton's method, else reduction of the energy.
     fn newton_or_settle(&mut self, case: &BeamCase, sections: &mut [Section]) -> bool {
         let start = sections.to_vec();
         self.newton(case, sections, LoadShare::WHOLE) || self.settle(case, sections, &start)
@@ -379,7 +379,7 @@ impl BeamStatics {
         false
     }
 
-    /// The search from `start` by falling energy, on beams that are stiffened from soft to as they are; Newton's method ends it and raises
+    /// Search from `start` by falling energy, on beams stiffened from soft to their actual stiffness; Newton's method ends it and raises
     /// the moments.
     fn settle(&mut self, case: &BeamCase, sections: &mut [Section], start: &[Section]) -> bool {
         sections.copy_from_slice(start);
@@ -408,8 +408,8 @@ impl BeamStatics {
         found && self.raise(case, sections, &without_moments, turned)
     }
 
-    /// Goes down in energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Returns the λ it ended
-    /// with [-].
+    /// Reduces the energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Returns the last
+    /// λ [-].
     fn descend(&mut self, case: &BeamCase, sections: &mut [Section], from: f64) -> f64 {
         let (mut anchoring, mut last) = (from.max(1e-6), case.energy(sections));
         for _ in 0..DESCENT_SOLVES_MAX {
@@ -462,7 +462,7 @@ impl BeamStatics {
         }
     }
 
-    /// Node and size of the greatest force out of balance [N]; moments count over an element's length.
+    /// Node and size of the greatest force out of balance [N]; moments are divided by an element's length.
     fn imbalance(&self, case: &BeamCase) -> (usize, f64) {
         let last = case.elements.len() - 1;
         let size = |i: usize| {

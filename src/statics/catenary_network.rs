@@ -4,10 +4,10 @@
 //!
 //!   R = Σ F_line + F_load(t) − w ẑ,
 //!
-//! w the weight less the buoyancy of the submerged part, F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
-//! free flight is exact (see [`catenary::in_flight`]), that of a line on the seabed a difference quotient of its closed form; across its plane a line
-//! has H/X. Steps are limited, and cut until the power R·δ has not turned: without friction the potential energy is convex
-//! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the seabed rests on it
+//! with w the weight less the buoyancy of the submerged part and F the end force of a catenary, which lies in the vertical plane through its ends. It is
+//! solved by Newton's method. The stiffness of a line in free flight is exact (see [`catenary::in_flight`]), that of a line on the seabed is a difference
+//! quotient of its closed form; across its plane a line has H/X. Steps are limited, and cut until the power R·δ does not change sign: without friction
+//! the potential energy is convex in the positions of the points, so this finds the unique equilibrium. A point whose lines can touch the seabed rests on it
 //! where it would sink.
 //!
 //! Valid for engineering strain, for which the closed form is derived, and where no end lies under the seabed. A
@@ -34,7 +34,7 @@ const NEWTON_SOLVES_MAX: usize = 60;
 const CUTS_MAX: usize = 12;
 /// Longest step, over the longest line [-].
 const STEP_MAX: f64 = 0.2;
-/// Turned power that a step may end with, over the power it started with [-].
+/// Power of opposite sign that a step may end with, relative to the power at its start [-].
 const TURNED_MAX: f64 = 0.5;
 /// Greatest and least stiffness that is added to every unknown, over forces per length of line [-].
 const RELAXATION: [f64; 2] = [1.0, 1e-13];
@@ -71,8 +71,8 @@ pub fn rest(
     Ok(())
 }
 
-/// Moves the free points of a network from where they are in `state` to where they rest at time `t` [s], and puts its lines on
-/// their catenaries. Held points stay where they are. False, and the state as it was, where that is not possible: a line
+/// Moves the free points of a network from their positions in `state` to those at rest at time `t` [s], and puts its lines on
+/// their catenaries. Held points do not move. Returns false, with the state unchanged, where that is not possible: a line
 /// without a closed form, out of the water, or with an end under the seabed, or no equilibrium found in a bounded number of steps.
 pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, work: &mut Workspace) -> bool {
     let network = &model.networks[number];
@@ -144,7 +144,7 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// Of a line that touches nothing.
+    /// Slopes of a line that touches nothing.
     fn in_flight(stiffness: &Matrix2<f64>) -> Slopes {
         let both = |column: usize| {
             let [h, v] = [stiffness[(0, column)], stiffness[(1, column)]];
@@ -295,7 +295,7 @@ impl<'a> Problem<'a> {
         [!x, !y, !z || pressed]
     }
 
-    /// Sets up the stiffness of the lines and the linear system; the greatest stiffness [N/m] and the greatest coordinate of a point [m].
+    /// Sets up the stiffness of the lines and the linear system; returns the greatest stiffness [N/m] and the greatest coordinate of a point [m].
     fn assemble(&self, state: &State, work: &mut Workspace, anchoring: f64) -> (f64, f64) {
         work.systems[self.number].clear();
         let (mut stiffest, mut farthest) = (0.0_f64, 0.0_f64);
@@ -378,7 +378,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Moves the free points along the solution, as far as the power does not turn; whether that was all the way.
+    /// Moves the free points along the solution, as far as the power does not change sign; returns whether that was the whole step.
     fn step(&self, state: &mut State, work: &mut Workspace) -> bool {
         let (mut longest, mut before, balance) = (0.0_f64, 0.0, self.greatest_residual(work));
         for (slot, &index) in self.network.free_points.iter().enumerate() {
@@ -409,7 +409,7 @@ impl<'a> Problem<'a> {
         false
     }
 
-    /// Puts the free points a `part` of the solution away from where the step began.
+    /// Moves the free points to a `part` of the solution from the start of the step.
     fn place(&self, state: &mut State, work: &Workspace, part: f64) {
         for &index in &self.network.free_points {
             let mut moved = work.points[index].start + part * work.points[index].solution;

@@ -1,7 +1,7 @@
 //! Static equilibrium of the assembled lines.
 //!
-//! Newton's method on the residual of [`crate::elements`], with two changes that make it indifferent to how stiff a line is
-//! and to how bad the guess is:
+//! Newton's method on the residual of [`crate::elements`], with two changes that make it insensitive to the stiffness of a line
+//! and to the quality of the guess:
 //!
 //! * The geometric stiffness T/l is taken from a tension that the previous linear solve predicted,
 //!   T ← N + dN/dl q·(δ_{i+1} − δ_i), not from the elastic force N of the present shape. That is Newton's method on positions and tensions together with
@@ -13,14 +13,14 @@
 //! Where this does not converge, the potential energy, which is convex for all measures that do not soften, is minimised
 //! with axial stiffness limited to a multiple of the loads, by damped Newton steps whose length a directional derivative
 //! checks, and the true stiffness is approached from there. Where a softening measure would be stretched beyond the strain of
-//! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
+//! its greatest force, the loads are applied in increments instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
 //! Lines with bending stiffness are in `bending`, lines in a current in `current`, slack lines and those that float in `slack`, the friction of
 //! the seabed in `friction`.
 //!
-//! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
-//! rounding of the positions makes of the stiffest segment.
+//! A residual is accepted if it is at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus
+//! the effect of rounding of the positions on the stiffest segment.
 //!
 //! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the elimination of
 //! predicted tensions is derived here.
@@ -69,7 +69,7 @@ const INSTABILITY: f64 = 1e-12;
 const LOAD_STEPS_MAX: usize = 200;
 /// Least growth of a part of a case that is tried [-].
 const GROWTH_MIN: f64 = 1.1;
-/// Strain over the limit strain from which a failure is put down to the limit [-].
+/// Strain over the limit strain from which a failure is attributed to the limit [-].
 const NEAR_LIMIT: f64 = 0.5;
 /// Greatest growth of the strain over the limit strain in one load step beyond the limit [-].
 const JUMP_MAX: f64 = 0.1;
@@ -121,7 +121,7 @@ pub fn hang(model: &Model, number: usize, state: &mut State, work: &mut Workspac
     }
 }
 
-/// Brings one network to rest from how [`hang`] leaves it. Beams have an equilibrium of their own.
+/// Brings one network to rest from the shape set by [`hang`]. Beams have a separate equilibrium.
 ///
 /// # Errors
 /// No equilibrium was found, or there is none.
@@ -137,11 +137,11 @@ pub fn rest(
     Problem::new(model, number, state.time, work).solve(state, work)
 }
 
-/// Moves the prescribed points of a network to where they are `held` and finds the equilibrium at time `t` [s] closest to `state`, without
+/// Moves the prescribed points of a network to their `held` positions and finds the equilibrium at time `t` [s] closest to `state`, without
 /// allocating; velocities and accelerations become zero.
 ///
 /// # Errors
-/// No equilibrium was found, or there is none; the state is then as it was.
+/// No equilibrium was found, or there is none; the state is then unchanged.
 pub fn continue_network(
     model: &Model,
     number: usize,
@@ -298,7 +298,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network, or from a taut one, which is
+    /// Newton's method alone; else, where the loads may be too great, in increments; else from a soft network, or from a taut one, which is
     /// tried first where lines float.
     fn solve_from(&self, guess: &State, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
@@ -335,13 +335,13 @@ impl<'a> Problem<'a> {
         Err(self.not_converged(state, work, start))
     }
 
-    /// Goes back to a guess, with the tensions that its shape has.
+    /// Returns to a guess, with the tensions of its shape.
     fn restart(&self, guess: &State, state: &mut State, work: &mut Workspace) {
         copy_network(self.model, self.network, guess, state);
         self.remember_shape(state, work);
     }
 
-    /// Takes the tensions of a shape for the predicted ones.
+    /// Sets the predicted tensions to those of a shape.
     fn remember_shape(&self, state: &State, work: &mut Workspace) {
         work.assemble_static(self.model, self.network, state, &self.full_case());
         self.remember_tensions(work);
@@ -372,7 +372,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Newton's method with predicted tensions; whether it converged.
+    /// Newton's method with predicted tensions; returns whether it converged.
     fn newton(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) -> bool {
         case.predicted = true;
         let mut relaxation = self.first_relaxation(state, work, &case);
@@ -430,7 +430,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Relaxation at the start of Newton's method: the force out of balance over the sum of the external forces, so that anchoring hardly
-    /// holds a shape that is close to equilibrium [-]. A power of ten, which rounding of the residual does not change.
+    /// restrains a shape that is close to equilibrium [-]. A power of ten, which rounding of the residual does not change.
     fn first_relaxation(&self, state: &State, work: &mut Workspace, case: &StaticCase) -> f64 {
         work.assemble_static(self.model, self.network, state, case);
         let (residual, _) = work.greatest_residual(self.network);
@@ -445,7 +445,7 @@ impl<'a> Problem<'a> {
         residual <= self.tolerance(state, work, f64::INFINITY)
     }
 
-    /// Farthest that a node is from end A of its line, at least the length of the longest line [m].
+    /// Greatest distance of a node from end A of its line, at least the length of the longest line [m].
     fn reach(&self, state: &State) -> f64 {
         let lines = self.network.lines.iter().map(|&line| &state.lines[line].position);
         let distances = lines.flat_map(|nodes| nodes.iter().map(|r| (r - nodes[0]).amax()));
@@ -538,7 +538,7 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
     }
 
-    /// From a soft network, whose energy is minimised, to that of the `full` case.
+    /// Follows the equilibrium from a soft network, whose energy is minimised, to that of the `full` case.
     fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace, full: StaticCase) -> bool {
         let mut stiffness = SOFT_STIFFNESS * self.force;
         let lines = self.model.lines_of(self.network);
@@ -565,8 +565,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Follows the equilibrium of a case that grows from its `first` part, by a factor of `growth` or where that fails of less, to the
-    /// whole; whether it came there. The state is that of the last part that was found.
+    /// Follows the equilibrium of a case that grows from its `first` part to the whole, by a factor of `growth` or, where that fails, of
+    /// less; returns whether the whole was reached. The state is that of the last part that was found.
     fn raise(
         &self,
         state: &mut State,
@@ -632,7 +632,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Moves along the correction for as long as the energy falls; the part of it that was taken.
+    /// Moves along the correction as long as the energy falls; returns the part of it that was taken.
     fn cut(&self, state: &mut State, work: &mut Workspace, case: &StaticCase, longest: f64) -> f64 {
         let case = StaticCase {
             anchoring: 0.0,
@@ -690,7 +690,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Greatest strain over the limit of its measure [-], with line, segment and strain [-]; below the limits of all measures the
-    /// energy is convex and an equilibrium is the only one.
+    /// energy is convex and an equilibrium is unique.
     fn strain_over_limit(&self, state: &State) -> (f64, usize, usize, f64) {
         let mut worst = (0.0, self.network.lines[0], 0, 0.0);
         for &index in &self.network.lines {
@@ -709,7 +709,7 @@ impl<'a> Problem<'a> {
         worst
     }
 
-    /// Loads a softening network little by little, from nothing; the part of the loads that was reached. Beyond the limit strain
+    /// Loads a softening network in increments, from zero; returns the part of the loads that was reached. Beyond the limit strain
     /// the shape must change little from step to step: a jump is a segment that breaks.
     fn load_gradually(&self, state: &mut State, work: &mut Workspace) -> f64 {
         let mut increment: f64 = 0.25;
@@ -741,7 +741,7 @@ impl<'a> Problem<'a> {
         done
     }
 
-    /// The error of a network that came this far, if a segment is anywhere near its limit.
+    /// Error for a network that reached this part of the loads, if a segment is near its limit.
     fn limit_load(&self, state: &State, load_fraction: f64) -> Option<StaticsError> {
         let (over_limit, line, segment, strain) = self.strain_over_limit(state);
         let line = &self.model.lines[line];

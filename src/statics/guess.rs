@@ -15,7 +15,7 @@ pub(crate) struct Plane {
     pub along: Vector3<f64>,
     /// Horizontal distance [m].
     pub span: f64,
-    /// Height of B over A [m].
+    /// Height of B above A [m].
     pub rise: f64,
 }
 
@@ -33,12 +33,12 @@ impl Plane {
         }
     }
 
-    /// Place of a point of a catenary between the ends [m].
+    /// Position of a point of a catenary between the ends [m].
     pub(crate) fn place(&self, point: &catenary::Point) -> Vector3<f64> {
         self.a + point.x * self.along + point.z * Vector3::z()
     }
 
-    /// Places of the nodes of a line on its catenary [m].
+    /// Positions of the nodes of a line on its catenary [m].
     fn nodes(&self, line: &Line, solved: &Catenary) -> Vec<Vector3<f64>> {
         let arc = line.nodes.arc.iter();
         arc.map(|&s| self.place(&solved.at(s))).collect()

@@ -8,10 +8,10 @@ pub(crate) mod guess;
 pub mod modes;
 pub mod stiffness;
 
-/// Why no equilibrium was found.
+/// Reason for which no equilibrium was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
-    /// A softening strain measure carries no more.
+    /// A softening strain measure carries no more load.
     #[error(
         "line \"{line}\", segment {segment}: no stable equilibrium above {percent:.4} % of the loads: the stretch reaches \
          strain {strain:.4}, and this logarithmic measure carries less and less beyond strain {limit_strain:.4}; lower the load, \
@@ -98,7 +98,7 @@ pub enum StaticsError {
     /// An input is not a finite number.
     #[error("{place}: {value} m is not a finite position")]
     NotFinite {
-        /// Which input.
+        /// Name of the input.
         place: String,
         /// Value [m].
         value: f64,

@@ -1,11 +1,11 @@
 //! Natural frequencies and mode shapes of a network of lines about a state at rest.
 //!
 //! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent
-//! of statics: axial, geometric and bending stiffness of the lines, the seabed's springs where they touch, and the surface's where it is pierced. M is that of dynamics:
-//! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. M couples the axes of a node only, so that with the Cholesky factors
+//! of statics: axial, geometric and bending stiffness of the lines, the seabed's springs where they touch, and the surface's where it is pierced. M
+//! is that of dynamics: lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. M couples the axes of a node only, so that with the Cholesky factors
 //! M = L Lᵀ of its blocks L⁻¹ K L⁻ᵀ y = ω² y is as sparse as K, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
-//! Source: the linearised equation of motion of `elements`, reduced here; `tests/dynamics/analytic.rs` holds it against closed forms.
+//! Source: the linearised equation of motion of `elements`, reduced here; `tests/dynamics/analytic.rs` compares it with closed forms.
 //! Valid for motion small enough that no segment slackens and no node lands or lifts off. A slack segment has no stiffness and
 //! leaves modes of frequency 0. Beams have no tangent here.
 
@@ -21,7 +21,7 @@ use crate::physics::slender::Slender;
 /// Unknowns up to which the dense solver is used, for any number of modes [-].
 const DENSE_MAX: usize = 300;
 
-/// Why a network has no modes.
+/// Reason for which a network has no modes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModesError {
     /// A line is a beam.
@@ -55,7 +55,7 @@ pub enum ModesError {
 /// The modes of a network, lowest first.
 #[derive(Debug, Clone)]
 pub struct Modes {
-    /// Circular natural frequencies [rad/s]; 0 where nothing restores.
+    /// Circular natural frequencies [rad/s]; 0 without a restoring force.
     pub frequencies: Vec<f64>,
     nodes: Nodes,
     eigen: Eigen,
@@ -223,7 +223,7 @@ fn inverse_factor(mass: &Matrix3<f64>, axes: [bool; 3]) -> Option<Matrix3<f64>> 
     own.cholesky()?.l().try_inverse()
 }
 
-/// The error of a place that has no mass.
+/// Error for a place without mass.
 fn without_mass(model: &Model, network: &Network, places: &[Vec<Option<usize>>], place: usize) -> ModesError {
     let lines = network.lines.iter().zip(places);
     let mut found =

@@ -7,22 +7,22 @@
 //!
 //!   J (u − x) + c = 0 at every node between the ends and every free point,   δR = J (u − x) + c at the ends on the vessel,
 //!
-//! six solves for the free points. Every line is condensed on its ends once; a clamp that turns is a right-hand side. The force of the mooring is F = −R and
-//! its moment M = Σ r × F + m, so that
+//! which takes six solves for the free points. Every line is condensed on its ends once; a clamp that turns is a right-hand side. The force of the
+//! mooring is F = −R and its moment M = Σ r × F + m, so that
 //!
 //!   K δ = −δF = Σ δR,   −δM = Σ r × δR + (ω × r) × R − δm,
 //!
-//! the second term because the arms turn. The moment on a clamp of direction d is m = −d × g with g the slope of the energy of its
+//! the second term because the arms rotate. The moment on a clamp of direction d is m = −d × g with g the slope of the energy of its
 //! joint with d, and −δm = (ω × d) × g + d × δg.
 //!
-//! A network whose lines lie on closed-form catenaries takes the stiffness of those, seabed friction included, in
+//! A network whose lines lie on closed-form catenaries has the stiffness of those, including seabed friction, in
 //! place of J. Others have that of their elements: springs, weight, bending and the springs of the seabed; nodes that
-//! stick to it hold by their friction, and sliding nodes continue to slide. Drag, inertia and dampers are not
+//! stick to it are held by friction, and sliding nodes continue to slide. Drag, inertia and dampers are not
 //! included. Without friction the mooring is conservative: the parts of K that concern displacements are symmetric,
 //! and K − Kᵀ of the rotations is ω ↦ M × ω, since finite rotations do not commute.
 //!
 //! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the seabed has no lateral
-//! stiffness; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its axial stiffness then keep it in place. Beams have
+//! stiffness; anchoring springs of 10⁻¹⁵ to 10⁻⁹ of its axial stiffness then keep it in place. Beams have
 //! no tangent here.
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
@@ -33,7 +33,7 @@ use crate::math::block_banded::Pivots;
 use crate::model::{Body, End, Line, Model, Network, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
 
-/// Springs on every unknown, over the greatest axial stiffness of a segment [-]; each is tried where the one before did not do.
+/// Springs on every unknown, over the greatest axial stiffness of a segment [-]; each is tried if the previous one did not suffice.
 const ANCHORING: [f64; 4] = [0.0, 1e-15, 1e-12, 1e-9];
 
 /// Minus the change of force [N/m, N] and moment [N, N m] of the mooring on a vessel, about its `origin` [m], with displacement and
@@ -72,7 +72,7 @@ pub fn of_vessel(
     Some(sum)
 }
 
-/// The same of the points themselves that ride on it: their loads, and their weight less buoyancy.
+/// The same for the points that move with it: their loads, and their weight less buoyancy.
 fn of_own_weights(model: &Model, state: &State, vessel: usize, origin: Vector3<f64>) -> Matrix6<f64> {
     let mut sum = Matrix6::zeros();
     for &index in &model.vessels[vessel].points {
@@ -142,7 +142,7 @@ struct Clamp {
 }
 
 impl Clamp {
-    /// Of an end of a line; `None` where that is pinned.
+    /// Clamp of an end of a line; `None` where that is pinned.
     fn new(line: &Line, state: &State, index: usize, end: End) -> Option<Clamp> {
         let bending = line.bending.as_ref()?;
         let (node, side) = (line.end_node(end), usize::from(end == End::B));
@@ -199,7 +199,7 @@ struct CondensedLine {
     index: usize,
     /// Residual of the ends at rest [N].
     residual: [Vector3<f64>; 2],
-    /// Slopes of these with the places of the ends [N/m].
+    /// Slopes of these with the positions of the ends [N/m].
     stiffness: [[Matrix3<f64>; 2]; 2],
     /// Clamps on the vessel.
     clamps: Vec<Clamp>,

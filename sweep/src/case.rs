@@ -131,7 +131,7 @@ impl Case {
     }
 }
 
-/// Texts under the key `file`.
+/// Texts under keys named `file`.
 fn file_names(value: &Value, found: &mut Vec<String>) {
     match value {
         Value::Table(table) => {
@@ -325,7 +325,7 @@ impl<'b> Builder<'b> {
         })
     }
 
-    /// A file that CASES names, which stands relative to it.
+    /// A file that CASES names, relative to it.
     fn beside(&self, file: &str) -> PathBuf {
         let path = folder_of(&self.sheet.path).join(file);
         std::path::absolute(&path).unwrap_or(path)
@@ -348,7 +348,7 @@ impl<'b> Builder<'b> {
         Err(vec![mistake("", problem, &draft.span)])
     }
 
-    /// Mistakes in the scene of a case at the cells that they follow from.
+    /// Mistakes in the scene of a case, located at the cells that cause them.
     fn located(&self, draft: &Draft, error: LoadError) -> Vec<SceneError> {
         let LoadError::Scene { mistakes, .. } = error else {
             return vec![mistake("", error.to_string(), &draft.span)];
@@ -381,7 +381,7 @@ impl<'b> Builder<'b> {
     }
 }
 
-/// Returns whether a key path is another one or leads on from it.
+/// Returns whether a key path is another one or continues it.
 fn is_within(path: &str, holder: &str) -> bool {
     let rest = path.strip_prefix(holder);
     rest.is_some_and(|rest| holder.is_empty() || rest.is_empty() || rest.starts_with(['.', '[']))

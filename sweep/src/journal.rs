@@ -1,8 +1,8 @@
 //! Rows of a sweep as they come, so that it can be killed at any moment.
 //!
-//! Bytes: a mark with the version, then records, each with its length, the SHA-256 of its body and the body in postcard. The first record says
-//! which sweep it is. A record is appended in one write; one that is cut short or damaged, and all behind it, is removed when the
-//! journal is opened, and its cases run again.
+//! Bytes: a mark with the version, then records, each with its length, the SHA-256 of its body and the body in postcard. The first record identifies the
+//! sweep. A record is appended in one write; one that is truncated or damaged, and all after it, is removed when the journal is opened, and its cases run
+//! again.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -41,7 +41,7 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// One number of all.
+    /// One hash of all of them.
     pub(crate) fn fingerprint(&self) -> [u8; SUM] {
         let parts = [&self.scenes[..], &self.files, &self.options].concat();
         Sha256::digest(parts).into()
@@ -62,7 +62,7 @@ impl Identity {
     }
 }
 
-/// A record behind the first.
+/// A record after the first.
 #[derive(Debug, Serialize, Deserialize)]
 enum Record {
     /// The next list of quantities that rows refer to.
@@ -137,7 +137,7 @@ impl Journal {
         Ok((journal, rows))
     }
 
-    /// Writes the beginning of a journal over one of which there is nothing but a part of it.
+    /// Writes the beginning of a journal over an incomplete one.
     fn begin(&mut self, identity: &Identity, found: &[u8]) -> Result<(), SweepError> {
         if !MARK.as_bytes().starts_with(found) {
             return Err(SweepError::Other {
@@ -155,7 +155,7 @@ impl Journal {
             .map_err(|error| self.failure(error))
     }
 
-    /// Rows of the whole records; `rest` is then what is behind them.
+    /// Rows of the whole records; `rest` is then the bytes after them.
     fn rows(&mut self, rest: &mut &[u8], cases: &[Case]) -> Vec<Row> {
         let mut lists: Vec<Arc<Vec<Quantity>>> = Vec::new();
         let mut rows: Vec<Row> = Vec::new();
@@ -225,7 +225,7 @@ fn framed(record: &impl Serialize) -> Vec<u8> {
     [&length.to_le_bytes()[..], &Sha256::digest(&body), &body].concat()
 }
 
-/// The first record, and the bytes behind it; `None` where it is not whole.
+/// The first record, and the bytes after it; `None` if it is not whole.
 fn first<T: DeserializeOwned>(bytes: &[u8]) -> Option<(T, &[u8])> {
     let (length, rest) = bytes.split_at_checked(LENGTH)?;
     let length = u32::from_le_bytes(length.try_into().ok()?) as usize;

@@ -94,7 +94,7 @@ impl Place {
         self.steps.last() == Some(&Step::Key("file".to_string()))
     }
 
-    /// Sets the value in a document of the same lists; tables that are missing are made. A motion that becomes a file is nothing else.
+    /// Sets the value in a document of the same lists; tables that are missing are made. A motion that becomes a file loses its other keys.
     pub(crate) fn set(&self, document: &mut Value, new: Value) {
         let Some((last, above)) = self.steps.split_last() else {
             return;
@@ -281,7 +281,7 @@ fn names<'d>(document: &'d Value, list: &str) -> impl Iterator<Item = &'d str> {
         .filter_map(|part| part.get("name").and_then(Value::as_str))
 }
 
-/// Path of the first key of a name, or called so elsewhere, in the tables below one.
+/// Path of the first key with this name, here or in other programs, in the tables below one.
 fn below(schema: &Schema, above: &str, name: &str, depth: usize) -> Option<String> {
     let lower = name.to_lowercase();
     let is_called = |key: &&moorline::scene::table::Key| {

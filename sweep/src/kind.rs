@@ -1,10 +1,10 @@
 //! Kinds of systems: cases that share a discretisation.
 //!
-//! Trials select elements, integrator and step ([`moorline::discretisation`]); they cost about a second, as much as many a case. Cases are of one
-//! kind if their scenes differ in nothing but seas, current, motions (of the same bodies) and title: lines, types, depth, solver, duration and
-//! interval are the same. The error of a mesh depends on the motion too, so the choice of a kind is made for the extremes of its cases:
-//! those of the greatest displacement, speed and acceleration of supports and water, at most three and often one. Of each network the greatest
-//! number of elements is taken ([`finest`]). Cases that differ in seeds alone are equally severe, and the first stands for all.
+//! Trials select elements, integrator and step ([`moorline::discretisation`]); they cost about a second, as much as many cases do. Cases are of one kind if
+//! their scenes differ in nothing but seas, current, motions (of the same bodies) and title: lines, types, depth, solver, duration and interval are the
+//! same. The error of a mesh depends on the motion too, so the choice of a kind is made for the extremes of its cases: those of the greatest displacement,
+//! speed and acceleration of supports and water, at most three and often one. For each network the greatest number of elements is taken ([`finest`]). Cases
+//! that differ in seeds alone are equally severe, and the first one represents all.
 
 use std::sync::OnceLock;
 
@@ -96,7 +96,7 @@ pub(crate) fn on_one_thread(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Place of the case of the greatest value of a measure; of those, of the next measure, and then the first.
+/// Index of the case with the greatest value of a measure; among equal ones, of the next measure, and then the first.
 fn extreme(cases: &[(Severity, &Input)], measure: usize) -> Option<usize> {
     let order = |place: &usize| [0, 1, 2].map(|i| cases[*place].0[(measure + i) % 3]);
     let later = |a: &usize, b: &usize| {

@@ -176,7 +176,7 @@ fn quantities<'r>(rows: &[&'r Row]) -> (Vec<&'r Quantity>, HashMap<&'r Quantity,
     (list, places)
 }
 
-/// Form and values of the column of a key: numbers, or texts where any value is none.
+/// Form and values of the column of a key: numbers, or texts where any value is not a number.
 fn of_values<'v>(values: impl Iterator<Item = Option<&'v Value>> + Clone) -> (Form, Vec<f64>) {
     let number = |value: &Value| {
         value

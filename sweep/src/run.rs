@@ -85,7 +85,7 @@ pub(crate) fn run(
         done?;
         run.results()
     };
-    // a mistake of ours in one case must not end the others
+    // a panic in one case must not end the others
     let results = catch_unwind(AssertUnwindSafe(&mut work));
     let results = match results.unwrap_or_else(|panic| Err(Ended::Failed(bug(panic.as_ref())))) {
         Ok(results) => Ok(results),

@@ -12,7 +12,7 @@ use moorline::scene::{LoadError, SceneError, is_toml, read_text};
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-/// Most cases of a sweep [-].
+/// Greatest number of cases of a sweep [-].
 const CASES_MAX: usize = 1_000_000;
 /// Key of the blocks of cases in TOML.
 const BLOCKS: &str = "cases";
@@ -179,7 +179,7 @@ fn draft(row: &Row<'_>, separator: char, columns: &[Column]) -> Result<Draft, Sc
     })
 }
 
-/// The cells of a row without blanks around them, each with its bytes; quotes hold separators, and two of them are one.
+/// The cells of a row without blanks around them, each with its bytes; quotes may contain separators, and a doubled quote is one.
 fn cells(row: &Row<'_>, separator: char) -> Result<Vec<(String, Range<usize>)>, SceneError> {
     let mut cells = Vec::new();
     let (mut cell, mut is_quoted, mut begin) = (String::new(), false, 0);

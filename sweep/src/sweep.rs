@@ -109,7 +109,7 @@ impl Sweep {
         let is_broken = AtomicBool::new(false);
         let ends = || stops() || is_broken.load(Ordering::Relaxed);
         let state = Mutex::new(State::new(self));
-        // one by one from a queue: a core that is free takes the next case
+        // one by one from a queue, so that a free core takes the next case
         left.into_iter().par_bridge().for_each(|number| {
             let case = &cases[number - 1];
             let outcome = match ends() {

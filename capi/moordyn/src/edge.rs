@@ -288,7 +288,7 @@ pub(crate) fn wave_number(frequency: f64, gravity: f64, depth: f64) -> f64 {
     found.and_then(Result::ok).unwrap_or(f64::NAN)
 }
 
-/// Turns messages in the console off or on, of a system and of those that come.
+/// Turns messages in the console off or on, for a system and for later ones.
 pub(crate) fn disable_console(system: MoorDyn, is_disabled: bool) {
     IS_CONSOLE_DISABLED.store(is_disabled, Ordering::Relaxed);
     let level = if is_disabled { NONE } else { MESSAGE };
@@ -372,7 +372,7 @@ pub(crate) unsafe fn copy_text(text: &str, target: *mut c_char, room: *mut usize
     }
 }
 
-/// Copies words to a host that asked for their number before; none where the target is null.
+/// Copies words to a host that requested their number before; none where the target is null.
 ///
 /// # Safety
 /// A target that is not null has room for them.

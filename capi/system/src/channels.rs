@@ -24,7 +24,7 @@ const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
 /// Part of an interval by which a row may come early [-].
 const EARLY: f64 = 1e-6;
 
-/// What letters of a line's row ask for, in the order of the columns: letter, ending of the names, unit.
+/// Groups requested by the letters of a line's row, in the order of the columns: letter, ending of the names, unit.
 const LETTERS: [(char, Group, &str, &str); 10] = [
     ('p', Group::Node(Quantity::Position), "p", "(m)"),
     ('K', Group::Curvature, "Ku", "(1/m)"),
@@ -38,7 +38,7 @@ const LETTERS: [(char, Group, &str, &str); 10] = [
     ('b', Group::Node(Quantity::Seabed), "b", "(N)"),
 ];
 
-/// Columns that one letter asks for.
+/// Columns that one letter requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Group {
     /// A vector of every node.
@@ -132,7 +132,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Begins the files that a deck asks for; none where it disables them or asks for nothing.
+    /// Begins the files that a deck requests; none where it disables them or requests nothing.
     ///
     /// # Errors
     /// The operating system refuses a file.
@@ -210,7 +210,7 @@ fn main_table(deck: &Deck, simulation: &Simulation) -> Outcome<Option<(Channels,
     Ok(Some((channels, table)))
 }
 
-/// Groups of a line's letters; letters that ask for what is not written are said in the log.
+/// Groups of a line's letters; letters that request output that is not written are logged.
 fn groups(letters: &str, number: usize, simulation: &Simulation, log: &mut Log) -> Vec<Group> {
     let lines = &simulation.model().lines;
     let line = lines.iter().find(|line| line.name == format!("line{number}"));

@@ -45,7 +45,7 @@ impl Deck {
     /// Reads a deck.
     ///
     /// # Errors
-    /// The file cannot be read, has mistakes, or asks for something that is not modelled.
+    /// The file cannot be read, has mistakes, or requests something that is not modelled.
     pub fn read(path: &Path, settings: &Settings) -> Outcome<Deck> {
         let loaded = load(path).map_err(|error| refusal(&error))?;
         if loaded.format.contains("MAP++") || loaded.format == moorline::scene::TOML {
@@ -104,7 +104,7 @@ impl Deck {
     }
 }
 
-/// Refuses what a host would count otherwise than the scene does.
+/// Refuses a deck whose objects a host would count differently from the scene.
 fn check(lists: &Lists, scene: &Scene) -> Outcome {
     if lists.is_of_farm {
         return Err(Failure::missing(
@@ -169,7 +169,7 @@ fn other_laws(scene: &Scene) -> Vec<&'static str> {
     laws.into_iter().filter(|law| law.0).map(|law| law.1).collect()
 }
 
-/// Remarks on tables of tension that MoorDyn reads otherwise: it skips three lines without reading them.
+/// Remarks on tables of tension that MoorDyn reads differently: it skips three lines without reading them.
 fn rows_of_tables(scene: &Scene, deck: &Path) -> Vec<String> {
     let tables = scene
         .line_types

@@ -135,7 +135,7 @@ impl System {
     /// Keeps the name of a time scheme.
     ///
     /// # Errors
-    /// A name that is none of such schemes.
+    /// A name that is not one of these schemes.
     pub fn set_scheme(&mut self, name: &str) -> Outcome {
         let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
         if !SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(stem)) {
@@ -151,8 +151,7 @@ impl System {
     /// Breaks a line off a point, by their order in the deck. It holds from the next step on.
     ///
     /// # Errors
-    /// The line does not end at the point, the system was not started, or the release of the line needs another integrator than the one that
-    /// is running.
+    /// The line does not end at the point, the system was not started, or the release of the line needs an integrator other than the present one.
     pub fn break_line(&mut self, point: usize, line: usize) -> Outcome {
         self.line(line)?;
         let attached = self.point_attached(point)?;

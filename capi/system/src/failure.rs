@@ -1,4 +1,4 @@
-//! Reasons why a call fails, with the numbers that such hosts know.
+//! Reasons why a call fails, with the numbers that such hosts use.
 
 /// Kind of a failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -36,7 +36,7 @@ pub enum Quantity {
     Water,
 }
 
-/// A line of a simulation with everything about it.
+/// A line of a simulation with its model, state and water.
 struct View<'a> {
     simulation: &'a Simulation,
     model: &'a Model,

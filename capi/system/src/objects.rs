@@ -185,8 +185,8 @@ impl System {
         Ok(self.simulation()?.state().points[point])
     }
 
-    /// Force on a point of its lines and of itself, without the inertia of nodes and point [N]; with it where the settings want reactions and
-    /// the point is not free.
+    /// Force on a point of its lines and of itself, without the inertia of nodes and point [N]; with it where the settings request reactions and the point
+    /// is not free.
     ///
     /// # Errors
     /// As [`System::point_state`].

@@ -3,7 +3,7 @@
 //! Words: mark, number of bytes of the body, FNV-1a of the words of the body; then the body, filled up with zeros. The body holds the SHA-256 of
 //! the deck's scene, the start and the snapshot of the simulation, so that a state of another deck is refused.
 //!
-//! Source of the check sum, which finds damage and no intent: Fowler, Noll & Vo, 64 bits, here over words.
+//! Source of the check sum, which detects damage but not tampering: Fowler, Noll & Vo, 64 bits, here over words.
 
 use std::path::Path;
 

@@ -16,7 +16,7 @@ use crate::log::{Log, MESSAGE, WARNING};
 use crate::saved::check_sum;
 use crate::settings::{Force, Path as HostPath, Settings};
 
-/// Difference between the host's clock and that of the simulation that is rounding [s].
+/// Difference between the clocks of the host and the simulation that counts as rounding [s].
 const CLOCK_TOLERANCE: f64 = 1e-6;
 
 /// Words of remarks of the reader that do not hold behind this interface, which has MoorDyn's laws and files of single lines.
@@ -52,9 +52,9 @@ pub struct System {
     pub deck: Deck,
     /// Messages.
     pub log: Log,
-    /// Name of the time scheme, of the deck or the host; nothing follows from it.
+    /// Name of the time scheme, of the deck or the host; it has no effect.
     pub scheme: String,
-    /// Courant number of the deck or the host [-]; nothing follows from it.
+    /// Courant number of the deck or the host [-]; it has no effect.
     pub cfl: f64,
     /// Internal step of the deck or the host [s].
     pub dt: f64,
@@ -228,8 +228,8 @@ impl System {
         }
     }
 
-    /// Steps from the host's time `t` to `t + dt` [s] with coupled positions `x` [m, rad] at its start, which move by `xd` [m/s, rad/s] all the
-    /// time. A step of 0 s changes nothing.
+    /// Steps from the host's time `t` to `t + dt` [s] with coupled positions `x` [m, rad] at its start, which move by `xd` [m/s, rad/s] throughout. A step
+    /// of 0 s changes nothing.
     ///
     /// # Errors
     /// Arguments that cannot be used, or a step that fails; the state is then that before the call.
@@ -407,7 +407,7 @@ impl System {
     }
 }
 
-/// Roll, pitch and yaw in moorline's order of those of a host [rad], nearest to others [rad].
+/// Roll, pitch and yaw in moorline's order from those of a host [rad], nearest to others [rad].
 pub(crate) fn host_angles(angles: &[f64], near: Vector3<f64>) -> Vector3<f64> {
     let rotation = AngleOrder::Xyz.rotation(Vector3::from_row_slice(angles));
     AngleOrder::Zyx.angles(&rotation, near)

@@ -17,7 +17,7 @@ pub struct Flow {
     pub elevation: f64,
 }
 
-/// Sentence of everything that needs water from a host.
+/// Message for every call that needs water from a host.
 pub const NO_HOST_WATER: &str = "water kinematics that the host gives are not modelled: give waves and currents in the deck \
      (WaveKin 7 or 0, Currents 1 or 0)";
 

@@ -1,4 +1,4 @@
-//! What the tests of both C libraries share: headers, compilers, the libraries that Cargo built.
+//! Shared parts of the tests of both C libraries: headers, compilers, the libraries that Cargo built.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 use std::collections::BTreeSet;

@@ -313,7 +313,7 @@ fn node(cells: &mut Cells<'_, '_>) -> Node {
     }
 }
 
-/// A number with or without the sign that it is to be found; nothing but the sign is zero.
+/// A number with or without the mark `#` of an unknown; the mark alone means zero.
 fn iterated(cells: &mut Cells<'_, '_>, column: usize) -> Placed<f64> {
     let text = cells.fields[column].text;
     let value = match text.strip_prefix('#') {
@@ -395,7 +395,7 @@ fn options(section: &Section<'_>, deck: &mut Deck, findings: &mut Findings) {
     }
 }
 
-/// Checks that numbers and names differ, and that lines name what there is.
+/// Checks that numbers and names differ, and that lines refer to existing nodes and line types.
 fn check_numbers(deck: &Deck, findings: &mut Findings) {
     check_unique(deck.nodes.iter().map(|node| &node.id), "node", findings);
     check_unique(

@@ -423,7 +423,7 @@ fn output(deck: &Deck, draft: &mut Draft<'_>) {
     }
 }
 
-/// A line type with what resists the stretch of a line.
+/// A line type with the properties that resist the stretch of a line.
 fn stretch(kind: &LineType) -> scene::LineType {
     let mut line_type = scene::LineType::default();
     let (slow, damping) = match &kind.damping.value {

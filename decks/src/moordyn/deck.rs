@@ -63,7 +63,7 @@ impl Deck {
     }
 }
 
-/// A stiffness or damping: a number, or what else its column takes.
+/// A stiffness or damping: a number, or another entry that its column accepts.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Property {
     /// A number, in the unit of its column.
@@ -100,7 +100,7 @@ pub(super) struct LineType {
     pub lift: Option<Placed<f64>>,
 }
 
-/// A row of ROD TYPES; its numbers are read and serve nothing yet.
+/// A row of ROD TYPES; its numbers are read but not used yet.
 #[derive(Debug)]
 pub(super) struct RodType {
     pub name: Placed<String>,
@@ -184,7 +184,7 @@ pub(super) struct Line {
     pub length: Placed<f64>,
     /// NumSegs.
     pub segments: Placed<usize>,
-    /// Letters that ask for a file of the line's own.
+    /// Letters that request a separate file for the line.
     pub outputs: Placed<String>,
 }
 

@@ -38,7 +38,7 @@ pub struct LineRow {
     pub number: usize,
     /// Number of segments.
     pub segments: usize,
-    /// Letters that ask for a file of the line's own.
+    /// Letters that request a separate file for the line.
     pub outputs: String,
 }
 

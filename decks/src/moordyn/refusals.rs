@@ -1,4 +1,4 @@
-//! Refusals of what a deck can ask for and moorline cannot model: a function for every feature, so that each can be opened by itself.
+//! Refusals of features that a deck can have and moorline cannot model: a function for every feature, so that each can be lifted by itself.
 
 use moorline::scene::rows::shown;
 
@@ -112,7 +112,7 @@ fn bodies(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Points with pins, and on bodies that there are not.
+/// Pinned points, and points on bodies that do not exist.
 fn points(deck: &Deck, findings: &mut Findings) {
     for point in &deck.points {
         let problem = match point.attachment.value {

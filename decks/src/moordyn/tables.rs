@@ -400,7 +400,7 @@ fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
     let word = cells.fields[column].text;
     let (letters, id, tail) = decomposed(word);
     let pinned = ["PINNED", "PIN"].contains(&tail.as_str());
-    // The numbers behind these mean nothing.
+    // The numbers after these have no meaning.
     let unnumbered = match letters.as_str() {
         "FIXED" | "FIX" | "ANCHOR" => Some((Attachment::Fixed, "Fixed")),
         "COUPLED" | "CPLD" => Some((Attachment::Coupled, "Coupled")),

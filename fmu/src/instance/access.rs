@@ -128,7 +128,7 @@ impl Instance {
         })
     }
 
-    /// Refusal of an access to variables with room for another number of values than they have.
+    /// Refusal of an access whose number of values differs from that of the variables.
     #[cold]
     fn wrong_count(&self, references: &[u32], count: usize) -> Refusal {
         let size = |&reference: &u32| self.interface.variable(reference).map_or(1, Variable::size);
@@ -270,9 +270,8 @@ impl Instance {
         Refusal(format!("{}: {problem}", variable.name))
     }
 
-    /// Time derivatives of inputs (FMI 2.0). The first derivative of a displacement is its velocity; that of a velocity
-    /// is taken note of and not used, since the path through the communication points has its own. Neither are those of the flow of the water,
-    /// whose accelerations are inputs.
+    /// Time derivatives of inputs (FMI 2.0). The first derivative of a displacement is its velocity. That of a velocity is accepted but not used, since the
+    /// path through the communication points has its own. Those of the flow of the water, whose accelerations are inputs, are not used either.
     pub(crate) fn set_input_derivatives(
         &mut self,
         references: &[u32],
@@ -314,7 +313,7 @@ impl Instance {
     }
 }
 
-/// Variables with their values, when the numbers of both are checked.
+/// Variables with their values, after the numbers of both are checked.
 fn with_values<'a>(
     interface: &'a Interface,
     references: &'a [u32],

@@ -1,4 +1,4 @@
-//! Derivatives of outputs: by the motion of the bodies at the end of the last step, and in time.
+//! Derivatives of outputs with respect to the motion of the bodies at the end of the last step, and to time.
 //!
 //! Sources: FMI 2.0.4 section 2.1.9 and 4.2.2, FMI 3.0.2 section 2.2.11 and 4.2. Unknowns and knowns are the outputs and inputs of
 //! [`Interface::derivative`].
@@ -28,7 +28,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Derivatives by the knowns of the sum of the unknowns times `seed`.
+    /// Derivatives of the sum of the unknowns times `seed` with respect to the knowns.
     pub(crate) fn adjoint_derivative(
         &mut self,
         unknowns: &[u32],
@@ -64,7 +64,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Gives the columns of the derivatives of unknowns, of `size` values, by each known to `take`.
+    /// Passes the columns of the derivatives of unknowns, of `size` values, with respect to each known to `take`.
     fn for_columns(
         &mut self,
         unknowns: &[u32],
@@ -94,10 +94,10 @@ impl Instance {
     }
 }
 
-/// Reason for which there is nothing to differentiate.
+/// Reason why there is nothing to differentiate.
 const NO_SIMULATION: &str = "out of order: derivatives are available from initialization mode on";
 
-/// Refuses another number of values than there are.
+/// Refuses a wrong number of values.
 fn count(what: &str, given: usize, wanted: usize) -> Outcome {
     match given == wanted {
         true => Ok(()),

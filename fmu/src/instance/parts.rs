@@ -39,7 +39,7 @@ impl Parts {
 }
 
 impl Instance {
-    /// Keeps which variables the host accesses within steps; it is called there if it announces all displacements and all of the flow.
+    /// Records which variables the host accesses within steps; its callback is used if it announces all displacements and all of the flow.
     pub(crate) fn announce(&mut self, references: &[u32]) {
         let mut rows = self.interface.variables().iter().enumerate();
         self.is_updated = !references.is_empty()
@@ -54,7 +54,7 @@ impl Instance {
     /// Divides a communication step of a length from a time [s].
     ///
     /// # Errors
-    /// In an update by the host.
+    /// During an update by the host.
     pub(crate) fn divide(&self, start: f64, length: f64) -> Result<Parts, Refusal> {
         self.expect_no_update()?;
         let divides = self.is_updated

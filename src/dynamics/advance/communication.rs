@@ -23,7 +23,7 @@ const PARTS_MAX: f64 = 1e5;
 /// Greatest number of retries of a failed step with half the internal step [-].
 const RETRIES_MAX: u32 = 6;
 
-/// Refuses a communication step of `length` [s] that has taken `passed` [s] of it in too many internal steps.
+/// Refuses a communication step of `length` [s] that needed too many internal steps for the first `passed` [s].
 pub(super) fn within_guard(
     model: &Model,
     time: f64,
@@ -113,7 +113,7 @@ pub(super) struct Communication<'a, H> {
     pub(super) winch_paths: &'a [AxisPath],
     /// True if the leapfrogs hold the state.
     pub(super) holds: bool,
-    /// True if held points may start at another place than the last step ended at.
+    /// True if held points may start at a position other than the end of the last step.
     pub(super) jumps: bool,
 }
 
@@ -154,7 +154,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
             work.set_water(model, self.start);
             let (mut longest, bound) = K::longest_step(work, model, choice, [self.start, self.length]);
             if retry > 0 {
-                longest = longest.min(choice.step_max); // a snap came
+                longest = longest.min(choice.step_max); // a snap occurred
             }
             let count = self.substeps(network.lines[0], longest, retry)?;
             let drift = self.length / count as f64;
@@ -336,7 +336,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         self.substeps(line, longest, 0).map(drop)
     }
 
-    /// Equal steps no longer than `step_max` [s], halved `retry` times, of the network with a line.
+    /// Number of equal steps no longer than `step_max` [s], halved `retry` times, of the network with a line.
     fn substeps(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
         if self.length <= step_max {
             return Ok(1 << retry);
@@ -347,7 +347,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
     /// [`Self::substeps`] where one is too long.
     #[inline(never)]
     fn several(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
-        // a span of exactly one limit must not become two steps by rounding
+        // a step equal to the limit must not be split in two by rounding
         let count = self.length / step_max * (1.0 - 1e-9);
         if count <= SUBSTEPS_MAX {
             let whole = count as usize; // rounded down

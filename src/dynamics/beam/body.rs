@@ -1,8 +1,8 @@
 //! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and the seabed under it.
 //!
-//!   −w − B (1 − s̄)     weight w under water, buoyancy B of the whole, s̄ the mean of its wetted part over its way: the discrete
+//!   −w − B (1 − s̄)     weight w under water, buoyancy B of the whole, s̄ the mean of its wetted part over its path: the discrete
 //!                      gradient of the potential, so that the water's surface conserves energy
-//!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its way
+//!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its path
 //!   F                  of the seabed, as in `physics::contact_step`
 //!
 //! The mass over the step follows from the submergence at the extrapolated middle of the step.
@@ -34,7 +34,7 @@ pub(super) struct BodyStep {
     drag: Vector3<f64>,
     /// Force of the seabed, upwards [N].
     push: f64,
-    /// −∂f/∂φ₁ of all [N/m].
+    /// −∂f/∂φ₁ of all forces [N/m].
     pub(super) slope: Matrix3<f64>,
 }
 
@@ -68,7 +68,7 @@ impl Body<'_> {
         step
     }
 
-    /// Energy that crosses the boundary on a path [m] through a step of a length [s].
+    /// Energy that crosses the boundary along a path [m] over a step of a length [s].
     pub(super) fn flow(&self, step: &BodyStep, moved: &Vector3<f64>, length: f64) -> Flow {
         let drift = length * self.water;
         Flow {

@@ -11,7 +11,7 @@ use crate::physics::section::{Section, join};
 /// Factorised tangents, and the energy that crossed the boundary.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Driven {
-    /// Tangents that were factorised.
+    /// Number of factorised tangents.
     pub solves: usize,
     /// External work and dissipation.
     pub flow: Flow,
@@ -119,12 +119,12 @@ pub fn held(model: &Model, line: &Line) -> [[bool; 6]; 2] {
     })
 }
 
-/// Attitude of a held point over its reference.
+/// Attitude of a held point relative to its reference.
 pub fn attitude(k: &Kinematics) -> Matrix3<f64> {
     k.orientation.to_rotation_matrix().into_inner()
 }
 
-/// Moves free points to their ends.
+/// Moves free points to their ends of the beam.
 fn carry_free_points(model: &Model, index: usize, state: &mut State) {
     let line = &model.lines[index];
     let shape = &state.lines[index];

@@ -142,7 +142,7 @@ impl<'a> BeamView<'a> {
         (moment - moment.dot(&tangent) * tangent).norm()
     }
 
-    /// Curvature at a node beyond that of the rest shape [1/m]: its bending moment over the bending stiffness there.
+    /// Curvature at a node in excess of that of the rest shape [1/m]: its bending moment over the bending stiffness there.
     pub fn curvature(&self, node: usize) -> f64 {
         let last = self.beam.elements.len() - 1;
         let adjacent = [node.saturating_sub(1), node.min(last)];

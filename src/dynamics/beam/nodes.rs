@@ -69,7 +69,7 @@ impl FourNodes {
     }
 }
 
-/// Takes the spins in the solution of the linear system to changes of θ; returns the squares of the greatest changes of position [m²] and of θ [-].
+/// Converts the spins in the solution of the linear system to changes of θ; returns the squares of the greatest changes of position [m²] and of θ [-].
 pub(super) struct Changes<'a>(pub &'a mut BeamWork);
 
 impl NullaryFnOnce for Changes<'_> {
@@ -168,7 +168,7 @@ impl NullaryFnOnce for SetNodes<'_> {
     }
 }
 
-/// Sets forces and moments on nodes. As a call, it does not break the vectors of the caller into numbers.
+/// Sets forces and moments on nodes. Not inlined, so that the vectors of the caller are not split into scalars.
 #[inline(never)]
 fn set_right(right: &mut [Sextuple], [force, moment]: &Pair<Vectors>) {
     for (lane, right) in right.iter_mut().take(LANES).enumerate() {

@@ -7,11 +7,11 @@
 //!   ¼ (v'ᵀ(M' − M)v' + vᵀ(M' − M)v),   due to masses that turn with their line or enter the water, and
 //!   (r' − r)·inertia − ½ (v + v')·½(M + M')(v' − v),   the dissipation of the scheme.
 //!
-//! On each joint and weight that changes the scheme dissipates (½ − α_f)(s' − s)·(r' − r), with the resistance s: the
-//! work of its weights beyond the mean of both. Segments pull by the discrete gradient of their energy in place of
-//! that mean ([`crate::physics::stretch_step`]): its work is stored or dissipated to the last bit, and (½ − α_f)(N'
-//! q' − N q)·(d' − d) is algorithmic dissipation. Over all of a linear system without external work these sums are
-//! not negative; with external work they may have either sign. The work of the mean on joints and surfaces beyond the
+//! On each joint, and each weight that changes, the scheme dissipates (½ − α_f)(s' − s)·(r' − r), with the resistance
+//! s: the work of the weighted forces beyond their mean. The tension of segments is the discrete gradient of their
+//! energy in place of that mean ([`crate::physics::stretch_step`]): its work is stored or dissipated to the last bit,
+//! and (½ − α_f)(N' q' − N q)·(d' − d) is algorithmic dissipation. Summed over a linear system without external work,
+//! these terms are not negative; with external work they may have either sign. The work of the mean on joints and surfaces beyond the
 //! stored energy is the error of the integration.
 //!
 //! Source: the discrete balance of Newmark's approximations, as in Krenk (2006), Comput. Methods Appl. Mech. Eng. 195, 6110-6124.
@@ -77,7 +77,7 @@ struct Side<'a> {
     passed: &'a Passed<'a>,
     state: &'a State,
     t: f64,
-    /// Weight of friction over that of the other forces [-].
+    /// Weight of friction relative to that of the other forces [-].
     friction: f64,
 }
 
@@ -293,7 +293,7 @@ impl Side<'_> {
         let after = &self.passed.states[1].lines[index];
         let [a, b] = [End::A, End::B].map(|end| line.is_held(model, after, end));
         let mut flow = Flow::default();
-        let damped = if shape.viscoelastic.is_empty() { n } else { 0 }; // a memory has its dampers in what is taken over the step
+        let damped = if shape.viscoelastic.is_empty() { n } else { 0 }; // viscoelastic dampers are part of the dissipation over the step
         for i in 0..damped {
             let segment = stretched(line, shape, i);
             let damping = tension(line, shape, i, negative) - segment.spring.tension;

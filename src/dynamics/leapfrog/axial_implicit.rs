@@ -4,48 +4,49 @@
 //!
 //! T̄ = σ[T^{n+1} + (2ρ+b)T^n + (ρ²+2ρb)T^{n−1} + ρ²b T^{n−2}]/N + (1−σ)T^n,  b = (1−ρ)/(2ρ),  N = (1+ρ)²(1+b),
 //!
-//! second order. In z, which takes a step to the next, the first part is (z + ρ)²(z + b)/(N z²) T^n: averaged throughout, σ = 1, the motion
+//! second order. In z, the shift by one step, the first part is (z + ρ)²(z + b)/(N z²) T^n: with full averaging, σ = 1, the motion
 //! is multiplied by −ρ and −b at infinite frequency, and the spectral radius is ρ as long as b ≤ ρ, that is from ρ = ½, which damps most, to
-//! ρ = 1 (¼, ½, ¼). Below ½ it rises again, and below ⅓ it is more than 1. Averaging makes waves late by (3σ−1)(ωΔt)²/24, and up to ωΔt = 2 they are stable
-//! without. So σ is max(⅓, 1 − 3.2/(ωΔt)²) with the line's greatest axial frequency ω, which is stable for all ρ from ½ to 1; it is 1 where springs may stiffen
-//! or viscoelastic, or an end is released. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
+//! ρ = 1 (¼, ½, ¼). Below ½ it rises again, and below ⅓ it exceeds 1. Averaging delays waves by (3σ−1)(ωΔt)²/24, and up to ωΔt = 2 they are stable
+//! without it. Hence σ is max(⅓, 1 − 3.2/(ωΔt)²) with the line's greatest axial frequency ω, which is stable for all ρ from ½ to 1; it is 1 where
+//! springs may stiffen or are viscoelastic, or an end is released. The new strain is linear in the new velocity,
+//! ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
 //! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)],  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
 //!
-//! S being the springs' tension as if they pushed too, C the dampers' over the step, b₁ = σ/N the weight of T^{n+1} and h_i those of the tensions before. Dampers
-//! draw segments before they are taut, and what is averaged is max(0, S + C): a spring that pushes is remembered where the damper pulls more. (Averaging
-//! max(0, S) and adding C goes to b₁S + C there, however short the steps are.) θ = 0.2 min(1, r/4), where r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) says how
-//! hard the dampers are over a step: of second order, and no ringing of those that are. A row is off where the total would be negative. Eliminating v by
-//! the nodes' momentum leaves one scalar tridiagonal system in T̄.
+//! with S the springs' tension as if they also pushed, C that of the dampers over the step, b₁ = σ/N the weight of T^{n+1} and h_i those of the
+//! earlier tensions. Dampers pull before segments are taut, and max(0, S + C) is averaged: a spring that pushes is included where the damper pulls
+//! more. (Averaging max(0, S) and adding C tends to b₁S + C there, however short the steps are.) θ = 0.2 min(1, r/4), where
+//! r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) is the stiffness of the dampers over a step: second order, without ringing of stiff dampers. A row is
+//! inactive where the total would be negative. Eliminating v by the nodes' momentum leaves one scalar tridiagonal system in T̄.
 //!
-//! A segment of a line that bends pushes with up to P ([`super::joints`]). Its tensions are counted from −P: S, T and T̄ stand for what they are greater by,
-//! and −P q acts on the nodes with the forces of the joints. As the weights sum to one, that is a spring of another length and nothing else.
+//! A segment of a line that bends pushes with up to P ([`super::joints`]). Its tensions are measured from −P: S, T and T̄ stand for their excess over −P,
+//! and −P q acts on the nodes with the forces of the joints. As the weights sum to one, this is equivalent to a spring of another length.
 //!
-//! Springs whose tension is not proportional to strain are laid along the tangent of their curve where the segments are about to come to, and after each pass
-//! where they came to, until the tension there is that of the curve: along the tangent at t_n a rope that stiffens would be held, as it snaps taut, by the
-//! slope of its first pull.
+//! Springs whose tension is not proportional to strain are linearised at the strain that the segments are expected to reach, and after each pass at the strain
+//! that they reached, until the tension there is that of the curve: with the tangent at t_n, a stiffening rope that snaps taut would be held by the initial
+//! slope of its curve only.
 //!
-//! Drag across the line, C v, is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but where it outweighs inertia no
-//! more than that no velocity changes its sign by it, which would go on for ever. Drag along the line, K|u|u, is what T̄ has to balance, and averaged as T̄ is:
-//! the mean of those at t_{n−½} and t_{n+½}, the latter by a tangent at the extrapolated u. Taken at t_n alone, its harmonics of short periods appear
-//! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`contact`); flags of slack, memory and contact are checked after
-//! the solve and the step repeated until they hold.
+//! Drag across the line, C v, is added to the node's mass as θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but where it outweighs inertia limited
+//! so that it reverses no velocity; such reversals would not decay. Drag along the line, K|u|u, is balanced by T̄, and averaged as T̄ is: the mean
+//! of the values at t_{n−½} and t_{n+½}, the latter from a tangent at the extrapolated u. Evaluated at t_n alone, its short-period harmonics would
+//! appear 1/(1 − σ sin²(ωΔt/2)) times as large in T^n. The seabed is added to the mass too (`contact`); flags of slack, memory and contact are
+//! checked after the solve, and the step is repeated until they hold.
 //!
-//! A prescribed end moves by the secant of its path, which is its v_{n+½}. Only at the start, at rest or after a jump, v_{n−½} is V − ½Δt A of
-//! its path.
+//! A prescribed end moves along the secant of its path, which is its v_{n+½}. Only at the start, from rest or after a jump, is v_{n−½} equal to
+//! V − ½Δt A of its path.
 //!
 //! A step passes over the rows of the striped line ([`crate::math::striping`]) once per stage: geometry, segments, drag, inverse masses and
 //! contact (`prepare`), and couplings; then, until the assumptions hold, the equations, T̄ by [`crate::math::striped_tridiagonal`], and the
 //! velocities with the check of the assumptions (`solve`). Each sweep computes little per row and stores the input of the next one: the
-//! processor, which waits for roots, quotients and sums, then overlaps several rows, and the compiler finds whole vectors, which it does not
-//! where values depend on the row before.
+//! processor then overlaps the latencies of roots, quotients and sums of several rows, and the compiler vectorises the sweep, which it does
+//! not where values depend on the row before.
 //!
 //! The scheme is of second order in the step. The remaining error of the tension is that of axial waves which a line emits when it snaps taut: in
 //! steps much longer than their periods they run late by (ωΔt)²/12, as with every scheme of second order that is stable for any ωΔt, and reach up to where
 //! that is a turn, so that the RMS error falls with Δt^1.2 to Δt^1.6.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
-//! Model. Simul. 7, 1779-1794, with controllable dissipation added. The limit left is transverse:
+//! Model. Simul. 7, 1779-1794, with controllable dissipation added. The remaining limit is transverse:
 //! [`crate::dynamics::limit::transverse_step`].
 
 mod balance;
@@ -73,15 +74,15 @@ use coupling::OpenRow;
 use friction::SeabedRow;
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow, Sizes, springs, under};
 
-/// Passes over slack and contact flags, at most [-].
+/// Greatest number of passes over slack and contact flags [-].
 const PASSES_MAX: usize = 8;
-/// Square of ωΔt up to which tensions need no averaging, 4, with some to spare [-].
+/// Square of ωΔt up to which tensions need no averaging, 4, with a margin [-].
 const EXPLICIT_PART: f64 = 3.2;
-/// Share of T̄ that is averaged at least: axial waves then run in time up to (ωΔt)⁴ [-].
+/// Least share of T̄ that is averaged [-]: the delay of axial waves is then of order (ωΔt)⁴.
 const SHARE_MIN: f64 = 1.0 / 3.0;
 /// Spectral radius at infinite frequency where the scene gives none [-].
 const SPECTRAL_RADIUS: f64 = 0.9;
-/// Tension that may arise within a step, over the greatest one before it [-].
+/// Tension that may arise within a step, relative to the greatest one before it [-].
 const SNAP_GROWTH: f64 = 1.5;
 
 /// A line with implicit tension.
@@ -99,21 +100,21 @@ impl Weights {
         Weights([1.0, 2.0 * rho + b, rho * (rho + 2.0 * b), rho * rho * b].map(|weight| weight / n))
     }
 
-    /// Those of a share σ [-] that is averaged, and the rest at the present.
+    /// Weights of a share σ [-] that is averaged, and the rest at t_n.
     fn shared(&self, share: f64) -> Weights {
         let [new, now, last, before] = self.0.map(|weight| weight * share);
         Weights([new, now + (1.0 - share), last, before])
     }
 }
 
-/// Share σ of T̄ that is averaged in a step [-], axial waves having frequencies up to the one whose square is given [1/s²].
+/// Share σ of T̄ that is averaged in a step [-], for axial waves up to the frequency whose square is given [1/s²].
 fn averaged_share(frequency_squared: f64, step: Step) -> f64 {
     let explicit = EXPLICIT_PART / (frequency_squared * step.kick * step.drift);
     (1.0 - explicit).max(SHARE_MIN)
 }
 
-/// Bound on the rate at which axial dampers would take the velocities of a line's nodes away, all of it being where it is at home, in
-/// water or without any, by Gershgorin [1/s].
+/// Gershgorin's bound on the rate at which axial dampers alone would reduce the velocities of a line's nodes [1/s], with all of the
+/// line in the water, or in none.
 fn damping_rate(line: &Line) -> f64 {
     let (segments, nodes) = (&line.segments, &line.nodes);
     let mass = |i: usize| nodes.mass_tangent[i].min(nodes.mass_normal[i]);
@@ -134,24 +135,24 @@ pub struct AxialImplicit {
     /// Weights of the averaging, and those of the step.
     averaging: Weights,
     weights: Weights,
-    /// Square of the greatest frequency of axial waves, both ends being held [1/s²].
+    /// Square of the greatest frequency of axial waves with both ends held [1/s²].
     frequency_squared: f64,
-    /// Greatest rate at which axial dampers would take velocities away [1/s].
+    /// Greatest rate at which axial dampers alone would reduce velocities [1/s].
     damping_rate: f64,
     rows: Rows,
     /// State of the nodes on a seabed with a slope, soundings or friction; empty without one.
     seabed: Vec<SeabedRow>,
-    /// Tensions by the velocities of free points at the ends; empty between prescribed ends.
+    /// Tensions as functions of the velocities of free points at the ends; empty between prescribed ends.
     open: Vec<OpenRow>,
     /// Greatest T̄ since the state was loaded or stored last [N].
     tension_peak: Lanes,
     /// Greatest tension of the springs, and greatest T̄, when the state was stored last [N].
     tensions: [f64; 2],
-    /// True if slack, contact and true stretch of all steps since then were found.
+    /// True if slack, contact and true stretch have converged in all steps since then.
     settled: bool,
-    /// True if springs up to t_n may push, of which not all is in T̄ then.
+    /// True if springs up to t_n may push, of which T̄ then contains only a part.
     forgets: bool,
-    /// True if no step has been made yet.
+    /// True if no step has been taken yet.
     starts: bool,
 }
 
@@ -278,7 +279,7 @@ impl Kernel for AxialImplicit {
         passes
     }
 
-    /// Limits of transverse waves, under half as much tension again as there was in the last step.
+    /// Limits of transverse waves, under one and a half times the tension of the last step.
     fn longest_step(
         network: &mut LeapfrogNetwork<AxialImplicit>,
         _: &Model,
@@ -315,7 +316,7 @@ impl Kernel for AxialImplicit {
 }
 
 impl AxialImplicit {
-    /// Starts counting passes and tensions anew.
+    /// Resets the greatest tension and the flag of convergence.
     fn restart(&mut self) {
         (self.tension_peak, self.settled) = (Lanes::splat(0.0), true);
         self.starts = false;
@@ -334,7 +335,7 @@ impl AxialImplicit {
 }
 
 impl AxialLine {
-    /// Takes the tensions of the segments for those that they had before.
+    /// Sets the earlier tensions of the segments to the present ones.
     fn start_tensions(&mut self) {
         self.layout.renew_halo();
         for at in self.layout.rows() {
@@ -351,7 +352,7 @@ impl AxialLine {
         unit.dispatch(Run(self, stage))
     }
 
-    /// Force of the joints, less the push that tensions are counted from, on the lower node of a segment [N].
+    /// Force of the joints, less the push that tensions are measured from, on the lower node of a segment [N].
     fn shear(&self, at: Slot) -> Vector3<f64> {
         let joints = self.layout.joints.as_ref();
         joints.map_or(Vector3::zeros(), |joints| joints.shear.get(at))
@@ -373,7 +374,7 @@ impl AxialLine {
         }
     }
 
-    /// Everything that a step finds before its tensions.
+    /// Evaluates everything that precedes the tensions of a step.
     #[inline(always)]
     fn prepare<const SEABED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2]) -> Sizes {
         self.choose_weights(step);
@@ -423,7 +424,7 @@ impl AxialLine {
         self.move_on(step, ends);
     }
 
-    /// Weights of as much averaging as the step needs.
+    /// Sets the weights for the averaging that the step needs.
     #[inline(always)]
     fn choose_weights(&mut self, step: Step) {
         let share = match self.layout.released {
@@ -469,7 +470,7 @@ impl AxialLine {
         self.meet_surface();
     }
 
-    /// Takes the memory of viscoelastic segments to t_{n+1}, where the nodes now are.
+    /// Advances the memory of viscoelastic segments to t_{n+1}, where the nodes now are.
     #[inline(always)]
     fn relax_segments(&mut self, step: Step) {
         for at in self.layout.rows() {
@@ -483,10 +484,10 @@ impl AxialLine {
 
 /// A part of a step of a line.
 trait Stage {
-    /// Quantity that it finds.
+    /// Result of the stage.
     type Found;
 
-    /// Runs over a kind of seabed.
+    /// Runs the stage over a kind of seabed.
     fn run<const SEABED: u8>(self, line: &mut AxialLine) -> Self::Found;
 }
 
@@ -508,7 +509,7 @@ impl<S: Stage> NullaryFnOnce for Run<'_, S> {
     }
 }
 
-/// A whole step of a line between prescribed or released ends. Returns its passes.
+/// A whole step of a line between prescribed or released ends. Returns the number of passes.
 struct Whole<'a> {
     step: Step,
     ends: &'a [Vector3<f64>; 2],
@@ -574,7 +575,7 @@ struct Tensions<'a> {
 }
 
 impl Tensions<'_> {
-    /// Takes over what a segment has `of` these in a lane; nothing if it is padding.
+    /// Copies the tensions of a segment from a lane `of` these; does nothing if it is padding.
     #[inline(always)]
     fn take(&mut self, segment: usize, lane: usize, of: &[Lanes; 3]) {
         if segment < self.now.len() {
@@ -589,7 +590,7 @@ mod tests {
     use crate::scene::AXIAL_RADIUS_MIN;
     use approx::assert_relative_eq;
 
-    /// Size of an oscillation after many steps with ωΔt = 10⁴, over that at its start [-].
+    /// Amplitude of an oscillation after many steps with ωΔt = 10⁴, relative to that at its start [-].
     fn stiff_oscillation(rho: f64) -> f64 {
         let Weights([new, now, last, before]) = Weights::new(rho);
         let (mut x, mut v) = ([1.0, 1.0, 1.0], 0.0);

@@ -24,7 +24,7 @@ pub(super) struct LineBalance {
     pub algorithmic: Lanes,
     /// Work of prescribed ends, of releases and of the winch [J].
     pub external_work: f64,
-    /// Work on dampers next to the ends, and of viscoelastic dampers; kinetic energy that external work has brought [J].
+    /// Work on dampers next to the ends, and of viscoelastic dampers; kinetic energy that external work has supplied [J].
     pub dissipation: f64,
     /// Position of the ends at t_n − Δt/2 [m].
     pub half_places: [Vector3<f64>; 2],
@@ -61,7 +61,7 @@ impl<K> LeapfrogLine<K> {
         }
     }
 
-    /// Starts at no flow.
+    /// Resets the flow to zero.
     pub(super) fn clear_balance(&mut self) {
         if let Some(balance) = &mut self.balance {
             let half_places = balance.half_places;

@@ -1,16 +1,16 @@
 //! Spring and damper of the seabed over a step of the leapfrogs.
 //!
-//! A step changes the velocity v⁻ of t_{n−½} to the v of t_{n+½}. A part of a segment ([`crate::physics::seabed`]) with the penetration p at t_n, which
+//! A step changes the velocity v⁻ at t_{n−½} to v at t_{n+½}. A part of a segment ([`crate::physics::seabed`]) with the penetration p at t_n, which
 //! leaves the seabed at v_n, goes from p_a = p + (1−θ) Δt v⁻_n to p_b = p − θ Δt v_n. The impulse of spring and damper over the step is
 //!
 //! λ = Δt k (θ p_b⁺ + (1−θ) p_a⁺) + c (p_b⁺ − p_a⁺) ≥ 0,    only if p_b > 0,    p⁺ = max(p, 0).
 //!
 //! θ = ½ is the trapezoidal rule between t_{n−½} and t_{n+½}, of second order also for parts that land within the step: the damper acts on
-//! the way below the seabed only. It lets a seabed ring that is hard over the step, so that
+//! the path below the seabed only. It lets a seabed that is stiff over the step ring, so that
 //!
 //! θ = max(½, 1 − 1/r),    r = Δt (k Δt + c)/m,
 //!
-//! goes to backward Euler, which takes such a part to rest. On a seabed softened to the mesh r is below 2 at all steps that the line allows.
+//! tends to backward Euler, which brings such a part to rest. On a seabed softened to the mesh, r is below 2 at all steps that the line allows.
 //!
 //! The velocity of a part depends on those of both nodes of its segment, which would couple all nodes on the seabed. Two approximations avoid that: p_b > 0 is
 //! decided with v⁻, and in the share of λ on a node every part changes its velocity by as much as that node. Each node then gets a force P − R v_n of its
@@ -45,7 +45,7 @@ impl NodeContact {
         }
     }
 
-    /// Impulse [N s] on nodes that leave the seabed at `rise` [m/s], were it to pull as well: positive where it pushes.
+    /// Impulse [N s] on nodes that leave the seabed at `rise` [m/s], as if it could also pull: positive where it pushes.
     #[inline(always)]
     pub(super) fn push(&self, rise: Lanes) -> Lanes {
         self.spring - self.resistance * rise
@@ -85,7 +85,7 @@ impl ContactRule {
     fn new([stiffness, damping]: [Lanes; 2], yields: Lanes, step: Step) -> ContactRule {
         let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
         let (kick, drift) = (Lanes::splat(step.kick), Lanes::splat(step.drift));
-        let before = Lanes::splat(step.last()); // the last step may have been of another length
+        let before = Lanes::splat(step.last()); // the last step may have had a different length
         let even = Lanes::splat(1.0 / step.kick);
         let hardness = kick * (stiffness * drift + damping) * yields;
         let (theta, over) = if (hardness - one - one).any_positive() {

@@ -6,7 +6,7 @@
 //! 2. resistance of water and damping, at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2};
 //! 3. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with the anisotropic mass inverted in closed form and the seabed solved implicitly, node by node, by a
 //!    rank-one update or, with a slope or friction, by [`crate::physics::friction_step`];
-//! 4. r_{n+1} = r_n + Δt v_{n+½}; the ends are put where their points are.
+//! 4. r_{n+1} = r_n + Δt v_{n+½}; the ends are moved to their points.
 //!
 //! Stage 4 is part of the loop of stage 3 unless the energy balance is evaluated between them.
 //!
@@ -70,7 +70,7 @@ struct WaterWork {
     drag_tangent: Column,
     /// 1/M_t − 1/M_n [1/kg].
     inverse_mass_excess: Column,
-    /// Drag coefficient over mass of a node that is wholly in the water, across the line [1/m].
+    /// Drag coefficient over mass of a fully submerged node, across the line [1/m].
     drag_over_mass: Column,
     /// The same along the line, where it is greater at some node [1/m].
     drag_over_mass_along: Option<Column>,
@@ -151,7 +151,7 @@ impl Kernel for Explicit {
         work.kernel.drag_rate = None;
     }
 
-    /// A line on a winch is laid out anew.
+    /// A line on a winch is laid out again.
     fn resume(work: &mut ExplicitLine, state: &LineState) {
         if work.kernel.winch.is_some() {
             return work.load(state);
@@ -159,7 +159,7 @@ impl Kernel for Explicit {
         work.layout.still();
         work.clear_balance();
         if work.layout.flows() {
-            work.kernel.drag_rate = None; // the water moves on
+            work.kernel.drag_rate = None; // the water motion changes
         }
     }
 
@@ -225,7 +225,7 @@ impl Kernel for Explicit {
         1
     }
 
-    /// The bound is the limit under the stiffness that the springs have, to which the drag at the present velocities is added.
+    /// The bound is the limit for the present stiffness of the springs, with the drag at the present velocities added.
     fn longest_step(
         network: &mut LeapfrogNetwork<Explicit>,
         model: &Model,
@@ -280,7 +280,7 @@ impl ExplicitLine {
         self.renew_end_segment(step);
     }
 
-    /// Takes the memory of viscoelastic segments to t_{n+1}.
+    /// Advances the memory of viscoelastic segments to t_{n+1}.
     fn relax_segments(&mut self, step: Step) {
         if self.layout.viscoelastic.is_none() {
             return;
@@ -389,7 +389,7 @@ impl ExplicitLine {
         across.max(self.drag_rate_along(water))
     }
 
-    /// Ratio K |v| / M at an end that forces move [1/s], v relative to the water; zero at a prescribed end, whose motion no drag changes.
+    /// Ratio K |v| / M at an end that forces move [1/s], v relative to the water; zero at a prescribed end, whose motion drag does not change.
     fn drag_rate_at(&self, end: End, water: &WaterWork) -> f64 {
         let (line, at) = (&self.layout, self.layout.end_slot(end));
         match line.is_open(end) {

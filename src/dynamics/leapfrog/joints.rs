@@ -1,14 +1,14 @@
-//! Joints of a line that bends. The leapfrogs take their forces as they take weights: those of the positions at t_n.
+//! Joints of a line that bends. Their forces enter the leapfrogs like weights: those of the positions at t_n.
 //!
 //! With the energy W_i of the joint at node i ([`crate::physics::bending`]) and the end-to-end vector e_i of segment i, the joints at both nodes of
-//! the segment make the couple of forces ± S_i on these,
+//! the segment exert the couple of forces ± S_i on these,
 //!
 //! S_i = ∂W_i/∂e_i + ∂W_{i+1}/∂e_i,
 //!
 //! which is added to the pull T q of the segment. A clamp is the direction of the segment before the first one, or after the last one.
 //!
-//! In the shortest wave, a zigzag, joints of equal segments of length l are as stiff as a tension of 4EI/l², which is the greatest push P of a
-//! segment too. The limits of the steps are those of T + P.
+//! In the shortest wave, a zigzag, joints of equal segments of length l are as stiff as a tension of 4EI/l², which is also the greatest push P of a
+//! segment. The limits of the steps are those for T + P.
 
 use nalgebra::Vector3;
 

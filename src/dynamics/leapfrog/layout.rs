@@ -1,7 +1,7 @@
-//! A line laid out for the leapfrog kernels: folded into four lanes ([`crate::math::striping`]), padded and with a halo.
+//! A line laid out for the leapfrog kernels: striped over four lanes ([`crate::math::striping`]), padded and with a halo.
 //!
-//! Node i and segment i, which lies between nodes i and i + 1, stand in the same slot. Padding has no stiffness, no weight and no drag, so
-//! that it stays at rest and no loop has a remainder. The halo is renewed when the nodes that they repeat have moved.
+//! Node i and segment i, which lies between nodes i and i + 1, are in the same slot. Padding has no stiffness, no weight and no drag, so
+//! that it stays at rest and no loop has a remainder. The halo is renewed when the nodes that it repeats have moved.
 
 mod ground;
 mod handover;
@@ -25,8 +25,8 @@ use handover::padded_positions;
 pub(super) use water::Water;
 pub(super) use water::{CurrentNow, WaveArrays, water_flow};
 
-/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the seabed would else go on to squares that are
-/// too small to be normal numbers, with which a machine is many times slower.
+/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. The squares of speeds of nodes that come to rest on the
+/// seabed would otherwise become subnormal numbers, with which a machine is many times slower.
 const STILLNESS: f64 = 1e-30;
 /// Keeps coincident nodes from dividing by zero [m²].
 pub(super) const LENGTH2_MIN: f64 = 1e-200;
@@ -39,7 +39,7 @@ pub struct Layout {
     last: [Slot; 2],
     /// Slots of nodes and segments.
     pub striping: Striping,
-    /// The vectors of the machine that kernels run with; results do not depend on it.
+    /// Vector unit that the kernels use; results do not depend on it.
     pub vector_unit: VectorUnit,
     pub law: StretchLaw,
     pub negative_tension: bool,
@@ -150,7 +150,7 @@ impl Layout {
         })
     }
 
-    /// Runs the kernels as they are compiled for any machine of the target, or for the best vectors of this one.
+    /// Runs the kernels compiled for any machine of the target, or for the best vector unit of this one.
     pub fn set_portable(&mut self, portable: bool) {
         self.vector_unit = match portable {
             true => VectorUnit::portable(),
@@ -182,7 +182,7 @@ impl Layout {
         self.close_halo();
     }
 
-    /// Puts the halo beyond ends that move as forces say where these ends are.
+    /// Moves the halo beyond ends that forces move to these ends.
     #[inline(always)]
     pub fn close_halo(&mut self) {
         for end in ENDS {
@@ -200,7 +200,7 @@ impl Layout {
         self.released[end as usize] || !self.tied[end as usize]
     }
 
-    /// Sets how many of the segments that there is room for the line has.
+    /// Sets the number of segments of the line, up to the number allocated.
     pub fn set_segment_count(&mut self, count: usize) {
         self.segment_count = count;
         self.last = [count, count - 1].map(|i| self.striping.slot(i));
@@ -224,7 +224,7 @@ impl Layout {
         chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
 
-    /// Puts the ends that are not released from their points where these are.
+    /// Moves the ends that are not released to their points.
     #[inline(always)]
     pub fn place_ends(&mut self, ends: [&EndMotion; 2]) {
         for end in ENDS {
@@ -242,8 +242,8 @@ impl Layout {
         self.position.get(at) - lag * self.velocity.get(at)
     }
 
-    /// Makes viscoelastic segments at the ends take these to have come as they go on, from where they were `lag` [s] ago: what jumps does not flow
-    /// through dampers.
+    /// Restarts the viscoelastic segments at the ends from the positions that the present velocities give `lag` [s] ago: a jump does not act on
+    /// dampers.
     pub fn set_out_anew(&mut self, lag: f64) {
         let Some(mut viscoelastic) = self.viscoelastic.take() else {
             return;
@@ -341,7 +341,7 @@ impl Layout {
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let height = self.position.get(at).z - step.lag() * velocity.z;
         let kinetic = 0.5 * Slender::new(masses).square(velocity, tangent);
-        // the surface holds the energy of the buoyancy that is lacking by itself
+        // the surface accounts for the energy of the missing buoyancy separately
         let lack = self
             .surface
             .as_ref()
@@ -389,8 +389,8 @@ impl Layout {
         chord.dot(chord) * inverse_l * inverse_length - Lanes::splat(1.0)
     }
 
-    /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, where the nodes now are, with the velocities of the step. Returns the tension that
-    /// they have over it [N], and what their dampers take [J].
+    /// Advances the memory of viscoelastic segments from t_n to t_{n+1}, where the nodes now are, with the velocities of the step. Returns their
+    /// tension over it [N], and the dissipation of their dampers [J].
     #[inline(always)]
     pub fn relax_segments(&mut self, at: usize, step: Step) -> Relaxed {
         let lag = Lanes::splat(0.5 * step.drift);
@@ -410,7 +410,7 @@ impl Layout {
         }
     }
 
-    /// Keeps the strains of viscoelastic segments at t_n for the step to come.
+    /// Stores the strains of viscoelastic segments at t_n for the next step.
     #[inline(always)]
     pub fn keep_strains(&mut self) {
         let Some(mut viscoelastic) = self.viscoelastic.take() else {

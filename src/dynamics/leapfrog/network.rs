@@ -67,7 +67,7 @@ impl LineEnd {
         LineEnd { tie, motion }
     }
 
-    /// Finds where the point is at `t` [s], and its velocity half a step of `length` [s] earlier.
+    /// Finds the position of the point at `t` [s], and its velocity half a step of `length` [s] earlier.
     #[inline]
     fn find(&mut self, points: &[PointState], t: f64, length: f64, held: &impl Fn(usize, f64) -> Kinematics) {
         self.motion = match self.tie {
@@ -121,7 +121,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         })
     }
 
-    /// Runs the kernels as they are compiled for any machine of the target, or for the best vectors of this one, as is the default.
+    /// Runs the kernels compiled for any machine of the target or, by default, for the best vector unit of this one.
     /// Results do not depend on it.
     pub fn set_portable(&mut self, portable: bool) {
         self.lines
@@ -139,7 +139,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         self.numbered_lines()
             .for_each(|(work, line)| work.load(&state.lines[line]));
         if let Some(waves) = &state.waves {
-            // a state of another course may have another motion of the water in the same span of time
+            // a state with a different history may have a different motion of the water in the same time span
             self.numbered_lines()
                 .for_each(|(work, line)| work.layout.load_waves(&waves.lines[line]));
         }
@@ -190,8 +190,8 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         is_sound
     }
 
-    /// The first line, by its place in the network, and node whose position is not finite, or whose speed is one that no mooring line reaches;
-    /// where there is none, the fastest node of the first line whose energy is not finite.
+    /// The first line, by its place in the network, and node whose position is not finite, or whose speed no mooring line reaches;
+    /// if there is none, the fastest node of the first line whose energy is not finite.
     pub fn broken_node(&self) -> (usize, usize) {
         let mut lines = self.lines.iter().enumerate();
         let broken = lines.find_map(|(line, work)| Some((line, work.layout.broken_node()?)));
@@ -202,8 +202,8 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         })
     }
 
-    /// Puts the ends of the lines where their points are at the start of a communication step, `t` [s], with velocities half a step of `last` [s]
-    /// earlier, as those of the nodes are; where they `jump` they are at rest on their new paths.
+    /// Moves the ends of the lines to their points at the start of a communication step, `t` [s], with velocities half a step of `last` [s]
+    /// earlier, like those of the nodes; where they `jump` they are at rest on their new paths.
     pub fn set_out(&mut self, t: f64, last: f64, jump: bool, held: &impl Fn(usize, f64) -> Kinematics) {
         for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
             if jump || K::starts(work) {
@@ -214,7 +214,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// Makes viscoelastic segments and the work of the ends of all lines start from the present motion of the ends, half the `last` step [s] ago.
+    /// Restarts viscoelastic segments and the work of the ends of all lines from the present motion of the ends, half the `last` step [s] ago.
     pub fn set_out_anew(&mut self, last: f64) {
         self.lines.iter_mut().for_each(|line| line.set_out_anew(last));
     }
@@ -241,7 +241,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// Turns the clamps of lines that bend to where their supports are at `t` [s], and sets the moments on the ends of these lines.
+    /// Turns the clamps of lines that bend with their supports to `t` [s], and sets the moments on the ends of these lines.
     fn turn_clamps(&mut self, model: &Model, t: f64, held: &impl Fn(usize, f64) -> Kinematics) {
         for (number, work) in self.lines.iter_mut().enumerate() {
             let Some(joints) = &mut work.layout.joints else {
@@ -268,7 +268,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         self.lines.iter_mut().for_each(LeapfrogLine::meet_surface);
     }
 
-    /// A step from one time [s] to the next, with prescribed points where `held` says. Returns the number of solutions.
+    /// Takes a step from one time [s] to the next, with the prescribed points of `held`. Returns the number of solutions.
     pub fn step(
         &mut self,
         model: &Model,

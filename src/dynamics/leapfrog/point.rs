@@ -35,7 +35,7 @@ pub(super) struct PointLoad {
 /// Spring and damper of the seabed under a point: its own, or that of the half node of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSpring {
-    /// Force at no velocity [N].
+    /// Force at zero velocity [N].
     push: f64,
     /// Loss of the force with the velocity at which the point leaves the seabed [N s/m].
     resistance: f64,
@@ -137,8 +137,8 @@ pub(super) fn attached(model: &Model, network: &Network, point: usize) -> Vec<(u
 }
 
 /// Weight, load and water of a free point, by its number and law, at a height [m] and a time [s] that moves at a velocity [m/s]. Over a step of `kick` [s],
-/// where that is given, the change of the drag C|u|u is implicit by its slope C(|u| I + u uᵀ/|u|): trapezoidal, but where it outweighs inertia no more
-/// than that no velocity changes its sign by it. The difference between its buoyancy and that in still water counts as Froude-Krylov force.
+/// where that is given, the change of the drag C|u|u is implicit by its slope C(|u| I + u uᵀ/|u|): trapezoidal, but where it outweighs inertia limited
+/// so that it reverses no velocity. The difference between its buoyancy and that in still water counts as Froude-Krylov force.
 pub(super) fn load_in_water(
     (model, index, law): (&Model, usize, &FreePoint),
     [height, t]: [f64; 2],
@@ -194,7 +194,7 @@ impl ContactSpring {
         })
     }
 
-    /// Contact of the half segment of a line over the step, of a force at no velocity [N] and its loss with velocity [N s/m]; `None` where there is none.
+    /// Contact of the half segment of a line over the step, from a force at zero velocity [N] and its loss with velocity [N s/m]; `None` where there is none.
     pub fn of_line([push, resistance]: [f64; 2]) -> Option<ContactSpring> {
         (resistance > 0.0).then_some(ContactSpring {
             push,
@@ -203,7 +203,7 @@ impl ContactSpring {
         })
     }
 
-    /// Force at no velocity [N], and its loss with the velocity at which the point leaves the seabed [N s/m].
+    /// Force at zero velocity [N], and its loss with the velocity at which the point leaves the seabed [N s/m].
     pub fn law(&self) -> [f64; 2] {
         [self.push, self.resistance]
     }
@@ -244,8 +244,8 @@ impl PointLoad {
         self.mass += other.mass;
     }
 
-    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the seabed, which is implicit: friction is sought that agrees with
-    /// the push of the springs, and a push that agrees with the friction.
+    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the seabed, which is implicit: friction and the push of the springs
+    /// are iterated until they agree.
     fn kicked(
         &self,
         last: Vector3<f64>,
@@ -311,7 +311,7 @@ pub(super) struct Kicked {
 
 /// Seabed under a point.
 pub(super) struct SeabedBelow<'a> {
-    /// Height of the point over z = 0; over a seabed with a slope, soundings or friction, over that along its normal [m].
+    /// Height of the point above z = 0; over a seabed with a slope, soundings or friction, height above it along its normal [m].
     pub height: f64,
     /// Unit normal of the seabed, upwards.
     pub normal: Vector3<f64>,
@@ -365,7 +365,7 @@ fn pushed(
 pub(super) struct Sliding {
     /// Axes of the plane of the seabed, along those of the point that are free.
     axes: [Vector3<f64>; 2],
-    /// Inverse of what the point yields by in the plane [kg].
+    /// Inverse compliance of the point in the plane [kg].
     mass: Matrix2<f64>,
 }
 
@@ -374,7 +374,7 @@ impl Sliding {
         let Axes { along, across, .. } = Axes::unit(normal, normal);
         let axes = [along, across];
         let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
-        // A point on a rail yields along that alone: the rest is held, and must not be divided by.
+        // A point on a rail yields along the rail only: other directions are held, and must not be divided by.
         let least = 1e-12 * yielding.trace();
         yielding += Matrix2::from_diagonal_element(least);
         Sliding {

@@ -1,4 +1,4 @@
-//! The steps of the leapfrogs, which may each have another length: positions at t_n, velocities halfway between.
+//! The steps of the leapfrogs, each of which may have a different length: positions at t_n, velocities halfway between.
 
 /// Sizes of a step.
 #[derive(Debug, Clone, Copy)]

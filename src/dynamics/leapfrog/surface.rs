@@ -1,5 +1,5 @@
 //! The water's surface over the line of a leapfrog: between two steps, weight, drag and mass of the nodes that it crosses are set
-//! to what they are there, so that the kernels need not know of it.
+//! to their values there, so that the kernels need no special case.
 
 use crate::math::striping::{Field, Striping};
 use crate::model::{Dry, Line, Nodes, Surface};
@@ -29,12 +29,12 @@ pub struct NodeNow {
     pub masses: [f64; 2],
     /// Drag coefficients across and along the line [N s²/m²].
     pub drag: [f64; 2],
-    /// Mass of the water that presses, across and along the line [kg].
+    /// Mass in the Froude-Krylov force, across and along the line [kg].
     pub froude_krylov: [f64; 2],
 }
 
 impl SurfaceNow {
-    /// Of a line; `None` where it does not meet the surface.
+    /// Surface over a line; `None` where it does not meet the surface.
     pub fn new(line: &Line) -> Option<SurfaceNow> {
         let count = line.segment_count() + 1;
         Some(SurfaceNow {
@@ -48,7 +48,7 @@ impl SurfaceNow {
         })
     }
 
-    /// Finds what is dry of a line whose nodes are at `position` [m].
+    /// Finds the dry parts of a line whose nodes are at `position` [m].
     pub fn find(&mut self, striping: Striping, position: &Field) {
         for (before, dry) in self.before.iter_mut().zip(&mut self.dry) {
             *before = dry.part;
@@ -67,7 +67,7 @@ impl SurfaceNow {
         }
     }
 
-    /// Finds what nodes at `position` [m] would lack in calm water.
+    /// Finds the buoyancy that nodes at `position` [m] would lack in calm water.
     pub fn find_calm(&mut self, striping: Striping, position: &Field) {
         self.calm.fill(0.0);
         for i in 0..self.surface.radius.len() {
@@ -91,7 +91,7 @@ impl SurfaceNow {
         nodes.filter_map(|(i, (dry, before))| (dry.part > 0.0 || *before > 0.0).then_some(i))
     }
 
-    /// A node as it is now.
+    /// Properties of a node at t_n.
     pub fn node(&self, i: usize) -> NodeNow {
         let (nodes, dry) = (&self.nodes, self.dry[i]);
         let wet = 1.0 - dry.part;

@@ -5,7 +5,7 @@ use super::extrapolation::{
 };
 use crate::math::lanes::{LANES, Lanes};
 
-/// Error of another degree over that of the present one, below which it takes over [-]. On harmonic motions any value
+/// Ratio of the error of another degree to that of the present one, below which it replaces it [-]. On harmonic motions any value
 /// from 0.3 to 0.9 except ½, which symmetry makes exact, separates rounding from motion; 0.45 predicts them best.
 const BETTER: f64 = 0.45;
 /// Ratio of errors for a change to and from degree 0, so that a point that comes to rest, jumps or starts moving is
@@ -25,7 +25,7 @@ pub(super) struct Differences {
     newest: [Lanes; DEGREE_MAX + 1],
     /// Difference of the next order.
     next: Lanes,
-    /// Errors of polynomials of every degree through the samples before at the newest ones.
+    /// Errors at the newest samples of polynomials of every degree through the samples before.
     miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
     /// Factors on the errors for the end of the step, where the host does not keep its step.
     stretch: Option<[Terms; JUDGED]>,

@@ -1,4 +1,4 @@
-//! Times of a host's samples and the factors of predictions that follow from them, shared by all points that it
+//! Times of a host's samples and the factors of predictions that follow from them, shared by all points that the host
 //! moves.
 
 use std::array::from_fn;
@@ -10,12 +10,12 @@ use crate::scene::Reconstruction;
 
 /// Highest degree of the extrapolated polynomial [-].
 pub(super) const DEGREE_MAX: usize = 3;
-/// Samples by which a degree is assessed: one alone can be met by chance, where the motion inflects.
+/// Samples by which a degree is assessed: a single one can be matched by chance at an inflection of the motion.
 pub(super) const JUDGED: usize = 2;
 /// Samples kept.
 pub(super) const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
 /// Ratio of the longest step in the record to the distance of two samples, above which only one of them counts [-]. A
-/// step h makes ε(h/δ)ᵏ of noise ε in samples δ apart; but one sample less is one degree less. On `oc3_catenary`, 12
+/// step h amplifies noise ε in samples δ apart to ε(h/δ)ᵏ; but one sample fewer is one degree fewer. On `oc3_catenary`, 12
 /// makes the error in tension up to four times as large where steps vary by a factor of 20; 100 gains nothing there,
 /// and amplifies a noise of 1 µm three times as much in a step of 3 s after some of 0.05 s.
 const STEP_RATIO_MAX: f64 = 30.0;
@@ -36,7 +36,7 @@ pub struct Clock {
     count: usize,
     /// Time by which all errors are removed [s].
     made_up: f64,
-    /// Time between two samples [s] that the `even` newest pairs of neighbours are apart, but for rounding.
+    /// Time between samples [s] of the `even` newest pairs of neighbours, except for rounding.
     gap: f64,
     even: usize,
 }
@@ -85,8 +85,8 @@ impl Clock {
         (self.count > 2 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
     }
 
-    /// Adds the sample of a step from a time [s] of a length [s], taken at its end with [`Reconstruction::Interpolate`], else at its start:
-    /// `extrapolation` receives all that the paths need to continue by it; its old contents are not read.
+    /// Adds the sample of a step from a time [s] of a length [s], taken at its end with [`Reconstruction::Interpolate`], else at its start.
+    /// `extrapolation` receives everything that the paths need to continue over the step; its old contents are not read.
     pub fn add_sample(
         &mut self,
         time: f64,
@@ -113,7 +113,7 @@ impl Clock {
         extrapolation.span = [time, step, 1.0 / step];
     }
 
-    /// Adds a time [s] that comes a step [s] after the newest, before another one [s].
+    /// Adds a time [s] that is one step [s] after the newest and one [s] before the next.
     fn follow(&mut self, time: f64, last_step: f64, step: f64) -> Order {
         if self.crowds(last_step.max(step)) {
             (self.gap, self.even) = (time - self.times[1], 1);

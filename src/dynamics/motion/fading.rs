@@ -6,14 +6,14 @@
 //! z ← z + g r,   g = (1 − θ⁴, ⅙(1−θ)²(11 + 14θ + 11θ²), (1−θ)³(1+θ), ⅙(1−θ)⁴).
 //!
 //! θ = 0 is the cubic through the last four samples, the highest degree of `Smooth`, with an error of O(h⁴); a θ near 1 averages over about
-//! 4/(1 − θ) samples. White noise of variance σ² makes residuals of variance σ² (1 + a(θ)), a falling with θ; the motion makes residuals that
-//! rise with h⁴x⁗/(1−θ)⁴. Filters with several θ run side by side, and for each axis the one with the least mean square of its residuals gives
+//! 4/(1 − θ) samples. White noise of variance σ² causes residuals of variance σ² (1 + a(θ)), where a falls with θ; the motion causes residuals
+//! that rise with h⁴x⁗/(1−θ)⁴. Filters with several θ run side by side, and for each axis the one with the least mean square of its residuals gives
 //! the prediction. On smooth motion that is θ = 0, by orders of magnitude; on noisy motion the scatter of the samples decides. The path leads from
-//! its end to the prediction, and does not return to the noisy sample. With θ = 0, the residual is the fourth difference of the samples, and the velocity that of the
-//! polynomial through five of them, as in `Smooth`.
+//! its end to the prediction, and does not return to the noisy sample. With θ = 0, the residual is the fourth difference of the samples, and the
+//! velocity that of the polynomial through five of them, as in `Smooth`.
 //!
 //! Source: Morrison (1969), Introduction to Sequential Smoothing and Prediction, chapter 13 (the filter); the choice of θ is derived here.
-//! Valid for steps of about equal length: z is scaled to another step, the gains are those of equal ones.
+//! Valid for steps of about equal length: z is scaled to a different step, but the gains are those of equal steps.
 
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +38,7 @@ pub struct Fading {
     time: f64,
     /// Step to which the cubics are scaled [s].
     step: f64,
-    /// Of each memory, at the last sample.
+    /// Cubic of each memory at the last sample.
     cubics: [Cubic; MEMORIES.len()],
     /// Mean squares of the residuals [m², rad²].
     residuals: [Lanes; MEMORIES.len()],
@@ -57,7 +57,7 @@ impl Fading {
     }
 
     /// Takes a sample [m, rad] at a time [s]; returns position [m, rad] and velocity [m/s, rad/s] a step [s] later. A sample that is not later than the
-    /// last one starts anew, at rest.
+    /// last one restarts the filters at rest.
     pub fn predict(&mut self, time: f64, sample: Lanes, step: f64) -> [Lanes; 2] {
         let passed = time - self.time;
         if passed <= 0.0 {

@@ -23,10 +23,10 @@ const BENDS: f64 = 2.0;
 /// Displacement of the touchdown to both sides where the motion of the ends is not given, over the length of the line
 /// [-].
 const TOUCHDOWN_SHARE: f64 = 0.025;
-/// Moments at which a given motion is evaluated [-].
+/// Number of instants at which a given motion is evaluated [-].
 const MOMENTS: usize = 400;
 
-/// Parts of the length of a line below which two arc lengths are one [-].
+/// Fraction of the length of a line below which two arc lengths count as equal [-].
 const ROUNDING: f64 = 1e-9;
 
 /// Elements of every line [-]: those of a line alone for the longest of lines that meet at free points, shares by
@@ -191,8 +191,7 @@ fn seabed_below(scene: &Scene) -> impl Fn(Vector3<f64>) -> Option<FlatSeabed> {
     }
 }
 
-/// Closed-form catenaries by `hang` between the ends of a line at the reference and in the course of the scene's motion, and whether a motion
-/// is given.
+/// Closed-form catenaries by `hang` between the ends of a line at the reference and during the scene's motion, and whether a motion is given.
 fn shapes(
     scene: &Scene,
     ends: [&Point; 2],
@@ -210,7 +209,7 @@ fn shapes(
     (shapes.into_iter().flatten().collect(), known)
 }
 
-/// Places of a point [m] in the course of the scene's motion; only its reference where none is given.
+/// Places of a point [m] during the scene's motion; only its reference where none is given.
 fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
     let place = |t: f64| match &point.role {
         Role::Coupled { motion: Some(motion) } | Role::Prescribed(motion) => {
@@ -269,7 +268,7 @@ fn section_at<'a>(line: &scene::Line, laws: &'a [LineLaw], s: f64) -> &'a LineLa
     &laws[at.unwrap_or(laws.len() - 1)]
 }
 
-/// Number and lengths of the elements of a scene's lines with the reasons: one sentence a line.
+/// Number and lengths of the elements of a scene's lines with the reasons: one sentence per line.
 pub(super) fn in_words(scene: &Scene, model: &Model) -> Vec<String> {
     let shares = elements(scene);
     let lines = scene.lines.iter().zip(&model.lines).zip(shares);

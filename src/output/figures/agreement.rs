@@ -1,4 +1,4 @@
-//! Computed against measured values: every condition a disc, the diagonal where they agree.
+//! Computed against measured values: one disc per condition, and the diagonal of equal values.
 
 use super::axis::{Axis, ends};
 use super::chart::{Chart, Curve, Stroke};

@@ -4,7 +4,7 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 
 use super::chart::Curve;
 
-/// Ticks wanted on an axis; one more or fewer may fit better.
+/// Target number of ticks on an axis; one more or fewer may fit better.
 const TICKS: f64 = 7.0;
 /// A range narrower than this part of its values is drawn as flat: it is round-off or convergence, not motion.
 const FLAT: f64 = 1e-5;
@@ -12,10 +12,10 @@ const FLAT: f64 = 1e-5;
 /// Scale of an axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Scale {
-    /// In proportion.
+    /// Linear.
     #[default]
     Linear,
-    /// By their decimal logarithm, which the curves already hold.
+    /// Decimal logarithms, which the curves already hold.
     Decades,
 }
 
@@ -40,7 +40,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Axis from the least to the greatest value of a component (0 or 1) of the curves, no more.
+    /// Axis from the least to the greatest value of a component (0 or 1) of the curves, without a margin.
     pub fn fitting(curves: &[Curve], component: usize, label: String) -> Axis {
         let values = curves.iter().flat_map(|curve| &curve.points);
         let values = values.map(|point| point[component]);
@@ -87,7 +87,7 @@ impl Axis {
         self.max += missing;
     }
 
-    /// Round values on the axis, and the digits behind the point that distinguish them.
+    /// Round values on the axis, and the decimal places that distinguish them.
     pub fn ticks(&self) -> (Vec<f64>, usize) {
         if self.scale == Scale::Decades {
             return (decade_ticks(self.min, self.max), 0);
@@ -181,7 +181,7 @@ fn label(value: f64, digits: usize) -> String {
     }
 }
 
-/// Digits behind the point that a step needs.
+/// Decimal places that a step needs.
 fn decimals(step: f64) -> usize {
     (0..15)
         .find(|&digits| {
@@ -191,7 +191,7 @@ fn decimals(step: f64) -> usize {
         .unwrap_or(15) as usize
 }
 
-/// A multiple of the newton in which `greatest` [N] has one to four digits before the point: its symbol and its size [N].
+/// A multiple of the newton in which `greatest` [N] has one to four digits before the decimal point: its symbol and its size [N].
 pub fn force_unit(greatest: f64) -> (&'static str, f64) {
     match greatest {
         v if v >= 1e7 => ("MN", 1e6),
@@ -200,7 +200,7 @@ pub fn force_unit(greatest: f64) -> (&'static str, f64) {
     }
 }
 
-/// Number for a label, with at most three digits behind the point and no trailing zeros.
+/// Number for a label, with at most three decimal places and no trailing zeros.
 pub fn plain(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_string()

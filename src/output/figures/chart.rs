@@ -36,7 +36,6 @@ const LETTER: f64 = 0.58;
 /// Least and greatest height of a chart to scale, without title and legend [px].
 const TO_SCALE_HEIGHTS: [f64; 2] = [150.0, 560.0];
 /// Ratio of the text size in the plotting library, which rounds layout to the size it is given, to that in the SVG.
-/// SVG.
 const TEXT_SCALE: f64 = 1.24;
 
 /// Stroke of a curve.
@@ -175,7 +174,7 @@ impl Chart {
         stacked_svg(std::slice::from_ref(self))
     }
 
-    /// Places of the legend's entries: left edge [px] and row.
+    /// Positions of the legend's entries: left edge [px] and row.
     fn legend(&self) -> Vec<(&Curve, u32, u32)> {
         let named = self.curves.iter().filter(|curve| !curve.name.is_empty());
         entries(named, self.width)
@@ -286,7 +285,7 @@ impl Chart {
         let labels: Vec<Label> = words
             .iter()
             .map(|(_, point, label)| {
-                // A letter more: × and % are wide, and words side by side need a gap.
+                // One letter more: × and % are wide, and words side by side need a gap.
                 let letters = (label.chars().count() + 1) as f64;
                 Label {
                     point: place(point),
@@ -335,7 +334,7 @@ fn text_style(pixels: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// Style of text that begins at a point, in the middle of its height.
+/// Style of text that begins at a point and is vertically centred on it.
 fn text_behind(pixels: f64, colour: &RGBColor) -> TextStyle<'_> {
     let text = text_style(pixels).color(colour);
     text.pos(Pos::new(HPos::Left, VPos::Center))

@@ -13,8 +13,8 @@ const TIMES: [[u8; 3]; 2] = [[176, 205, 228], [0, 66, 112]];
 /// Names of the axes.
 const AXES: [&str; 3] = ["x [m]", "y [m]", "z [m]"];
 
-/// Shapes at equal intervals of time, from pale to dark, with the paths of both ends, in every pair of axes that the flight spreads in, two at
-/// most. `None` where nothing flies.
+/// Shapes at equal intervals of time, from pale to dark, with the paths of both ends, in every pair of axes along which the flight spreads, at most two.
+/// `None` where nothing flies.
 pub(super) fn shapes(record: &Record) -> Option<String> {
     record.course.is_flight().then_some(())?;
     let spread = [0, 1, 2].map(|axis| {

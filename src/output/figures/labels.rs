@@ -1,8 +1,7 @@
 //! Placement of labels at points, so that none covers another label or a mark.
 //!
-//! The places right and left of the point are tried first, then those above and below it, at increasing distance. A
-//! label takes the first place that is free and inside the frame; where none is, the one that covers least. Labels
-//! placed before it stay.
+//! The places to the right and left of the point are tried first, then those above and below it, at increasing distance. A label takes the first place that
+//! is free and inside the frame; if none is, the one that covers least. Labels placed before it stay.
 
 /// A rectangle: its least and its greatest x and y [px].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +13,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Around a point, so far to either side.
+    /// Patch around a point, extending by `half` to either side.
     pub(super) fn around(point: [i32; 2], half: [i32; 2]) -> Patch {
         Patch {
             low: [point[0] - half[0], point[1] - half[1]],
@@ -22,7 +21,7 @@ impl Patch {
         }
     }
 
-    /// Area that two have in common [px²].
+    /// Area that two patches have in common [px²].
     fn common(&self, other: &Patch) -> i64 {
         let side = |axis: usize| {
             let (low, high) = (
@@ -48,7 +47,7 @@ pub(super) struct Label {
     pub size: [i32; 2],
 }
 
-/// Patches that cover a curve through points [px], to this distance on either side of it.
+/// Patches that cover a curve through points [px], within this distance on either side of it.
 pub(super) fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
     points.windows(2).flat_map(move |ends| {
         let [from, to] = [ends[0], ends[1]];
@@ -64,7 +63,7 @@ pub(super) fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patc
 /// Rows that a label may move away from its point.
 const ROWS: i32 = 6;
 
-/// Placement of labels in a frame, `gap` [px] off their points and clear of `marks`.
+/// Placement of labels in a frame, `gap` [px] from their points and clear of `marks`.
 pub(super) fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
     let mut taken = marks.to_vec();
     for label in labels {
@@ -72,14 +71,14 @@ pub(super) fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32)
             let covered: i64 = taken.iter().map(|other| place.common(other)).sum();
             covered + place.area() - place.common(frame)
         };
-        // of equals the first
+        // of equal ones, the first
         let best = places(label, gap).min_by_key(cover);
         taken.extend(best);
     }
     taken.split_off(marks.len())
 }
 
-/// The places that a label tries, from the best on.
+/// Candidate places of a label, best first.
 fn places(label: &Label, gap: i32) -> impl Iterator<Item = Patch> {
     let Label {
         point: [x, y],
@@ -110,7 +109,7 @@ mod tests {
         Label { point, size }
     }
 
-    /// Marks at the points of labels, and where these stand.
+    /// Marks at the points of labels, and places of these labels.
     fn stand(points: &[[i32; 2]]) -> (Vec<Patch>, Vec<Patch>) {
         let marks: Vec<Patch> = points.iter().map(|p| Patch::around(*p, [4, 4])).collect();
         let labels: Vec<Label> = points.iter().map(|p| label(*p)).collect();

@@ -20,9 +20,9 @@ use super::record::{ELEVATION, Node, Record};
 pub const WIDTH: u32 = 900;
 /// Height of a chart of one history [px].
 const HISTORY_HEIGHT: u32 = 340;
-/// Most shapes drawn faintly to show how far the lines move.
+/// Greatest number of shapes drawn faintly to show how far the lines move.
 const TRACES_MAX: usize = 24;
-/// Most lines that get a dashed level of their static catenary in the tension history: more would hide the histories.
+/// Greatest number of lines with a dashed level of their static catenary in the tension history: more would hide the histories.
 const LEVELS_MAX: usize = 3;
 /// A system wider than this part of its length across its principal direction gets a plan [-].
 const PLAN_RATIO: f64 = 0.01;
@@ -54,7 +54,7 @@ pub(super) const STEMS: [&str; 8] = [
     "profile", "plan", "tension", "force", "bending", "waves", "flight", "balance",
 ];
 
-/// Every figure that the record has something for, as file stem and SVG.
+/// Every figure for which the record has data, as file stem and SVG.
 pub fn all(record: &Record) -> Vec<(&'static str, String)> {
     if record.course.is_flight() {
         let figures = [
@@ -181,7 +181,7 @@ pub fn waves(record: &Record) -> Option<String> {
     Some(in_time(title, "elevation [m]".to_string(), curves).svg())
 }
 
-/// Chart of forces [N] or moments [N m] in time [s], in the multiple of the newton that fits, whose name `label` gets. `None` without a finite value.
+/// Chart of forces [N] or moments [N m] in time [s], in a suitable multiple of the newton, whose name is passed to `label`. `None` without a finite value.
 fn in_newtons(title: String, label: impl Fn(&str) -> String, mut curves: Vec<Curve>) -> Option<Chart> {
     let values = curves.iter().flat_map(|c| &c.points).map(|p| p[1].abs());
     let greatest = values.filter(|v| v.is_finite()).fold(f64::NAN, f64::max);

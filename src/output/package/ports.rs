@@ -26,7 +26,7 @@ impl<'i> Port<'i> {
         self.displacements.len() > 3
     }
 
-    /// Name of one of its variables without its own.
+    /// Name of one of its variables without the name of the port.
     pub(super) fn member(&self, variable: &'i Variable) -> &'i str {
         let rest = variable.name.strip_prefix(self.name);
         rest.and_then(|rest| rest.strip_prefix('.'))

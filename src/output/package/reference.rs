@@ -31,7 +31,7 @@ const STEPS_MAX: usize = 100;
 /// Greatest deviation of a variable from its reference, over the greatest magnitude of the reference [-].
 const TOLERANCE: f64 = 1e-6;
 
-/// Files of the reference results, by name in their folder; none of a scene whose first step fails.
+/// Files of the reference results, by name in their folder; none for a scene whose first step fails.
 ///
 /// # Errors
 /// An equilibrium that does not exist.
@@ -94,7 +94,7 @@ impl<'i> Table<'i> {
     }
 }
 
-/// The experiment, as a host makes it.
+/// The experiment, as a host runs it.
 struct Run<'i> {
     simulation: Simulation,
     inputs: Table<'i>,
@@ -156,7 +156,7 @@ impl Run<'_> {
         }
     }
 
-    /// Outputs now; none where one of them is not finite.
+    /// Present outputs; none if one of them is not finite.
     fn row(&self, time: f64) -> Option<Vec<f64>> {
         let mut row = vec![time];
         for variable in &self.outputs.variables {

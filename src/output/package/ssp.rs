@@ -83,7 +83,7 @@ fn connectors(xml: &mut Xml, variables: &[&Variable]) -> io::Result<()> {
     })
 }
 
-/// Connection of a variable of the component with the connector of its name at the system.
+/// Connection of a variable of the component to the system's connector of the same name.
 fn connection(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
     let name = variable.name.as_str();
     let component = match variable.causality {

@@ -20,16 +20,16 @@ use super::shape::Shape;
 use super::uniform::EndForces;
 use super::{FlatSeabed, Section};
 
-/// Horizontal tension that stands for the limit of none, over the weights of the sections [-].
+/// Horizontal tension that represents the limit of zero, over the weights of the sections [-].
 const LIMP_SHARE: f64 = 1e-40;
 
-/// Tension that counts as none, over the weights of the sections [-].
+/// Tension that counts as zero, over the weights of the sections [-].
 const NOTHING_SHARE: f64 = 1e-30;
 
 /// Weight of a section below which it is treated as weightless, over the weights of all [-].
 const UNFELT_SHARE: f64 = 1e-22;
 
-/// Position error that counts as none, over the unstretched length [-].
+/// Position error that counts as zero, over the unstretched length [-].
 const CLOSURE: f64 = 3e-16;
 
 /// Position error that rounding cannot explain, over the unstretched length [-].
@@ -173,7 +173,7 @@ impl Sections {
         }
     }
 
-    /// Searches the tension at A, or else the place where tension begins, that brings the ends together; returns the steps.
+    /// Searches the tension at A, or else the place where tension begins, that brings the ends together; returns the number of steps.
     fn search(&self, guess: (f64, f64), shape: &mut Shape) -> usize {
         let tolerance = CLOSURE * self.length;
         let lowest = self.limp();
@@ -210,7 +210,7 @@ impl Sections {
         steps
     }
 
-    /// Horizontal tension that stands for the limit of none [N].
+    /// Horizontal tension that represents the limit of zero [N].
     fn limp(&self) -> f64 {
         LIMP_SHARE * self.weights
     }
@@ -262,7 +262,7 @@ impl Sections {
         let reach = |vertical: f64| 2.0 * (vertical.abs() + from.horizontal + self.weights);
         let (mut start, mut reference) = memory.unwrap_or((0.0, from.section));
         let mut passes = 0;
-        // a second pass is enough as a rule: it only moves the reference to where V is small
+        // a second pass is usually enough: it only moves the reference to where V is small
         loop {
             passes += 1;
             let root = root::increasing(
@@ -302,7 +302,7 @@ impl Sections {
         memory: &mut Option<(f64, usize)>,
     ) -> (Departure, Touch) {
         let run = self.run(from, tight_from);
-        // the rise to B is quadratic in V there, so a search would leave V the root of its tolerance
+        // the rise to B is quadratic in V there, so a search would leave an error in V of the root of its tolerance
         let ends_on_seabed =
             run.end == self.sections.len() && self.seabed.is_some_and(|seabed| self.rise <= seabed.height);
         let (mut start, mut reference) = memory.unwrap_or((0.5 * (run.last - run.first), run.end));
@@ -385,8 +385,8 @@ impl Sections {
         flight.vertical + (self.before[index] - self.before[flight.reference])
     }
 
-    /// A section's end, beyond where `from` the search began, where the vertical tension of the flight is so much smaller than at its reference that it is better
-    /// found there: the vertical tension and the section.
+    /// Vertical tension of the flight at a section's end beyond the start `from` of the search, and that section, where it is so much smaller than
+    /// at its reference that it is better found there.
     fn better_reference(&self, flight: &Departure, from: &Departure, flown: &Flown) -> Option<(f64, usize)> {
         // where the gap jumps over zero the flight does not end at the touchdown it seems to have
         let ends = flown.touch.filter(|_| flown.gap.abs() < JUMP * self.length);
@@ -457,7 +457,7 @@ impl Sections {
         }
     }
 
-    /// Height to spare over the tightest constraint of the flight that starts at `from`.
+    /// Clearance of the tightest constraint of the flight that starts at `from`.
     fn fly(&self, from: &Departure) -> Flown {
         let height = self.seabed.map_or(f64::NEG_INFINITY, |seabed| seabed.height);
         let mut tightest = Flown {

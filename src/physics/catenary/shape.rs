@@ -192,7 +192,7 @@ impl Shape {
         reversed
     }
 
-    /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones where they are, and horizontal tension up to it into none.
+    /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones in place, and sets horizontal tension up to it to zero.
     pub(super) fn relax(&mut self, nothing: f64) {
         for piece in &mut self.pieces {
             let (x, z) = piece.advance(piece.length);

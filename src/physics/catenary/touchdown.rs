@@ -5,13 +5,13 @@
 //! T − H + V²/2EA = wD   ⇒   V² = 2wD(wD + 2H) / (1 + c/EA + √(1 + 2c/EA + H²/EA²)),   c = wD + H
 //!
 //! The excess of the flight's length over its geometric span is E(H) = (H/w)(sinh β − β), sinh β = V/H. The ends are
-//! the right span apart where
+//! the span X apart where
 //!
 //! Σ E(H) + (X − L) = ∫ H ds / EA
 //!
 //! the sum over the one flight (A on the seabed) or the two (A above it). The left falls with H, the right rises: one root.
 //! Friction lowers the tension on the seabed by μw per metre towards A, not below 0, which enters the integral on the right.
-//! At H = 0 the flights hang vertically; if there is line left over even then, it is slack.
+//! At H = 0 the flights hang vertically; any line left over even then is slack.
 //! Every term is positive and computed without cancellation, and the logarithm of the ratio of the two sides is nearly linear in
 //! ln H, so Newton's method needs four or five steps. Derived here (module above, "The seabed"). Valid for w > 0 and, with
 //! friction, for A on the seabed.
@@ -19,7 +19,7 @@
 use super::root;
 use super::uniform::{EndForces, Uniform, sinh_less};
 
-/// Horizontal tension taken for zero, over the weight of the line [-].
+/// Horizontal tension treated as zero, over the weight of the line [-].
 const HORIZONTAL_SHARE_MIN: f64 = 1e-40;
 
 /// Ends of a line that touches down.

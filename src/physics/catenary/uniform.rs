@@ -6,8 +6,8 @@
 //!
 //! d = (λ + κ)/sinh λ,   τ = σ/EA = κ/tanh λ,   then   H = Xσ/(L(λ/tanh λ + τ)),   Vₘ = Zσ/(L(1 + τ)).
 //!
-//! G increases with λ, so the root is unique. The first two terms are sag (positive) less stretch, the third is how far the
-//! chord exceeds the line; each is computed without cancellation (the third in twice the precision), so forces keep
+//! G increases with λ, so the root is unique. The first two terms are sag (positive) less stretch, the third is the excess of
+//! the chord over the line; each is computed without cancellation (the third in twice the precision), so forces keep
 //! their digits from the taut light line of infinite stiffness to the deep U. Derivation: module above, "One equation".
 //! Valid for w of either sign; w = 0 and X = 0 have their own closed forms.
 

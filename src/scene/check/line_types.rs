@@ -39,7 +39,7 @@ fn check_mass(findings: &mut Findings, at: &str, line_type: &LineType, scene: &S
     }
 }
 
-/// Water and seabed act on a line by its diameter.
+/// Water and seabed act on a line through its diameter.
 fn check_diameter(findings: &mut Findings, at: &str, name: &str, line_type: &LineType, scene: &Scene) {
     if line_type.diameter.is_some() {
         return;
@@ -116,7 +116,7 @@ fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
     }
 }
 
-/// A beam resists everything, by its own number or by its solid section; a cable has neither shear nor torsion.
+/// A beam needs every stiffness and its rotary inertia, by its own key or from its solid section; a cable has neither shear nor torsion.
 fn check_model(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
     let beam = scene.makes_beams(line_type);
     let why = match line_type.model {

@@ -140,14 +140,14 @@ fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     }
 }
 
-/// Returns whether a line flies where nothing holds it: a beam, whose shape at the start is given.
+/// Returns whether a line is in free flight: a beam, whose shape at the start is given.
 fn flies(line: &Line, scene: &Scene) -> bool {
     let all_beams = scene.solver.integrator == Integrator::Beam;
     let beams = all_beams || scene.types_of(line).all(|kind| kind.model == LineModel::Beam);
     line.initial != InitialShape::Static && beams
 }
 
-/// Every line must hang, over other lines, on something that does not just fall.
+/// Every line must be connected, possibly through other lines, to something that does not simply fall.
 fn check_held(scene: &Scene, names: &Names, findings: &mut Findings) {
     let mut held: Vec<bool> = scene
         .points

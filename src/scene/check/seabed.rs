@@ -3,7 +3,7 @@
 use super::{Findings, quantity, rules};
 use crate::scene::{DepthGrid, LineModel, Scene, Seabed};
 
-/// Most soundings.
+/// Greatest number of soundings.
 const SOUNDINGS_MAX: usize = 4_000_000;
 
 pub(super) fn check_seabed(scene: &Scene, seabed: &Seabed, findings: &mut Findings) {

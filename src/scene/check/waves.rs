@@ -26,7 +26,7 @@ pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
     check_lines(scene, at, ["waves move", "the waves"], findings);
 }
 
-/// Refuses what the host's flow of the water cannot act on.
+/// Refuses anything on which the host's flow of the water cannot act.
 pub(super) fn check_flow(scene: &Scene, findings: &mut Findings) {
     check_lines(scene, "water.flow", ["the flow moves", "the flow"], findings);
     let is_alone = |point: &Point| {
@@ -47,7 +47,7 @@ fn is_wet(point: &Point) -> bool {
     sizes.any(|size| size > 0.0)
 }
 
-/// The ways to describe a sea, of which one is taken, and the keys that belong to it.
+/// The ways to describe a sea, of which one must be given, and the keys that belong to it.
 fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
     let rows = matches!(sea.components, Some(WaveComponents::Rows(_)));
     let file = sea.file.is_some();
@@ -86,7 +86,7 @@ fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
     }
 }
 
-/// Lines that cannot be modelled in water that moves: what moves it, as the beginning of a sentence, and alone.
+/// Lines that cannot be modelled in moving water: the source of the motion, as the beginning of a sentence, and alone.
 fn check_lines(scene: &Scene, at: &str, [moves, source]: [&str; 2], findings: &mut Findings) {
     let still = scene.solver.integrator == Integrator::QuasiStatic;
     let beam = scene.type_of_beams(|line_type| line_type.diameter.is_some());

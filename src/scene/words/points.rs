@@ -94,7 +94,7 @@ impl Scene {
         })
     }
 
-    /// The lines that are joined to a free point, through it and other free points.
+    /// The lines that are connected to a free point, directly or through other free points.
     fn network_of(&self, point: &Point) -> Vec<&Line> {
         let free: Vec<&str> = self.free_points().map(|point| point.name.as_str()).collect();
         let mut joined = vec![point.name.as_str()];

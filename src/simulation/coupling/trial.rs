@@ -1,4 +1,4 @@
-//! Steps that are repeated, or made in advance, along a path whose end is moved.
+//! Steps that are repeated, or made in advance, along a path whose end is shifted.
 
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,7 @@ pub(in crate::simulation) struct StepStart {
     pub step: f64,
 }
 
-/// Values on both sides of a motion, below and above, and the distance of the two [m, rad, m/s, rad/s].
+/// Values on both sides of a motion, below and above, and the distance between the two [m, rad, m/s, rad/s].
 pub(super) struct Sides<T> {
     pub values: [T; 2],
     pub apart: f64,
@@ -44,7 +44,7 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// The last step again. `None` before the first one.
+    /// The last step, to be repeated. `None` before the first one.
     pub(super) fn of_last_step(simulation: &Simulation) -> Result<Option<Trial>, String> {
         if !simulation.model.derivatives {
             return Err("derivatives are off: set `derivatives` in [output] to true".into());
@@ -66,8 +66,8 @@ impl Trial {
         }))
     }
 
-    /// The coming step, as long as the last one, with all bodies going on from their present velocities at their mean accelerations over
-    /// the last step. `None` where a vessel has no unique rates.
+    /// The coming step, as long as the last one, with all bodies continuing from their present velocities at their mean accelerations over the last step.
+    /// `None` where a vessel has no unique rates.
     pub(super) fn of_coming_step(simulation: &Simulation) -> Option<Trial> {
         let (model, snapshot) = (&*simulation.model, &simulation.snapshot);
         let length = match snapshot.last_step {
@@ -153,7 +153,7 @@ impl Trial {
         Ok(simulation)
     }
 
-    /// Reads values after steps with a component of the end's motion on either side of that of the paths.
+    /// Reads values after steps in which a component of the end motion is shifted to either side of that of the paths.
     pub(super) fn both_sides<T>(
         &mut self,
         motion: EndMotion,
@@ -174,7 +174,7 @@ impl Trial {
     }
 }
 
-/// Reads values at statics with a displacement on either side of that of the inputs.
+/// Reads values in static equilibrium with a displacement shifted to either side of the input.
 pub(super) fn both_sides_of_statics<T>(
     simulation: &Simulation,
     motion: EndMotion,
@@ -217,7 +217,7 @@ fn distance(simulation: &Simulation, motion: EndMotion) -> f64 {
     }
 }
 
-/// Place of a coupled point among the paths.
+/// Index of a coupled point among the paths.
 fn place_of_path(simulation: &Simulation, point: usize) -> usize {
     let before = simulation.model.points[..point].iter();
     before.filter(|point| is_coupled(point)).count()
@@ -249,7 +249,7 @@ fn shift_end(
         }
         Body::Vessel(vessel) if motion.axis < 3 => paths.vessels[vessel].0[0].shift_end(span, along),
         Body::Vessel(vessel) => {
-            // an angle moves at the same angular velocity, and that at the same angles
+            // an angle is shifted at the same angular velocity, and the angular velocity at the same angles
             let path = &mut paths.vessels[vessel].0[1];
             let [angles, rates] = path.end().map(|lanes| lanes.xyz());
             let angles = simulation.model.vessels[vessel].attitude + angles;

@@ -8,19 +8,19 @@ use nalgebra::Vector3;
 use crate::scene::{Line, Note, Scene, Section};
 use crate::simulation::Simulation;
 
-/// Part of the height of a current profile by which a line may leave it unnoticed, as a line does that lies on the seabed [-].
+/// Fraction of the height of a current profile by which a line may leave it without a note, as a line on the seabed does [-].
 const HEIGHT_MARGIN: f64 = 0.01;
 
 /// The tables of a scene.
 #[derive(Debug, Clone)]
 pub(super) struct LeftTables {
-    /// For every line with tension-strain curves its sections.
+    /// Sections of every line with tension-strain curves, by line.
     stretched: Vec<(usize, Vec<Stretched>)>,
     /// Lowest and highest row of the current [m].
     heights: Option<[f64; 2]>,
     /// Least and greatest x and y of the soundings [m].
     soundings: Option<[[f64; 2]; 2]>,
-    /// Key paths of those that have been left.
+    /// Key paths of the tables that have been left.
     left: BTreeSet<String>,
 }
 
@@ -35,7 +35,7 @@ struct Stretched {
 }
 
 impl LeftTables {
-    /// The tables of a scene, none of them left as yet.
+    /// The tables of a scene, none of them left yet.
     pub(super) fn new(scene: &Scene) -> LeftTables {
         let lines = scene.lines.iter().enumerate();
         let stretched = lines.map(|(index, line)| (index, stretched(scene, line)));
@@ -51,7 +51,7 @@ impl LeftTables {
         }
     }
 
-    /// Notes on the tables that are left and were not before.
+    /// Notes on the tables that are newly left.
     pub(super) fn look(&mut self, simulation: &Simulation, notes: &mut Vec<Note>) {
         for (line, sections) in &self.stretched {
             look_at_strain(simulation, *line, sections, &mut self.left, notes);

@@ -1,6 +1,6 @@
 //! A beam on half as many elements, and its sections on the elements of the finer beam.
 //!
-//! Two neighbouring elements become one, soft in each of its stiffnesses as both in a row, l/k = l₁/k₁ + l₂/k₂, with the mean of their strains
+//! Two neighbouring elements become one, with each of its stiffnesses that of both in series, l/k = l₁/k₁ + l₂/k₂, and the mean of their strains
 //! without stress. The node between them leaves half of its weight to each neighbour; the springs of the seabed add. On the way back it lies on the cubic
 //! through both neighbours along their directors d₃, turned by its part of the turn between them.
 

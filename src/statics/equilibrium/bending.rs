@@ -6,13 +6,14 @@
 //! 1. Newton's method with the exact tangent from the shape at hand: the flexible line's catenary, or the equilibrium before.
 //! 2. The same from the equilibrium of the perfectly flexible line.
 //! 3. Pseudo-transient relaxation from a small wave across the shape at hand: anchoring springs as stiff as the exact tangent needs to
-//!    be positive definite, which lets grow what is unstable.
-//! 4. The same from a smooth curve along the clamps, where the flexible line leaves them too sharply: a cantilever whose
+//!    be positive definite, so that unstable deflections grow.
+//! 4. The same from a smooth curve along the clamps, where the flexible line leaves them at too sharp an angle: a cantilever whose
 //!    flexible line hangs straight down starts unbent.
 //!
 //! An equilibrium that is not stable is left by a small wave too.
 //!
-//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the order is found by trial on cantilevers, arches, columns and slack lines in `tests/lines/bending.rs`.
+//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the order is found by trial on cantilevers,
+//! arches, columns and slack lines in `tests/lines/bending.rs`.
 
 use nalgebra::Vector3;
 
@@ -21,16 +22,16 @@ use crate::elements::{Workspace, place_ends};
 use crate::model::{Line, State};
 use crate::statics::StaticsError;
 
-/// Solves of one Newton iteration with bending.
+/// Greatest number of solves of one Newton iteration with bending.
 pub(super) const NEWTON_SOLVES_MAX: usize = 100;
-/// Indefinite tangents in one Newton iteration.
+/// Greatest number of indefinite tangents in one Newton iteration.
 pub(super) const REFUSALS_MAX: usize = 8;
 /// Negative stiffness that does not count as instability, over the sum of the loads and the length of the longest line [-]: on a mass
 /// as heavy as the load it grows by a factor e in an hour.
 pub(super) const INSTABILITY: f64 = 1e-7;
-/// Turn of a segment in one step [rad].
+/// Greatest turn of a segment in one step [rad].
 const TURN_MAX: f64 = 0.5;
-/// Solves of one relaxation.
+/// Greatest number of solves of one relaxation.
 const RELAX_SOLVES_MAX: usize = 1000;
 /// Longest step of a relaxation, over the longest line [-].
 const RELAX_STEP_MAX: f64 = 0.05;
@@ -50,7 +51,7 @@ pub(super) fn stiffest_joint(line: &Line) -> f64 {
 }
 
 impl Problem<'_> {
-    /// The part of the last correction that turns no segment by more than is sensible [-].
+    /// Part of the last correction that turns no segment by more than [`TURN_MAX`] [-].
     pub(super) fn turning_part(&self, state: &State, work: &Workspace) -> f64 {
         let mut turn = 0.0_f64;
         for &index in &self.network.lines {
@@ -168,8 +169,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Lays every clamped line on a smooth curve along its clamps; returns true where there was one. A free point alone at the other end goes
-    /// along.
+    /// Lays every clamped line on a smooth curve along its clamps; returns true where there was one. A free point alone at the other end
+    /// moves along with it.
     fn follow_clamps(&self, state: &mut State) -> bool {
         let mut any = false;
         for &index in &self.network.lines {

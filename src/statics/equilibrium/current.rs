@@ -1,7 +1,7 @@
 //! Equilibrium in a current.
 //!
 //! The drag of the current on a node depends on the node's place and on the direction of the line there, so it is
-//! part of the solution. The drag F of all nodes is kept while the network finds its equilibrium as under any dead
+//! part of the solution. The drag F of all nodes is kept while the equilibrium of the network is found as under any dead
 //! load. The drag G(F) of the resulting shape then replaces it until both agree, F = G(F), accelerated by
 //! [`Anderson`]; without acceleration light lines in a strong current would oscillate. Where the iteration does not
 //! converge, the current is raised in parts.
@@ -22,9 +22,9 @@ use crate::statics::StaticsError;
 
 /// Rounds of drag and equilibrium for each part of the current.
 const ROUNDS_MAX: usize = 60;
-/// Rounds that the acceleration remembers.
+/// Number of rounds that the acceleration uses.
 const DEPTH: usize = 8;
-/// Parts that the current is raised in: each of these is tried [-].
+/// Numbers of parts in which the current is raised, tried in turn [-].
 const PARTS: [usize; 4] = [1, 4, 16, 64];
 
 /// Drag of a current on a node at rest [N].
@@ -97,7 +97,7 @@ impl Problem<'_> {
         Err(self.not_converged(state, work, start))
     }
 
-    /// Drag of all nodes of the network as they lie [N], three numbers a node.
+    /// Drag of all nodes of the network at their present positions [N], three numbers per node.
     fn drag_of_shape(&self, stream: Stream, state: &State, loads: &mut Vec<f64>) {
         loads.clear();
         for &index in &self.network.lines {
@@ -111,7 +111,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Sets the loads of the assembly; returns the sum of their sizes [N].
+    /// Sets the loads of the assembly; returns the sum of their magnitudes [N].
     fn put_loads(&self, loads: &[f64], work: &mut Workspace) -> f64 {
         let mut nodes = loads.chunks(3).map(Vector3::from_column_slice);
         let mut sum = 0.0;

@@ -1,9 +1,9 @@
 //! Equilibrium with the friction of the seabed.
 //!
 //! The friction of a line at rest depends on the way it was laid. As in the closed-form catenary, every line is taken
-//! as laid from end A without tension and hauled at end B, or from B where only that lies on the seabed. The network
-//! first finds its equilibrium without friction; there every node gets an anchor, its place on the same path if the
-//! line lay there without stretch,
+//! as laid from end A without tension and hauled at end B, or from B where only B lies on the seabed. The equilibrium
+//! without friction is found first; there every node gets an anchor, its position on the same path if the line lay
+//! there without stretch,
 //!
 //!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i,
 //!
@@ -41,7 +41,7 @@ impl Problem<'_> {
         lines.any(|line| line.friction().is_some())
     }
 
-    /// From the equilibrium without friction to that with it.
+    /// Finds the equilibrium with friction from that without it.
     pub(super) fn add_friction(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         self.lay(state);
@@ -89,7 +89,7 @@ impl Problem<'_> {
         settled
     }
 
-    /// Anchors of lines laid on the path they lie on.
+    /// Sets the anchors of lines as laid on their present path.
     fn lay(&self, state: &mut State) {
         for &index in &self.network.lines {
             let line = &self.model.lines[index];

@@ -1,14 +1,14 @@
 //! Equilibrium of slack lines.
 //!
-//! A slack segment exerts no force, so that a line with little or no tension in part of it has no stiffness across
-//! there. Newton's method then moves its nodes far, the more of them the finer the mesh. Such a network is therefore
+//! A slack segment exerts no force, so that a line with little or no tension in part of it has no lateral stiffness
+//! there. Newton's method then moves its nodes far, and more of them on finer meshes. The equilibrium is therefore
 //! found as the limit of networks that are taut everywhere: the tension T of a segment and its excess over the
 //! tension of its strain are complementary, and their product is set to a small force m,
 //!
 //!   T ≥ 0,  T − N(ε) ≥ 0,  T (T − N(ε)) = m EA,
 //!
-//! which makes T(ε) smooth and the energy of the network convex with one minimum only. m is the tension of a segment
-//! that is shortened to nothing. For m as great as all loads together the lines are pulled straight. From there m is
+//! which makes T(ε) smooth and the energy of the network convex with a single minimum. m is the tension of a segment
+//! that is shortened to zero length. For m as great as all loads together the lines are pulled straight. From there m is
 //! reduced to zero, at the rate that Newton's method on positions and tensions together allows, along with the
 //! breadth of the water's surface, over which a line that floats gains its buoyancy. Where the equilibrium is not
 //! unique, the result is the one whose segments are shortened most evenly.
@@ -22,13 +22,13 @@ use crate::model::State;
 
 /// First m, over the sum of the loads [-].
 const TAUTEST: f64 = 1.0;
-/// Last m, over the sum of the loads, where an equilibrium that is not accepted by then will not be [-].
+/// Last m, over the sum of the loads: the search fails if no equilibrium is accepted by then [-].
 const SLACKEST: f64 = 1e-26;
 /// Ratio of successive m: the first, the least, and the value close to one at which the method stops [-].
 const FALL: f64 = 0.3;
 const FALL_MIN: f64 = 0.01;
 const FALL_MAX: f64 = 0.9;
-/// Solves for one m, and so few that the next is to fall by more.
+/// Greatest number of solves for one m, and the number below which the next m falls by more.
 const SOLVES_MAX: usize = 25;
 const SOLVES_FEW: usize = 8;
 /// Force out of balance that is left at one m, over the sum of the loads [-]; never more than m.
@@ -45,7 +45,7 @@ impl Problem<'_> {
         lines.any(|line| line.surface.is_some())
     }
 
-    /// Follows the equilibrium from taut straight lines between their points to the slack ones they are; returns true where it converged.
+    /// Follows the equilibrium from taut straight lines between their points to the actual slack ones; returns true where it converged.
     pub(super) fn slacken(&self, state: &mut State, work: &mut Workspace) -> bool {
         self.pull_straight(state, work);
         let mut found = std::mem::take(&mut work.trial);

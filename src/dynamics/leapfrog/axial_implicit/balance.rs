@@ -1,9 +1,9 @@
-//! Energy balance of the axial-implicit leapfrog ([`crate::dynamics::leapfrog::balance`]): T̄ works on the free nodes, and (T̄ − S) on the dampers, S
-//! being the part of T̄ that the springs have.
+//! Energy balance of the axial-implicit leapfrog ([`crate::dynamics::leapfrog::balance`]): T̄ does work on the free nodes, and (T̄ − S) on the dampers, with S
+//! the part of T̄ from the springs.
 //!
 //! The averaging dissipates the work of S less that of the discrete gradient of the springs' energy from half a step before t_n to half a step after
 //! it. That is ½(T₋ + T₊)(T₊ − T₋)/(U₊ − U₋) for springs whose tension is proportional to strain, with U the tension they would have if
-//! they pushed too: the mean of both except in segments that slacken or snap taut. The averaging of ρ = 1 is this mean and dissipates nothing.
+//! they also pushed: the mean of both except in segments that slacken or snap taut. The averaging of ρ = 1 is this mean and dissipates nothing.
 
 use super::AxialLine;
 use super::rows::{SegmentRow, Sizes, pulled};
@@ -107,7 +107,7 @@ impl AxialLine {
         (segment.spring(along).positive() - gradient) * moved
     }
 
-    /// Discrete gradient of the energy of springs that are curved [N].
+    /// Discrete gradient of the energy of curved springs [N].
     #[inline(always)]
     fn curved_gradient(&self, at: usize, relative: [Vectors; 2], step: Step) -> Lanes {
         let [zero, half, one] = [0.0, 0.5, 1.0].map(Lanes::splat);

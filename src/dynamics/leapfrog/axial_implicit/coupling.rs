@@ -1,18 +1,18 @@
 //! Free points of a network with implicit tension.
 //!
 //! Given the velocity v of the free point at an end, the tensions T̄ of a line are linear in s = d·v, with d = q at end B and −q at end A: the system in
-//! T̄ has r s on the right-hand side of the end segment, r being the slope of T̄ with its stretching velocity. So
+//! T̄ has r s on the right-hand side of the end segment, with r the slope of T̄ with its stretching velocity. Hence
 //!
 //! T̄ = T⁰ + Σ_e g_e s_e,
 //!
-//! T⁰ being that of free points at rest, and g_e the solution for r at the end segment alone. The momentum of a point with the mass M, which includes the
+//! with T⁰ that of free points at rest, and g_e the solution for r at the end segment alone. The momentum of a point with the mass M, which includes the
 //! half nodes of its lines, and the force f without tension,
 //!
 //! M (v − v⁻) = Δt [f − Σ_e d_e T̄_e],
 //!
-//! then is a symmetric positive definite system in the velocities of the points, with a block for every line between two of them: the graph of the
+//! is then a symmetric positive definite system in the velocities of the points, with a block for every line between two of them: the graph of the
 //! network. It is solved by sparse elimination ([`PointSystem`]). Springs of the seabed that push add to M, and are checked with the flags of slack and
-//! contact of the lines; friction is the impulse that Coulomb's law allows of the one that would stop the point, until both agree.
+//! contact of the lines; friction is the part of the impulse that would stop the point that Coulomb's law allows, iterated until both agree.
 //!
 //! Source: static condensation of the lines to their ends (Guyan 1965, AIAA J. 3, 380) in the equations of [`super`].
 
@@ -34,10 +34,10 @@ use crate::model::{End, Model, Network};
 use crate::physics::friction::Friction;
 use crate::physics::slender::Slender;
 
-/// Change of friction over the push of the seabed that requires another pass [-].
+/// Change of friction relative to the push of the seabed that requires another pass [-].
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
-/// Tensions of four segments by the velocities of free points.
+/// Tensions of four segments as functions of the velocities of free points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OpenRow {
     /// T⁰ [N].
@@ -56,7 +56,7 @@ impl Default for OpenRow {
     }
 }
 
-/// The tension of the segment at an end by the velocities of the free points at both.
+/// Tension of the segment at an end as a function of the velocities of the free points at both ends.
 #[derive(Debug, Clone, Copy)]
 struct EndTension {
     /// d [-].
@@ -128,7 +128,7 @@ impl Coupling {
     }
 }
 
-/// A step of a network with free points from `t` [s]. Returns its passes.
+/// Takes a step of a network with free points from `t` [s]. Returns the number of passes.
 pub(super) fn step(network: &mut LeapfrogNetwork<AxialImplicit>, model: &Model, t: f64, step: Step) -> usize {
     for (line, ends) in network.lines_and_ends() {
         let ends = &ends.map(|end| end.position);
@@ -255,7 +255,7 @@ impl CoupledPoint {
 }
 
 impl Coupling {
-    /// Solves for the velocities of the points, by the tensions that the lines have found.
+    /// Solves for the velocities of the points, with the tensions found for the lines.
     fn solve(&mut self, network: &LeapfrogNetwork<AxialImplicit>, step: Step) {
         let Some(system) = &mut self.system else {
             return;
@@ -323,7 +323,7 @@ impl AxialLine {
                 .get(segment.lane)
     }
 
-    /// Tension at an end by the velocities of free points.
+    /// Tension at an end as a function of the velocities of free points.
     fn end_tension(&self, end: End) -> EndTension {
         let (segment, _) = self.layout.end_segment(end);
         let row = &self.kernel.open[segment.row - 1];
@@ -341,7 +341,7 @@ impl AxialLine {
         ENDS.into_iter().filter(move |&end| open[end as usize])
     }
 
-    /// Load and mass of the half node at an end without tension and contact, the drag being implicit as that of the other nodes.
+    /// Load and mass of the half node at an end without tension and contact, with implicit drag like that of the other nodes.
     fn end_share(&self, end: End, step: Step) -> PointLoad {
         let layout: &Layout = &self.layout;
         let at = layout.end_slot(end);
@@ -384,7 +384,7 @@ impl AxialLine {
         share
     }
 
-    /// Gives the node at an end the velocity of its point [m/s].
+    /// Sets the velocity of the node at an end to that of its point [m/s].
     fn set_end_velocity(&mut self, end: End, velocity: Vector3<f64>) {
         let at = self.layout.end_slot(end);
         let node = &mut self.kernel.rows.nodes[at.row - 1];
@@ -392,7 +392,7 @@ impl AxialLine {
         node.loose.set(at.lane, velocity);
     }
 
-    /// Finds T⁰ and g at the ends that free points hold.
+    /// Finds T⁰ and g at the ends tied to free points.
     #[inline(always)]
     fn find_open_tensions(&mut self, sizes: &Sizes) {
         self.open_ends()
@@ -439,7 +439,7 @@ impl AxialLine {
     }
 }
 
-/// Everything that a line finds before its tensions.
+/// Evaluates everything that precedes the tensions of a line.
 struct Prepare<'a> {
     step: Step,
     ends: &'a [Vector3<f64>; 2],
@@ -454,7 +454,7 @@ impl Stage for Prepare<'_> {
     }
 }
 
-/// Tensions of a line by the velocities of free points at its ends.
+/// Tensions of a line at the velocities of free points at its ends.
 struct Tensions {
     step: Step,
 }

@@ -1,7 +1,7 @@
 //! A seabed with a slope, soundings or friction under the axial-implicit leapfrog.
 //!
-//! With the parts of water and damping in its mass M, a node on the seabed obeys M (v − u) = Δt pull + λ_n n + λ_t, u being its velocity
-//! without tension and seabed. It is in one of three states, which are assumed before the system in T̄ is solved and checked after:
+//! With the parts of water and damping in its mass M, a node on the seabed obeys M (v − u) = Δt pull + λ_n n + λ_t, with u its velocity
+//! without tension and seabed. It is in one of three states, which are assumed before the system in T̄ is solved and checked afterwards:
 //!
 //! ```text
 //! off       λ = 0                                    v = u + M⁻¹ Δt pull
@@ -10,8 +10,8 @@
 //! ```
 //!
 //! a and b are those of [`crate::dynamics::leapfrog::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows
-//! ([`crate::physics::friction`]) at the velocity along the seabed that it would have without, leaving the seabed as fast as the pass found: with the inverse
-//! mass W in the axes of [`Footing`] and d the determinant of its block of n and a,
+//! ([`crate::physics::friction`]) at the velocity along the seabed that it would have without friction and with the normal velocity of the pass: with the
+//! inverse mass W in the axes of [`Footing`] and d the determinant of its block of n and a,
 //!
 //! ```text
 //! v⁰_a = u_a + (d Δt pull_a + W_na (v_n − u_n))/W_nn,   to λ_a with the compliance d/W_nn;   v⁰_b = u_b + W_bb Δt pull_b
@@ -29,7 +29,7 @@ use crate::physics::friction::Friction;
 use crate::physics::friction_step::Footing;
 use crate::physics::slender::Slender;
 
-/// Change of friction that requires another pass, over the greater of the push of the seabed and the greatest tension [-].
+/// Change of friction that requires another pass, relative to the greater of the push of the seabed and the greatest tension [-].
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
 /// State of a row of nodes on the seabed.
@@ -97,7 +97,7 @@ impl SeabedRow {
         }
     }
 
-    /// Sets normal and inverse mass of nodes that may touch the seabed; they start off it.
+    /// Sets normal and inverse mass of nodes that may touch the seabed; initially they are off it.
     #[inline(always)]
     fn approach(&mut self, node: &NodeRow, normal: Vectors, has_friction: bool) {
         let inverse = Slender {
@@ -165,7 +165,7 @@ impl SeabedRow {
 }
 
 impl NodeRow {
-    /// Puts the seabed into the equations of the nodes.
+    /// Adds the seabed to the equations of the nodes.
     #[inline(always)]
     fn settle_on(&mut self, seabed: &SeabedRow, has_friction: bool) {
         let (zero, slides) = (Lanes::splat(0.0), seabed.slides);
@@ -265,7 +265,7 @@ impl AxialLine {
         !changed.any_positive()
     }
 
-    /// Keeps the friction of the step for the state.
+    /// Stores the friction of the step for the state.
     #[inline(always)]
     pub(super) fn keep_friction(&mut self, step: Step) {
         if self.layout.friction().is_none() {

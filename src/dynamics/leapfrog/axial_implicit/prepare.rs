@@ -1,6 +1,6 @@
 //! Quantities of a step of the axial-implicit leapfrog that precede its system: segments, nodes, and contact with a level seabed.
 //!
-//! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
+//! Loops address the rows by index: with iterators the compiler would combine four rows and process them lane by lane.
 
 use nalgebra::Vector3;
 
@@ -10,13 +10,13 @@ use crate::dynamics::leapfrog::layout::inverse_norm;
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 
-/// Weight of the new strain rate over the old one in the axial damping, at most [-].
+/// Greatest excess of the weight of the new strain rate over that of the old one in the axial damping [-].
 const DAMPING_SHIFT: f64 = 0.2; // θ
-/// Hardness of the dampers over a step from which on it is that [-].
+/// Stiffness r of the dampers over a step from which on θ has that value [-].
 const DAMPING_HARD: f64 = 4.0;
 
-/// Springs: their tension now as if they pushed too [N], b₁ times what it comes to without further strain [N], and b₁ times its slope with the
-/// length [N/m].
+/// Springs: their tension now as if they also pushed [N], b₁ times the tension after the step without further strain [N], and b₁ times its slope with
+/// the length [N/m].
 struct Springs {
     now: Lanes,
     ahead: Lanes,
@@ -129,7 +129,7 @@ impl AxialLine {
             row.stiffness = found.slope * sizes.drift;
             let bend = (relative.dot(relative) - along * along) * row.inverse;
             row.curvature = half * row.stiffness * sizes.drift * bend;
-            // as if they went on stretching as they do
+            // at the strain reached at the present stretching velocity
             if SPRINGS == springs::CURVED {
                 let inverse = self.layout.inverse_length.load(at);
                 row.follow(&self.layout.law, along, inverse, [b1, sizes.drift]);
@@ -148,7 +148,7 @@ impl AxialLine {
         }
     }
 
-    /// Remembers the springs up to t_n, some of which push in this step or did in the last one.
+    /// Includes the springs up to t_n, some of which push in this step or did in the last one.
     #[inline(always)]
     fn remember_segments(&mut self, sizes: &Sizes) {
         for row in &mut self.kernel.rows.segments {
@@ -163,7 +163,7 @@ impl AxialLine {
     }
 
     /// Drag of the velocity relative to the water: across the line by the velocities extrapolated to t_n, along it by those of t_{n−½} and
-    /// t_{n+½}, with the slope that it has where these are extrapolated to.
+    /// t_{n+½}, with its slope at the extrapolated values of these.
     #[inline(always)]
     fn prepare_drag<const CURRENT: bool>(&mut self, step: Step) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
@@ -196,7 +196,7 @@ impl AxialLine {
         }
     }
 
-    /// Inverse masses, and the velocities that nodes would come to without tension and seabed, in water that moves or not.
+    /// Inverse masses, and the velocities that nodes would reach without tension and seabed, in moving or still water.
     #[inline(always)]
     pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, step: Step, sizes: &Sizes) {
         self.prepare_drag::<CURRENT>(step);
@@ -227,7 +227,7 @@ impl AxialLine {
         }
     }
 
-    /// Lets the nodes meet the level seabed.
+    /// Finds the contact of the nodes with the level seabed.
     #[inline(always)]
     pub(super) fn prepare_contact(&mut self, sizes: &Sizes) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
@@ -243,7 +243,7 @@ impl AxialLine {
         }
     }
 
-    /// Held ends move by the secant of their path and yield to no force.
+    /// Held ends move along the secant of their path and yield to no force.
     #[inline(always)]
     pub(super) fn prepare_ends(&mut self, step: Step, ends: &[Vector3<f64>; 2]) {
         for end in self.prescribed_ends() {
@@ -261,7 +261,7 @@ impl AxialLine {
 }
 
 impl NodeRow {
-    /// Masses across and along the line [kg], with the implicit parts of the drag, where there is any, and of damping by mass [N s/m] in a step of
+    /// Masses across and along the line [kg], with the implicit parts of the drag, where there is any, and of mass damping [N s/m] in a step of
     /// `kick` [s].
     #[inline(always)]
     pub(super) fn effective_masses(&self, has_drag: bool, damping: Option<Lanes>, kick: Lanes) -> [Lanes; 2] {
@@ -288,7 +288,7 @@ impl NodeRow {
         self.held = Lanes::splat(0.0);
     }
 
-    /// Lets the nodes fall under their weight [N] from `velocity` [m/s], `drawn` by the drag at velocities `past` the water or not.
+    /// Sets the velocity that follows from `velocity` [m/s] under the weight [N] and, if `drawn`, the drag at velocities `past` the water.
     #[inline(always)]
     fn fall(&mut self, weight: Lanes, [velocity, past]: [Vectors; 2], drawn: bool, sizes: &Sizes) {
         let (across, excess) = (self.across * sizes.kick, self.excess * sizes.kick);
@@ -307,7 +307,7 @@ impl NodeRow {
         self.fall.z = self.fall.z - across * weight;
     }
 
-    /// Adds what accelerated water presses with [N], and what damping by mass [N s/m] takes from `velocity` [m/s].
+    /// Adds the Froude-Krylov force [N], and the force of mass damping [N s/m] at `velocity` [m/s].
     #[inline(always)]
     fn press(
         &mut self,

@@ -9,7 +9,7 @@ use crate::math::striped_tridiagonal::{Eliminated, Equations};
 use crate::math::striping::Slot;
 use crate::physics::stretch::StretchLaw;
 
-/// Strain below which slack springs go on along their tangent: further down measures of strain bend back [-].
+/// Strain below which slack springs continue along their tangent [-]: below it, measures of strain bend back.
 const SHORTEST: f64 = -0.2;
 
 /// Kinds of springs.
@@ -28,7 +28,7 @@ pub(super) mod under {
     pub(crate) const NOTHING: u8 = 0;
     /// A level seabed without friction.
     pub(crate) const LEVEL: u8 = 1;
-    /// a seabed with a slope, soundings or friction.
+    /// A seabed with a slope, soundings or friction.
     pub(crate) const ROUGH: u8 = 2;
 }
 
@@ -72,9 +72,9 @@ pub(super) struct SegmentRow {
     pub along: Lanes,
     /// dT̄/d(q·(v_{i+1} − v_i)) of the springs [N s/m].
     pub stiffness: Lanes,
-    /// Part of T̄ that springs have at no stretching velocity, along the tangent they are laid along [N].
+    /// Part of T̄ from the springs at zero stretching velocity, on the tangent of their linearisation [N].
     pub elastic: Lanes,
-    /// The part of it that the springs up to t_n have [N], kept where springs are curved or [`super::AxialLine::forgets`].
+    /// The part of it from the springs up to t_n [N], kept where springs are curved or [`super::AxialLine::forgets`].
     pub memory: Lanes,
     /// Part of BA/L that acts in T̄ [N s/m].
     pub damping: Lanes,
@@ -82,7 +82,7 @@ pub(super) struct SegmentRow {
     pub curvature: Lanes,
     /// 1 where the segment is taut, −1 where it is slack.
     pub taut: Lanes,
-    /// Tensions of the springs at t_{n−1} and t_{n−2} as if they pushed too [N]; once a step is prepared, at t_n, t_{n−1} and t_{n−2}.
+    /// Tensions of the springs at t_{n−1} and t_{n−2} as if they also pushed [N]; once a step is prepared, at t_n, t_{n−1} and t_{n−2}.
     pub history: [Lanes; 3],
     /// Pulls of the damper below and above 0 at which T̄ has more or fewer of the earlier tensions [N].
     pub margins: [Lanes; 2],
@@ -122,8 +122,8 @@ impl SegmentRow {
         }
     }
 
-    /// Writes the equations T̄ − r q·(v_{i+1} − v_i) = known with the velocities that the nodes' momentum gives them: from what the loose
-    /// velocities [m/s] of the nodes differ by, and from the forms of both.
+    /// Writes the equations T̄ − r q·(v_{i+1} − v_i) = known with the velocities that follow from the nodes' momentum: from the difference
+    /// of the nodes' loose velocities [m/s], and from the forms of both.
     #[inline(always)]
     pub(super) fn assemble(
         &mut self,
@@ -152,7 +152,7 @@ impl SegmentRow {
         self.taut.choose(self.stiffness + damping, sizes.push * damping)
     }
 
-    /// Lays the springs along the tangent of their curve where a stretching velocity [m/s] takes them in a step of `drift` [s], `share` being b₁ and
+    /// Linearises the springs at the strain that a stretching velocity [m/s] leads to in a step of `drift` [s]; `share` is b₁ and
     /// `inverse` 1/L [1/m]. Returns their force there [N].
     #[inline(always)]
     pub(super) fn follow(
@@ -188,8 +188,8 @@ impl SegmentRow {
         sizes.damping[0] * along + sizes.damping[1] * self.along
     }
 
-    /// Part that the springs up to t_n have in T̄ [N], and the damper's share in it [-], where it pulls with `pull` [N]: springs that push more
-    /// than that have none, and no damper with them.
+    /// Part of T̄ from the springs up to t_n [N], and the damper's share in it [-], where it pulls with `pull` [N]: springs that push more
+    /// than that contribute nothing, and neither does the damper with them.
     #[inline(always)]
     fn remembered(&self, pull: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let [mut share, weights @ ..] = sizes.weights;
@@ -202,7 +202,7 @@ impl SegmentRow {
         [memory, share.max(sizes.push)]
     }
 
-    /// Part that the springs up to t_n have in T̄ where none of them pushes [N].
+    /// Part of T̄ from the springs up to t_n where none of them pushes [N].
     #[inline(always)]
     pub(super) fn all_remembered(&self, sizes: &Sizes) -> Lanes {
         let [_, h0, h1, h2] = sizes.weights;
@@ -210,7 +210,7 @@ impl SegmentRow {
         h0 * now + h1 * last + h2 * before
     }
 
-    /// Remembers the springs up to t_n with the damper at a stretching velocity [m/s].
+    /// Includes the springs up to t_n with the damper at a stretching velocity [m/s].
     #[inline(always)]
     pub(super) fn remember(&mut self, rate: Lanes, sizes: &Sizes) {
         let pull = (Lanes::splat(1.0) - sizes.push) * self.axial_damping * rate;
@@ -227,7 +227,7 @@ impl SegmentRow {
         self.margins = margins.map(|margin| share * margin);
     }
 
-    /// < 0 where T̄ has other springs up to t_n than are remembered, the damper pulling with `pull` [N].
+    /// < 0 where T̄ has other springs up to t_n than are included, with the damper pulling at `pull` [N].
     #[inline(always)]
     pub(super) fn margin(&self, pull: Lanes) -> Lanes {
         let [less, more] = self.margins;
@@ -241,7 +241,7 @@ impl SegmentRow {
     }
 
     /// Force that is positive where the segment is taut at a stretching velocity [m/s], and the contribution of earlier springs and of the damper to T̄
-    /// in excess of the remembered one [N].
+    /// in excess of that included [N].
     #[inline(always)]
     pub(super) fn total(&self, along: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let (zero, rate) = (Lanes::splat(0.0), self.rate(along, sizes));
@@ -263,13 +263,13 @@ pub(super) struct NodeRow {
     /// Masses across and along the line [kg].
     pub mass_normal: Lanes,
     pub mass_tangent: Lanes,
-    /// 1 for nodes that nothing holds, 0 for held ends and padding.
+    /// 1 for free nodes, 0 for held ends and padding.
     pub free: Lanes,
     /// Drag over relative velocity, across and along the line [N s/m]: that in the middle of the step, and that after it; and what the latter
     /// leaves out [N].
     pub drag: [Lanes; 2],
     pub drag_rest: Lanes,
-    /// a, with drag folded in [1/kg].
+    /// a, including drag [1/kg].
     pub across: Lanes,
     /// b [1/kg].
     pub excess: Lanes,

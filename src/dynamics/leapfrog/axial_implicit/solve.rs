@@ -1,6 +1,6 @@
-//! A pass of the axial-implicit leapfrog: the system in T̄, the velocities that follow, and whether they are what was assumed.
+//! A pass of the axial-implicit leapfrog: the system in T̄, the velocities that follow, and the check of the assumptions.
 //!
-//! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
+//! Loops address the rows by index: with iterators the compiler would combine four rows and process them lane by lane.
 
 use super::AxialLine;
 use super::rows::{NodeRow, SegmentRow, Sizes, under};
@@ -12,7 +12,7 @@ use crate::physics::stretch::StretchLaw;
 const STRETCH_TOLERANCE: f64 = 1e-3;
 /// Square of transverse over axial length up to which the stretch by transverse motion is approximated by its first term [-].
 const FLAT: f64 = 1e-3;
-/// Shortest that a segment may get, over its length, for the same [-].
+/// Least ratio of the new length of a segment to its length for the same [-].
 const SHORT: f64 = 0.9;
 
 /// Differences between the result of a pass and its assumptions.
@@ -21,10 +21,10 @@ pub(super) struct Found {
     /// > 0 where the seabed pushes other nodes than assumed, or other segments are slack.
     landed: Lanes,
     flipped: Lanes,
-    /// 2·[`SHORT`] times the most that T̄ changes by the true stretch [N], for segments that turn little; > 0 where one turns more.
+    /// 2·[`SHORT`] times the greatest change of T̄ by the true stretch [N], for segments that turn little; > 0 where one turns more.
     bent: Lanes,
     turned: Lanes,
-    /// Least margin of segments [N]: < 0 where T̄ has other springs up to t_n than are remembered.
+    /// Least margin of segments [N]: < 0 where T̄ has other springs up to t_n than are included.
     margin: Lanes,
     /// Greatest T̄ [N].
     pub greatest: Lanes,
@@ -45,7 +45,7 @@ impl Found {
 }
 
 impl AxialLine {
-    /// Finds what couples the segments through their nodes.
+    /// Finds the coefficients that couple the segments through their nodes.
     #[inline(always)]
     pub(super) fn weigh_nodes<const SEABED: u8>(&mut self) {
         let segments = &self.kernel.rows.segments[..self.kernel.rows.nodes.len()];
@@ -70,7 +70,7 @@ impl AxialLine {
             segment.assemble(relative, [low.forms, high.forms], sizes);
         }
         let (low, high) = (&nodes[last], &nodes[0]);
-        // behind the last node there is none, or an end that moves as it is put
+        // behind the last node there is none, or an end that is prescribed
         let zero = Lanes::splat(0.0);
         let behind = self.layout.velocity_before.load(nodes.len() + 1);
         let relative = high.loose.moved_down_before(behind) - low.loose;
@@ -136,7 +136,7 @@ impl AxialLine {
             &self.kernel.rows.nodes[..last],
         );
         let new = line.velocity_before.rows(last);
-        // no inclusive range, which has more to do in every row; the results keep the compiler from taking four rows at once
+        // an inclusive range would cost more in every row; the results keep the compiler from combining four rows
         for at in 1..last + 1 {
             found.check(&segments[at - 1], new[at + 1] - new[at], sizes);
         }
@@ -183,7 +183,7 @@ impl Found {
 }
 
 impl AxialLine {
-    /// Corrects how the nodes meet the seabed where a pass found it not to be as assumed; false if that requires another pass.
+    /// Corrects the contact of the nodes where a pass contradicts the assumption; false if that requires another pass.
     #[inline(always)]
     pub(super) fn contact_holds<const SEABED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
         if SEABED == under::ROUGH {
@@ -196,7 +196,7 @@ impl AxialLine {
         !landed
     }
 
-    /// Corrects what a pass found of the segments not to be as assumed; false if that requires another pass.
+    /// Corrects the assumptions on the segments that a pass contradicts; false if that requires another pass.
     #[inline(always)]
     pub(super) fn segments_hold(&mut self, found: &Found, sizes: &Sizes) -> bool {
         let tolerance = Lanes::splat(STRETCH_TOLERANCE) * found.greatest.greatest();
@@ -220,7 +220,7 @@ impl AxialLine {
         self.layout.law != StretchLaw::Engineering && self.layout.viscoelastic.is_none()
     }
 
-    /// Lays the springs' tension along the tangent of its curve where the last pass found that segments come to; returns whether that requires another pass.
+    /// Linearises the springs' tension at the strains that the last pass found; returns whether that requires another pass.
     #[inline(always)]
     fn follow_curve(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (velocity, law) = (&self.layout.velocity_before, &self.layout.law);
@@ -236,14 +236,14 @@ impl AxialLine {
             let off = (curve.positive() - spring.positive()).abs() - tolerance;
             let off = off.where_positive(segment.taut);
             if off.any_positive() {
-                *segment = laid; // else the energy balance keeps the law of the step
+                *segment = laid; // otherwise the energy balance keeps the law of the step
             }
             again = again.max(off);
         }
         again.any_positive()
     }
 
-    /// Takes the nodes to meet the seabed as the last pass found.
+    /// Sets the contact of the nodes to that found by the last pass.
     #[inline(always)]
     fn revise_contact(&mut self) {
         let velocity = &self.layout.velocity_before;
@@ -253,8 +253,8 @@ impl AxialLine {
         }
     }
 
-    /// Takes the segments to be slack and bent as the last pass found, true stretch by transverse motion included, and remembers the springs up to t_n as
-    /// dampers pull; returns whether that requires another pass.
+    /// Sets slackness and true stretch by transverse motion of the segments to those found by the last pass, and includes the springs up to t_n according
+    /// to the pull of the dampers; returns whether that requires another pass.
     #[inline(always)]
     fn revise_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (zero, one, drift) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.drift);

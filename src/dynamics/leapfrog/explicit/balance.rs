@@ -1,4 +1,4 @@
-//! Energy balance of the explicit leapfrog ([`crate::dynamics::leapfrog::balance`]): the elastic tension works on the free nodes.
+//! Energy balance of the explicit leapfrog ([`crate::dynamics::leapfrog::balance`]): the elastic tension does work on the free nodes.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -66,7 +66,7 @@ impl ExplicitLine {
         [work, water_work]
     }
 
-    /// Force of the springs of a row of segments on their lower nodes [N]; of viscoelastic segments that of the dampers included.
+    /// Force of the springs of a row of segments on their lower nodes [N]; for viscoelastic segments, including that of the dampers.
     #[inline(always)]
     fn spring(&self, at: usize) -> Vectors {
         match self.layout.viscoelastic {
@@ -113,7 +113,7 @@ impl ExplicitLine {
     }
 
     /// Displacement of an end from half a step before t_n, where it was at `half_place` [m], to half a step after it [m]. That of a prescribed end is
-    /// the difference of its positions: where its acceleration jumps, no velocity gives it. The material at a winch moves with its velocities.
+    /// the difference of its positions: where its acceleration jumps, no velocity yields it. The material at a winch moves with its velocities.
     fn end_way(&self, end: End, step: Step, half_place: &mut Vector3<f64>) -> Vector3<f64> {
         let at = self.layout.end_slot(end);
         let [before, after] = [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));

@@ -1,10 +1,10 @@
 //! Stages of a step of a line over its rows, four nodes at a time.
 //!
-//! Three loops: forces of the segments; resistance of water and damping; and the kick, after which the nodes drift on at once. A row has a chain of some
-//! forty dependent operations, with roots and quotients among them. A processor holds about one row of them at a time, but several rows of a third of
-//! them: in three loops the operations of neighbouring rows overlap, and the operands of a loop fit into the registers.
+//! Three loops: forces of the segments; resistance of water and damping; and the kick, immediately followed by the drift of the nodes. A row is a chain
+//! of some forty dependent operations, including roots and quotients. A processor holds about one row of the whole chain at a time, but several rows of
+//! a third of it: in three loops the operations of neighbouring rows overlap, and the operands of a loop fit into the registers.
 //!
-//! Halo rows are copied before any node has moved, and the ends are put where their points are at the end.
+//! Halo rows are copied before any node has moved, and the ends are moved to their points last.
 
 use pulp::NullaryFnOnce;
 
@@ -25,7 +25,7 @@ use crate::physics::stretch::{StretchLaw, total_tension};
 mod around {
     /// None.
     pub(super) const DRY: u8 = 0;
-    /// At rest, or damping in proportion to mass.
+    /// At rest, or mass damping.
     pub(super) const STILL: u8 = 1;
     /// In motion.
     pub(super) const FLOWING: u8 = 2;

@@ -1,24 +1,24 @@
 //! A line on a winch: the length of its end segment changes in time.
 //!
-//! The winch stands at end B, x_B, and prescribes the length ℓ(t) that is paid out. The unstretched length e of the end segment changes as
-//! ℓ does, and with it what its two nodes carry. With the stretch λ = l/e and the direction q, the material that passes the winch moves at
+//! The winch is at end B, x_B, and prescribes the paid-out length ℓ(t). The unstretched length e of the end segment changes as
+//! ℓ does, and with it the lumped properties of its two nodes. With the stretch λ = l/e and the direction q, the material that passes the winch moves at
 //!
 //!   V_B = ẋ_B − ℓ̇ λ q,      so that      λ̇ e = q·(V_B − v) = q·(ẋ_B − v) − λ ℓ̇,
 //!
-//! v being the velocity of the neighbour. The end node carries the velocity V_B, which gives the rate of strain of the end segment and the
-//! velocity of a node that appears in it. The neighbour takes up mass that moves with it: M v̇ = f with M growing.
+//! with v the velocity of the neighbour. The end node has the velocity V_B, which gives the rate of strain of the end segment and the
+//! velocity of a node that is inserted into it. The neighbour gains mass that moves with it: M v̇ = f with growing M.
 //!
-//! Beyond the lengths that [`Winch::passage`](crate::model::Winch::passage) names the end segment splits in two, or merges with its
+//! Beyond the lengths given by [`Winch::passage`](crate::model::Winch::passage), the end segment splits in two, or merges with its
 //! neighbour. A split interpolates position and velocity linearly. Lumped masses are linear in the adjacent lengths, so that mass and
-//! momentum stay what they were, the half node at the winch counted in, which moves at V_B. A merge gives the neighbour what is left of the
-//! momentum; it undoes a split exactly. The energy that either makes or takes counts as the winch's.
+//! momentum are conserved, including the half node at the winch, which moves at V_B. A merge gives the neighbour the remaining
+//! momentum; it reverses a split exactly. The energy that either adds or removes counts as work of the winch.
 //!
-//! The winch gives the line (W − T λ)·ℓ̇, W being the energy per unstretched length of the end segment, and the energy of motion and of
-//! height of the mass that the neighbour takes up. The end's force times V_B holds the second part.
+//! The winch supplies (W − T λ)·ℓ̇ to the line, with W the energy per unstretched length of the end segment, and the kinetic and
+//! potential energy of the mass that the neighbour gains. The end's force times V_B contains the second part.
 //!
 //! Derivation: dE/dt of the segment energy e·W(λ − 1) with e(t) and l(t), W′ = T.
-//! Valid for winches that are slow compared with axial waves. Bends of the line within the merged segments are lost to their chord: a relative error
-//! of tension of about (e κ)²/8 · EA/T at a curvature κ, once at every merge.
+//! Valid for winches that are slow compared with axial waves. A merge replaces the curved line within the merged segments by their chord: a relative
+//! error of tension of about (e κ)²/8 · EA/T at a curvature κ, once at every merge.
 
 use nalgebra::Vector3;
 
@@ -28,7 +28,7 @@ use crate::dynamics::motion::AxisPath;
 use crate::math::striping::{Column, Field, Slot, Striping};
 use crate::model::{End, Line, LineState, Passage, Winch, WinchState};
 
-/// Segments from the winch on whose energy a split or a merge can change.
+/// Number of segments, counted from the winch, whose energy a split or a merge can change.
 const CHANGED: usize = 3;
 
 /// Scratch of a line on a winch.
@@ -36,10 +36,10 @@ const CHANGED: usize = 3;
 pub(super) struct WinchWork {
     /// The line as it is at t_n.
     line: Line,
-    /// Length paid out in time [m].
+    /// Paid-out length over time [m].
     path: AxisPath,
     winch_state: WinchState,
-    /// The winch at t_{n+1}, while a step is booked.
+    /// The winch at t_{n+1}, while the energy of a step is added to the balance.
     next: WinchState,
     /// Energy of the end segment at t_n per unstretched length [N].
     density: f64,
@@ -68,7 +68,7 @@ impl WinchWork {
         self.winch().end_length(self.line.segment_count(), change)
     }
 
-    /// Energy that the neighbour of the end takes up between t_{n−½} and t_{n+½}, and the kinetic part of it, ½ M_n v² [J], from its
+    /// Energy that the neighbour of the end gains between t_{n−½} and t_{n+½}, and the kinetic part of it, ½ M_n v² [J], from its
     /// velocities [m/s] and heights [m] then.
     fn taken_up(&self, halves: [f64; 2], velocities: [Vector3<f64>; 2], heights: [f64; 2]) -> [f64; 2] {
         let (n, nodes) = (self.line.segment_count(), &self.line.nodes);
@@ -86,7 +86,7 @@ impl WinchWork {
 }
 
 impl ExplicitLine {
-    /// Takes over how far the winch is, and lays out the line accordingly.
+    /// Loads the state of the winch, and lays out the line accordingly.
     pub(super) fn load_winch(&mut self, state: &LineState) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -97,7 +97,7 @@ impl ExplicitLine {
         self.lay_out(0);
     }
 
-    /// Stores the length paid out, with room for the nodes.
+    /// Stores the paid-out length, and resizes the arrays of the nodes.
     pub(super) fn store_winch(&self, state: &mut LineState) {
         if let Some(winch) = &self.kernel.winch {
             let nodes = self.layout.segment_count + 1;
@@ -111,7 +111,7 @@ impl ExplicitLine {
         }
     }
 
-    /// Sets the path of the winch from `t` [s] on, after the end was put where it is then; `fresh` before the first step from rest.
+    /// Sets the path of the winch from `t` [s] on, after the end was moved to its position then; `fresh` before the first step from rest.
     pub(super) fn start_winch(&mut self, path: &AxisPath, (t, fresh): (f64, bool), step: Step) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -152,7 +152,7 @@ impl ExplicitLine {
         winch.density = winch.line.spring(i, chord.norm() / length - 1.0).energy;
     }
 
-    /// Advances the winch to `t` [s], the end of a step, after the end was put in place: adds the work of the winch to the energy balance, and sets
+    /// Advances the winch to `t` [s], the end of a step, after the end was moved: adds the work of the winch to the energy balance, and sets
     /// the velocity of the material at the end.
     pub(super) fn wind(&mut self, t: f64, step: Step) {
         let Some(winch) = &mut self.kernel.winch else {
@@ -184,7 +184,7 @@ impl ExplicitLine {
         self.transport(next, 0.5 * step.drift);
     }
 
-    /// After the work of the ends was booked: lays out the end segment at its new length, and splits or merges it.
+    /// Lays out the end segment at its new length, and splits or merges it, after the work of the ends was added to the balance.
     pub(super) fn renew_end_segment(&mut self, step: Step) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -254,8 +254,8 @@ impl ExplicitLine {
         self.supply([0, 1].map(|part| after[part] - before[part]));
     }
 
-    /// Energy of the segments from `first` on and of the nodes between them, their mass along the line being that across it, and the kinetic part of
-    /// it [J], at the time of the velocities, `lag` [s] before the positions; zero without an energy balance.
+    /// Energy of the segments from `first` on and of the nodes between them, with their mass along the line equal to that across it, and the kinetic
+    /// part of it [J], at the time of the velocities, `lag` [s] before the positions; zero without an energy balance.
     fn energy_from(&self, first: usize, lag: f64) -> [f64; 2] {
         let (Some(winch), Some(_)) = (&self.kernel.winch, &self.balance) else {
             return [0.0; 2];
@@ -345,7 +345,7 @@ impl ExplicitLine {
         self.lay_out_water(from);
     }
 
-    /// Writes what the water does to the nodes from `from` on.
+    /// Writes the water coefficients of the nodes from `from` on.
     fn lay_out_water(&mut self, from: usize) {
         let (Some(winch), Some(water)) = (&self.kernel.winch, &mut self.kernel.water) else {
             return;
@@ -374,20 +374,20 @@ fn put(into: &mut Column, from: usize, count: usize, value: impl Fn(usize) -> f6
     into.wrap();
 }
 
-/// The slots behind `count` nodes that need to be padded anew, where nodes from `from` on have changed: none if the end is where it was.
+/// Slots behind `count` nodes that need padding again, where nodes from `from` on have changed: none if the end has not moved.
 fn beyond(striping: Striping, from: usize, count: usize) -> impl Iterator<Item = Slot> {
     let end = if from == 0 { striping.room() } else { count };
     (count..end).map(move |i| striping.slot(i))
 }
 
-/// Puts a node into the last segment, which ends at node `end`, at a part [-] of it.
+/// Inserts a node into the last segment, which ends at node `end`, at a part [-] of it.
 fn split(motion: &mut Field, striping: Striping, end: usize, part: f64) {
     let [near, far] = [end - 1, end].map(|i| motion.get(striping.slot(i)));
     motion.set(striping.slot(end), near + part * (far - near));
     motion.set(striping.slot(end + 1), far);
 }
 
-/// Takes out the neighbour of the end, so that momentum stays: of masses `old` of the three last nodes and `new` of the two that are left and none [kg].
+/// Removes the neighbour of the end and conserves momentum, with masses `old` of the last three nodes and `new` of the two that remain, then zero [kg].
 fn merge(velocity: &mut Field, striping: Striping, end: usize, old: [f64; 3], new: [f64; 3]) {
     let last = [end - 2, end - 1, end].map(|i| striping.slot(i));
     let [before, near, far] = last.map(|at| velocity.get(at));
@@ -402,7 +402,7 @@ mod tests {
     use crate::draft::draft;
     use approx::assert_relative_eq;
 
-    /// The line with 6.2 m of end segment, in wild motion.
+    /// The line with 6.2 m of end segment, in irregular motion.
     fn work() -> ExplicitLine {
         let rope = draft("line_types.rope = { mass = 20.0, axial_stiffness = 1.0e6 }");
         let ends = rope
@@ -432,7 +432,7 @@ mod tests {
         work
     }
 
-    /// Mass [kg] and momenta [kg m/s] of all nodes, that of the half node at the winch counted in.
+    /// Mass [kg] and momenta [kg m/s] of all nodes, including the half node at the winch.
     fn content(work: &ExplicitLine) -> (f64, [Vector3<f64>; 2]) {
         let nodes = &work.kernel.winch.as_ref().unwrap().line.nodes;
         let motions = [&work.layout.velocity, &work.layout.velocity_before];

@@ -21,9 +21,9 @@ pub struct ContactArrays {
     pub damping: Column,
     /// Inverse masses of the segments across the line [1/kg].
     pub yields: Column,
-    /// Force on the nodes over the step, at no velocity [N].
+    /// Force on the nodes over the step, at zero velocity [N].
     pub spring: Column,
-    /// Loss of that force with the velocity at which a node leaves the seabed [N s/m].
+    /// Decrease of that force with the velocity at which a node leaves the seabed [N s/m].
     pub resistance: Column,
     /// Parts of a segment at which contact acts.
     pub parts: &'static [Part; 4],
@@ -41,9 +41,9 @@ pub struct SeabedArrays {
     pub stick: Column,
     /// Friction on the nodes in the last step [N].
     pub friction: Field,
-    /// Normals at the nodes at t_n [-]; zero in rows above the highest place of the seabed.
+    /// Normals at the nodes at t_n [-]; zero in rows above the highest point of the seabed.
     pub normal: Field,
-    /// Penetrations of the nodes at t_n [m]; in such rows bounds of them.
+    /// Penetrations of the nodes at t_n [m]; bounds of them in such rows.
     pub penetration: Column,
     /// Velocities at which the nodes leave the seabed [m/s].
     pub rise: Column,
@@ -97,7 +97,7 @@ impl Layout {
         self.seabed()?.seabed.friction.as_ref()
     }
 
-    /// Keeps the friction on a row of nodes [N].
+    /// Stores the friction on a row of nodes [N].
     #[inline(always)]
     pub fn set_friction(&mut self, at: usize, friction: Vectors) {
         if let Some(contact) = &mut self.contact

@@ -1,4 +1,4 @@
-//! The state of a line taken over before steps, looked at and handed back after them.
+//! Loading of a line's state before steps, and its check and storage after them.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -32,7 +32,7 @@ impl<'a> Nodes<'a> {
         }
     }
 
-    /// Takes over what a node has `of` these in a lane; nothing if it is padding.
+    /// Copies the values of a node from a lane `of` these; does nothing if it is padding.
     #[inline(always)]
     fn take(&mut self, node: usize, lane: usize, of: &[Vectors; 4]) {
         if node < self.position.len() {
@@ -87,8 +87,8 @@ fn padding(i: usize) -> Vector3<f64> {
 }
 
 impl Layout {
-    /// Takes over positions and velocities of a line; the halo is yet to be renewed. Padding starts anew: it may have met what a step
-    /// that was too long made of its neighbours.
+    /// Loads positions and velocities of a line; the halo still has to be renewed. Padding is reset: a step that was too long may have
+    /// affected it through its neighbours.
     pub fn load(&mut self, state: &LineState) {
         self.released = state.released;
         let memory = &state.half_step;
@@ -122,13 +122,13 @@ impl Layout {
         }
     }
 
-    /// Copies them back after steps of `steps` [s], with velocities extrapolated to the time of the positions. Whether all nodes have finite
-    /// positions, and speeds that mooring lines reach.
+    /// Copies them back after steps of `steps` [s], with velocities extrapolated to the time of the positions. Returns whether all nodes have
+    /// finite positions, and speeds that mooring lines reach.
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
         self.vector_unit.dispatch(HandBack(self, state, steps))
     }
 
-    /// [`Self::store`], wherever it is compiled into.
+    /// [`Self::store`], inlined into its caller.
     #[inline(always)]
     pub fn hand_back(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
         state.released = self.released;
@@ -152,14 +152,14 @@ impl Layout {
         for row in 0..rows {
             let values = self.motion(row + 1, extrapolation);
             sound = sound.where_positive(self.soundness(row + 1));
-            // a loop over lanes would be made one of vectors, which cannot be written so
+            // a loop over lanes would be vectorised, and vectors cannot be stored like this
             nodes.take(row, 0, &values);
             nodes.take(rows + row, 1, &values);
             nodes.take(2 * rows + row, 2, &values);
             nodes.take(3 * rows + row, 3, &values);
         }
         if count > 4 * rows {
-            // the one behind them
+            // the node behind the rows
             nodes.take(4 * rows, 3, &self.motion(rows + 1, extrapolation));
         }
         if let Some(seabed) = self.seabed() {

@@ -48,14 +48,14 @@ impl CurrentNow {
     }
 }
 
-/// Motion of the water by waves over a span of time: coefficients of the powers of the part of the span that has passed.
+/// Motion of the water due to waves over a time span: coefficients of the powers of the elapsed part of the span.
 #[derive(Debug, Clone)]
 pub struct WaveArrays {
-    /// Of the velocity [m/s].
+    /// Coefficients of the velocity [m/s].
     velocity: [Field; 4],
-    /// Of the acceleration [m/s²].
+    /// Coefficients of the acceleration [m/s²].
     acceleration: [Field; 4],
-    /// Mass of the water that presses, across and along the line [kg].
+    /// Mass in the Froude-Krylov force, across and along the line [kg].
     normal: Column,
     tangent: Column,
     /// Start and end of the span [s].
@@ -85,7 +85,7 @@ impl WaveArrays {
         }
     }
 
-    /// Goes on in time [s].
+    /// Advances to a time [s].
     fn pass(&mut self, time: f64) {
         let [t0, t1] = self.times;
         if t1 > t0 {
@@ -182,7 +182,7 @@ impl Layout {
         }
     }
 
-    /// Moves the waves on to the end of a step.
+    /// Advances the waves to the end of a step.
     pub fn pass_waves(&mut self, step: Step) {
         if let (Some(_), Some(waves)) = (&self.surface, &mut self.waves) {
             waves.pass(step.drift);
@@ -209,7 +209,7 @@ impl Layout {
         surface.map_or(0.0, |surface| surface.lack(node, self.waves.is_some()))
     }
 
-    /// Sets what multiplies the current at t_n [-].
+    /// Sets the factor of the current at t_n [-].
     pub fn set_current(&mut self, factor: f64) {
         if let Some(current) = &mut self.current {
             current.factor = factor;
@@ -222,7 +222,7 @@ impl Layout {
         waves.is_some_and(|waves| waves.times != span.times)
     }
 
-    /// Takes over what waves do at the nodes over a span of time.
+    /// Loads the wave kinematics at the nodes over a time span.
     pub fn load_waves(&mut self, span: &WaveSpan) {
         let Some(waves) = &mut self.waves else {
             return;
