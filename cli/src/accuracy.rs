@@ -49,7 +49,7 @@ const ENOUGH: f64 = 0.02;
 pub(crate) struct Results<'a> {
     /// The folder.
     pub folder: &'a Path,
-    /// True if the scenes it holds are kept beside the new ones.
+    /// True if its other scenes are kept.
     pub add: bool,
 }
 
@@ -88,7 +88,7 @@ pub(crate) fn accuracy(
         });
         bar.finish_and_clear();
         let done = done.map_err(|error| Failure::Computation(error.to_string()))?;
-        let text: String = done.iter().map(told).collect();
+        let text: String = done.iter().map(report).collect();
         if let Some(offline) = done.first() {
             let figure = frontier::figure(offline);
             write_file(&folder.join(format!("{name}.svg")), |w| {
@@ -189,8 +189,8 @@ fn stay_on_one_core() {
 
 /// Name of the processor, or its architecture where the system does not give it.
 fn processor() -> String {
-    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = told.lines().find(|line| line.starts_with("model name"));
+    let processors = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = processors.lines().find(|line| line.starts_with("model name"));
     let name = model.and_then(|line| line.split_once(':'));
     name.map_or(std::env::consts::ARCH, |(_, name)| name.trim())
         .to_string()
@@ -198,7 +198,7 @@ fn processor() -> String {
 
 /// A study in tables: the cheapest runs at each level and the cost of the peers over moorline's; offline settings of each integrator and the
 /// periods for which equilibria are enough, in a host default settings.
-fn told(study: &Study) -> String {
+fn report(study: &Study) -> String {
     let title = match study.title.as_str() {
         "" => String::new(),
         title => format!(": {title}"),
@@ -287,7 +287,7 @@ fn how(verdict: &Verdict<'_>) -> String {
 
 /// Errors at which a peer is cheaper than moorline, or else where it comes closest; empty without a peer.
 fn lost(study: &Study) -> String {
-    let told = |duel: &Duel<'_>| {
+    let described = |duel: &Duel<'_>| {
         format!(
             "{} at {:.2} %, {} ({})",
             times(duel.ratio()),
@@ -299,8 +299,8 @@ fn lost(study: &Study) -> String {
     let of_metric = |metric: Metric| {
         let mut duels = study.duels(metric);
         duels.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
-        let closest = told(duels.first()?);
-        let lost = duels.iter().take_while(|duel| duel.ratio() <= 1.0).map(told);
+        let closest = described(duels.first()?);
+        let lost = duels.iter().take_while(|duel| duel.ratio() <= 1.0).map(described);
         let lost: Vec<String> = lost.collect();
         let sentence = match lost.is_empty() {
             true => format!("no peer is cheaper anywhere; closest {closest}"),

@@ -304,7 +304,7 @@ impl AxesPath {
         self.end = to;
     }
 
-    /// Continues the path `before` over a time span [s] to given positions [m, rad] and velocities [m/s, rad/s] in place of its own
+    /// Continues the path `before` over a time span [s] to given positions [m, rad] and velocities [m/s, rad/s] in place of its
     /// prediction.
     pub fn lead(&mut self, before: &AxesPath, [start, length]: [f64; 2], to: [Lanes; 2]) {
         self.curve = Hermites::bridge([start, length, 1.0 / length], before.end, to);
