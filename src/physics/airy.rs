@@ -275,6 +275,14 @@ impl Waves {
         self.growth(t)[0] * trains.map(train).sum::<f64>()
     }
 
+    /// Motion of the water at a place [m] and time t [s]; above the surface that of the surface.
+    pub fn orbit(&self, place: Vector3<f64>, t: f64) -> Orbit {
+        let mut instant = Instant::default();
+        self.turn_to(t, &mut instant);
+        let [orbit, ..] = self.orbits([place; LANES], &mut instant);
+        orbit
+    }
+
     /// Motion of the water at four places [m] and an instant; above the surface that of the surface. The components that reach the highest place are
     /// summed at all four.
     #[inline(always)]
@@ -517,12 +525,6 @@ mod tests {
         assert_relative_eq!(wave_number(2.0, None, GRAVITY), 4.0 / GRAVITY);
     }
 
-    fn orbit(waves: &Waves, place: Vector3<f64>, t: f64) -> Orbit {
-        let mut instant = Instant::default();
-        waves.turn_to(t, &mut instant);
-        waves.orbits([place; LANES], &mut instant)[0]
-    }
-
     /// Velocity by the equations as written, component by component.
     fn written_out(waves: &Waves, place: Vector3<f64>, t: f64) -> Vector3<f64> {
         let angle = |c: &Component, k: f64| {
@@ -569,7 +571,7 @@ mod tests {
             for (x, z, t) in [(0.0, -1.0, 0.0), (40.0, -5.0, 13.0), (-300.0, -11.9, 777.0)] {
                 let place = Vector3::new(x, 0.7 * x, z);
                 let expected = written_out(&waves, place, t);
-                let found = orbit(&waves, place, t).velocity;
+                let found = waves.orbit(place, t).velocity;
                 let error = (found - expected).norm();
                 assert!(error < 1e-4 * expected.norm(), "{depth:?}, z = {z} m: {error:e}");
             }
@@ -583,7 +585,7 @@ mod tests {
             let slope = |axis: usize| {
                 let mut step = Vector3::zeros();
                 step[axis] = d;
-                let at = |r| orbit(&waves, r, t).velocity;
+                let at = |r| waves.orbit(r, t).velocity;
                 (at(place + step) - at(place - step)) / (2.0 * d)
             };
             let [x, y, z] = [slope(0), slope(1), slope(2)];
@@ -599,13 +601,13 @@ mod tests {
         let (x, y, t, d) = (5.0, 2.0, 7.0, 1e-3);
         let surface = waves.elevation(x, y, t);
         let rise = (waves.elevation(x, y, t + d) - waves.elevation(x, y, t - d)) / (2.0 * d);
-        let water = orbit(&waves, Vector3::new(x, y, surface), t);
+        let water = waves.orbit(Vector3::new(x, y, surface), t);
         assert_relative_eq!(water.velocity.z, rise, max_relative = 1e-6);
         assert_relative_eq!(water.rise, rise, max_relative = 1e-6);
         assert_relative_eq!(water.elevation, surface, max_relative = 1e-12);
-        let seabed = orbit(&waves, Vector3::new(x, y, -30.0), t);
+        let seabed = waves.orbit(Vector3::new(x, y, -30.0), t);
         assert!(seabed.velocity.z.abs() < 1e-11 * seabed.velocity.x.abs());
-        let above = orbit(&waves, Vector3::new(x, y, surface + 9.0), t);
+        let above = waves.orbit(Vector3::new(x, y, surface + 9.0), t);
         assert_eq!(above, water);
     }
 
@@ -614,7 +616,7 @@ mod tests {
         for ramp in [None, Some(9.0)] {
             let (mut waves, d) = (sea(None), 1e-3);
             waves.ramp = ramp;
-            let at = |t| orbit(&waves, Vector3::new(3.0, -7.0, -8.0), t);
+            let at = |t| waves.orbit(Vector3::new(3.0, -7.0, -8.0), t);
             let (before, now, after) = (at(4.0 - d), at(4.0), at(4.0 + d));
             let rate = (after.velocity - before.velocity) / (2.0 * d);
             assert!((rate - now.acceleration).norm() < 1e-4 * rate.norm());
@@ -633,9 +635,9 @@ mod tests {
         let steps = 400;
         for step in 0..steps {
             let [t0, t1] = [0, 1].map(|k| f64::from(step + k) * waves.interval_below(place.z));
-            let (before, after) = (orbit(&waves, place, t0), orbit(&waves, place, t1));
+            let (before, after) = (waves.orbit(place, t0), waves.orbit(place, t1));
             let middle = 0.5 * (t0 + t1);
-            let exact = orbit(&waves, place, middle);
+            let exact = waves.orbit(place, middle);
             let found = Orbit::between(&before, &after, [t0, t1], middle);
             worst = worst.max((found.acceleration - exact.acceleration).norm_squared());
             square += exact.acceleration.norm_squared();
@@ -658,7 +660,7 @@ mod tests {
         assert_relative_eq!(intervals[5], 0.5 / 0.3, max_relative = 1e-2); // the longest wave alone
         assert!(intervals[3] > 1.3 * intervals[0], "{intervals:?}");
         for (z, interval) in heights.into_iter().zip(intervals).take(5) {
-            let at = |t: f64| orbit(&waves, Vector3::new(4.0, 9.0, z), t);
+            let at = |t: f64| waves.orbit(Vector3::new(4.0, 9.0, z), t);
             let (mut error, mut square) = (0.0, 0.0);
             for step in 0..4000 {
                 let times = [0.7, 1.7].map(|k| 7.3 * f64::from(step) + k * interval);
@@ -689,7 +691,7 @@ mod tests {
         }
         assert_eq!(waves.reaching(0.0), 30);
         assert!((1..15).contains(&waves.reaching(-150.0)));
-        let still = orbit(&waves, Vector3::new(0.0, 0.0, -5000.0), 3.0);
+        let still = waves.orbit(Vector3::new(0.0, 0.0, -5000.0), 3.0);
         assert_eq!(still.acceleration, Vector3::zeros());
     }
 
@@ -698,13 +700,13 @@ mod tests {
         let mut waves = storm(None);
         let surface = root(&waves.components, 2);
         let places = [-1.0, -5.0, -20.0, -60.0, -140.0].map(|z| Vector3::new(12.0, 5.0, z));
-        let found = places.map(|place| orbit(&waves, place, 8.0).acceleration);
+        let found = places.map(|place| waves.orbit(place, 8.0).acceleration);
         let felt = |z: f64| waves.stretch.partition_point(|height| *height <= z);
         assert!((1..400).any(|depth| (1..30).contains(&felt(f64::from(-depth)))));
         assert!(waves.stretch.iter().all(|height| *height < -1.0));
         waves.stretch.fill(f64::NEG_INFINITY);
         for (place, found) in places.into_iter().zip(found) {
-            let all = orbit(&waves, place, 8.0).acceleration;
+            let all = waves.orbit(place, 8.0).acceleration;
             assert!((all - found).norm() < 1e-4 * surface, "z = {} m", place.z);
         }
     }

@@ -1,6 +1,5 @@
 //! Water and seabed.
 
-use moorline::physics::airy::Instant;
 use nalgebra::Vector3;
 
 use crate::failure::{Failure, Outcome};
@@ -42,9 +41,7 @@ impl System {
                 ..Flow::default()
             });
         };
-        let mut instant = Instant::default();
-        waves.turn_to(time, &mut instant);
-        let orbit = waves.orbit(Vector3::from(place), &mut instant);
+        let orbit = waves.orbit(Vector3::from(place), time);
         Ok(Flow {
             velocity: (velocity + orbit.velocity).into(),
             acceleration: orbit.acceleration.into(),

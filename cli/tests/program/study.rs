@@ -96,7 +96,7 @@ fn a_study_is_added_to_those_of_a_folder_of_the_same_processor() {
     );
     assert_says(&folder.read("out/summary.md"), &["| earlier, ", "| short, "]);
     let processor = table.lines().nth(1).unwrap().split(',').next().unwrap();
-    folder.write("out/accuracy.csv", &before.replace(processor, "another one"));
+    folder.write("out/accuracy.csv", before.replace(processor, "another one"));
     folder.refused(
         "accuracy short.toml -o out --add",
         &["out/accuracy.csv", "another one"],
