@@ -167,6 +167,11 @@ impl Ladder {
         Some(distance(run, fine) * if smooth.is_finite() { smooth } else { 1.0 })
     }
 
+    /// Elements of the coarsest run: networks do not affect each other, so one that needs no further run costs least with these.
+    fn coarsest(&self) -> usize {
+        self.runs.first().map_or(LADDER[0], |run| run.elements)
+    }
+
     /// Elements between a level that is too coarse and the next, which is not, where they are worth a trial.
     fn between(&self, aim: f64) -> Option<usize> {
         let [.., before, found] = &self.trials[..] else {
@@ -439,7 +444,10 @@ impl<'a> Search<'a> {
             if !open || self.work + 2.0 * last > self.work_max() {
                 break;
             }
-            let elements = self.ladders.iter().map(|ladder| ladder.found.unwrap_or(level));
+            let elements = self.ladders.iter().map(|ladder| match ladder.found {
+                Some(_) => ladder.coarsest(),
+                None => level,
+            });
             let elements: Vec<usize> = elements.collect();
             let record = match self.run(&self.at_level(&elements)) {
                 Ok(Some(record)) => Some(record),
@@ -464,10 +472,8 @@ impl<'a> Search<'a> {
         if wanted.iter().all(Option::is_none) {
             return vec![None; wanted.len()];
         }
-        let elements = self.ladders.iter().zip(&wanted).map(|(ladder, wanted)| {
-            let level = ladder.found.or(ladder.trials.last().map(|trial| trial.elements));
-            wanted.or(level).unwrap_or(LADDER[0])
-        });
+        let ladders = self.ladders.iter().zip(&wanted);
+        let elements = ladders.map(|(ladder, wanted)| wanted.unwrap_or_else(|| ladder.coarsest()));
         let elements: Vec<usize> = elements.collect();
         let Ok(Some(record)) = self.run(&self.at_level(&elements)) else {
             return vec![None; wanted.len()];

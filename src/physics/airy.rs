@@ -126,10 +126,6 @@ pub struct Waves {
     components: Vec<Component>,
     /// The same with what follows from the depth.
     trains: Vec<Train>,
-    /// For every component, the height below which no place is moved by it or by those after it [m].
-    reach: Vec<f64>,
-    /// For every component, the height below which its elevation, and that of those after it, stretches no place [m].
-    stretch: Vec<f64>,
     depth: Option<f64>,
     ramp: Option<f64>,
     /// Heights [m], downwards from 0, and the longest time between two instants for places below each [s].
@@ -151,10 +147,14 @@ struct Train {
     seabed: f64,
     /// 1/(1 − q) [-].
     whole: f64,
+    /// Height below which no place is moved by this component or by those after it [m].
+    reach: f64,
+    /// Height below which the elevation of this component, and of those after it, stretches no place [m].
+    stretch: f64,
 }
 
 impl Train {
-    fn new(component: &Component, number: f64, depth: Option<f64>) -> Train {
+    fn new(component: &Component, number: f64, depth: Option<f64>, [reach, stretch]: [f64; 2]) -> Train {
         Train {
             amplitude: component.amplitude,
             frequency: component.frequency,
@@ -162,6 +162,8 @@ impl Train {
             heading: [component.direction.cos(), component.direction.sin()],
             seabed: depth.map_or(0.0, |h| (-2.0 * number * h).exp()),
             whole: depth.map_or(1.0, |h| -1.0 / (-2.0 * number * h).exp_m1()),
+            reach,
+            stretch: stretch.min(reach),
         }
     }
 
@@ -221,11 +223,15 @@ impl Waves {
         components.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
         let number = |c: &Component| wave_number(c.frequency, depth, gravity);
         let numbers: Vec<f64> = components.iter().map(number).collect();
-        let train = |(c, k): (&Component, &f64)| Train::new(c, *k, depth);
+        let heights = reach(&components, &numbers)
+            .into_iter()
+            .zip(stretch(&components, &numbers));
+        let constants = components.iter().zip(&numbers).zip(heights);
+        let train = |((c, k), (reach, stretch)): ((&Component, &f64), (f64, f64))| {
+            Train::new(c, *k, depth, [reach, stretch])
+        };
         Waves {
-            trains: components.iter().zip(&numbers).map(train).collect(),
-            reach: reach(&components, &numbers),
-            stretch: stretch(&components, &numbers),
+            trains: constants.map(train).collect(),
             intervals: intervals(&components, &numbers),
             components,
             depth,
@@ -251,7 +257,7 @@ impl Waves {
 
     /// Number of components, of the lowest frequencies, that move the water at a height [m].
     pub fn reaching(&self, z: f64) -> usize {
-        self.reach.partition_point(|reach| *reach <= z)
+        self.trains.partition_point(|train| train.reach <= z)
     }
 
     /// Turns the instant to a time [s].
@@ -283,20 +289,18 @@ impl Waves {
         orbit
     }
 
-    /// Motion of the water at four places [m] and an instant; above the surface that of the surface. The components that reach the highest place are
-    /// summed at all four.
+    /// Motion of the water at four places [m] and an instant; above the surface that of the surface. No place depends on the others.
     #[inline(always)]
     pub fn orbits(&self, places: [Vector3<f64>; LANES], instant: &mut Instant) -> [Orbit; LANES] {
         let heights = places.iter().map(|place| place.z);
         let highest = heights.fold(f64::NEG_INFINITY, f64::max);
         let count = self.reaching(highest);
-        let stretched = self.stretch.partition_point(|height| *height <= highest);
-        let stretched = stretched.max(count);
+        let stretched = self.trains.partition_point(|train| train.stretch <= highest);
         let places = Vectors::new(places);
-        let raised = self.raised((places.x, places.y), stretched, instant);
+        let raised = self.raised(&places, stretched, instant);
         let [growth, rate, bend] = instant.growth.map(Lanes::splat);
         let elevation = growth * raised;
-        let sums = self.sums(self.stretched(places.z, elevation), count, instant);
+        let sums = self.sums([places.z, self.stretched(places.z, elevation)], count, instant);
         let [velocity, acceleration, jerk] = sums.rates;
         let grown = [
             velocity.scale(growth),
@@ -323,27 +327,27 @@ impl Waves {
 
     /// Elevation at four places by the first components without the ramp [m]; leaves their sines and cosines in the instant.
     #[inline(always)]
-    fn raised(&self, (x, y): (Lanes, Lanes), stretched: usize, instant: &mut Instant) -> Lanes {
+    fn raised(&self, places: &Vectors, stretched: usize, instant: &mut Instant) -> Lanes {
         instant.phase.clear();
         let mut sum = Lanes::splat(0.0);
         for (train, turn) in self.trains[..stretched].iter().zip(&instant.turn) {
             let [east, north] = train.vector().map(Lanes::splat);
-            let (sine, cosine) = sin_cos(x * east + y * north + Lanes::splat(*turn));
-            sum = sum + Lanes::splat(train.amplitude) * cosine;
+            let (sine, cosine) = sin_cos(places.x * east + places.y * north + Lanes::splat(*turn));
+            sum = sum + above(places.z, train.stretch, train.amplitude) * cosine;
             instant.phase.push([sine, cosine]);
         }
         sum
     }
 
-    /// Sums over the first `count` components at four stretched heights [m], without the ramp.
+    /// Sums over the first `count` components at four heights [m], as they are and stretched, without the ramp.
     #[inline(always)]
-    fn sums(&self, z: Lanes, count: usize, instant: &Instant) -> Sums {
+    fn sums(&self, [height, z]: [Lanes; 2], count: usize, instant: &Instant) -> Sums {
         let mut sums = Sums {
             rates: [Vectors::zero(); 3],
             rise: Lanes::splat(0.0),
         };
         for (train, [sine, cosine]) in self.trains[..count].iter().zip(&instant.phase) {
-            let speed = Lanes::splat(train.amplitude * train.frequency);
+            let speed = above(height, train.reach, train.amplitude * train.frequency);
             let [level, upward] = train.decay(z).map(|decay| speed * decay);
             let [east, north] = train.heading.map(|part| level * Lanes::splat(part));
             // u ~ cos ψ and w ~ sin ψ, with their first two rates
@@ -371,6 +375,12 @@ impl Waves {
             _ => [1.0, 0.0, 0.0],
         }
     }
+}
+
+/// A value where a height z is at least a limit [m], else 0.
+#[inline(always)]
+fn above(z: Lanes, limit: f64, value: f64) -> Lanes {
+    (Lanes::splat(limit) - z).choose(Lanes::splat(0.0), Lanes::splat(value))
 }
 
 /// Motion at each of four places. Out of line: the compiler would lay out the loops before by how the lanes are taken apart, in halves of the width.
@@ -696,15 +706,29 @@ mod tests {
     }
 
     #[test]
+    fn the_motion_at_a_place_does_not_depend_on_the_places_beside_it() {
+        for depth in [Some(60.0), None] {
+            let waves = storm(depth);
+            let places = [-1.0, -59.0, -12.0, -31.0].map(|z| Vector3::new(3.0 * z, -z, z));
+            let mut instant = Instant::default();
+            waves.turn_to(9.0, &mut instant);
+            let together = waves.orbits(places, &mut instant);
+            assert_eq!(together, places.map(|place| waves.orbit(place, 9.0)));
+        }
+    }
+
+    #[test]
     fn elevations_left_out_of_the_stretching_move_a_place_by_a_ten_thousandth() {
         let mut waves = storm(None);
         let surface = root(&waves.components, 2);
         let places = [-1.0, -5.0, -20.0, -60.0, -140.0].map(|z| Vector3::new(12.0, 5.0, z));
         let found = places.map(|place| waves.orbit(place, 8.0).acceleration);
-        let felt = |z: f64| waves.stretch.partition_point(|height| *height <= z);
+        let felt = |z: f64| waves.trains.partition_point(|train| train.stretch <= z);
         assert!((1..400).any(|depth| (1..30).contains(&felt(f64::from(-depth)))));
-        assert!(waves.stretch.iter().all(|height| *height < -1.0));
-        waves.stretch.fill(f64::NEG_INFINITY);
+        assert!(waves.trains.iter().all(|train| train.stretch < -1.0));
+        for train in &mut waves.trains {
+            train.stretch = f64::NEG_INFINITY;
+        }
         for (place, found) in places.into_iter().zip(found) {
             let all = waves.orbit(place, 8.0).acceleration;
             assert!((all - found).norm() < 1e-4 * surface, "z = {} m", place.z);
