@@ -356,7 +356,11 @@ impl Layout {
         match (&self.viscoelastic, &self.law) {
             (Some(viscoelastic), _) => viscoelastic.elastic(at, strain),
             (None, StretchLaw::Engineering) => stiffness * strain,
-            (None, law) => stiffness * strain.map(|strain| law.at(strain).force),
+            // the segment beyond an end has no stiffness, and may have no length: the logarithm of its stretch is infinite
+            (None, law) => {
+                let strain = strain.where_positive(stiffness);
+                stiffness * strain.map(|strain| law.at(strain).force)
+            }
         }
     }
 

@@ -56,7 +56,8 @@ impl AxialLine {
             };
         }
         let law = &self.layout.law;
-        let strain = longer * self.layout.inverse_length.load(at);
+        // the segment beyond an end has no stiffness, and may have no length: the logarithm of its stretch is infinite
+        let strain = (longer * self.layout.inverse_length.load(at)).where_positive(stiffness);
         let [force, slope] = pulled(law, strain);
         let stretched = row.unstretched_length * force;
         Springs {
