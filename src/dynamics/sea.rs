@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::threads::ThreadPool;
+use crate::math::lanes::LANES;
 use crate::math::unit::VectorUnit;
 use crate::model::{Model, State, WaveSpan, WaveSpans};
 use crate::physics::airy::{Instant, Orbit, Waves};
@@ -292,9 +293,13 @@ impl NullaryFnOnce for Sampling<'_> {
     #[inline(always)]
     fn call(self) {
         // a closure would not be compiled for the vector unit
-        for (i, orbit) in self.nodes.iter_mut().enumerate() {
-            let place = self.position[i] + self.ahead * self.velocity[i];
-            *orbit = self.waves.orbit(place, self.instant);
+        for (k, orbits) in self.nodes.chunks_mut(LANES).enumerate() {
+            let places = std::array::from_fn(|lane| {
+                let node = LANES * k + lane.min(orbits.len() - 1);
+                self.position[node] + self.ahead * self.velocity[node]
+            });
+            let found = self.waves.orbits(places, self.instant);
+            orbits.copy_from_slice(&found[..orbits.len()]);
         }
     }
 }

@@ -22,7 +22,7 @@
 //! cubics with the slopes that they have there, [`Orbit::between`]. From the error h⁴f⁗/384 of that cubic, the
 //! interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves an error of at most 10⁻³ of the acceleration. The stretching
 //! adds an error of the slopes, of the order of (ka)². h is also at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the
-//! period of a single wave, since places are extrapolated over that time by their velocities, and at most 0.5 s. a is
+//! period of a single wave, since places are extrapolated over that time by their velocities, and at most 2 s. a is
 //! the amplitude at the highest place, a e^{kz} with z again three standard deviations too high: short waves, which
 //! change soonest, do not reach down to lines that hang from a deep fairlead.
 //!
@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::elementary::{exp, sin_cos};
 use crate::math::hermite::Hermite;
-use crate::math::lanes::{LANES, Lanes};
+use crate::math::lanes::{LANES, Lanes, Vectors};
 
 /// Newton steps of the dispersion relation, at most [-]; from a guess right to 1 % three are enough.
 const NEWTON_STEPS_MAX: usize = 20;
@@ -48,7 +48,7 @@ const TROUGH: f64 = 3.0;
 /// Error of the cubics between two instants, over the acceleration [-].
 const BETWEEN: f64 = 1e-3;
 /// Longest time between two instants [s].
-const INTERVAL_MAX: f64 = 0.5;
+const INTERVAL_MAX: f64 = 2.0;
 /// Deepest trough, over the depth [-]: the seabed does not fall dry.
 const TROUGH_MAX: f64 = 0.9;
 
@@ -124,36 +124,65 @@ pub fn cubics(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2]) -> [[Vector3<f6
 pub struct Waves {
     /// Components by frequency, the lowest first.
     components: Vec<Component>,
-    table: Table,
-    /// For every component, the height below which no place is moved by it or by those after it [m].
-    reach: Vec<f64>,
-    /// For every component, the height below which its elevation, and that of those after it, stretches no place [m].
-    stretch: Vec<f64>,
+    /// The same with what follows from the depth.
+    trains: Vec<Train>,
     depth: Option<f64>,
     ramp: Option<f64>,
     /// Heights [m], downwards from 0, and the longest time between two instants for places below each [s].
     intervals: Vec<[f64; 2]>,
 }
 
-/// Components for the kernels: four side by side, padded with components of no amplitude.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Table {
-    amplitude: Vec<f64>,
-    frequency: Vec<f64>,
-    wave_number: Vec<f64>,
+/// Constants of a component over the depth of the water.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Train {
+    /// [m]
+    amplitude: f64,
+    /// ω [rad/s].
+    frequency: f64,
+    /// k [1/m].
+    number: f64,
     /// cos θ and sin θ [-].
-    heading: [Vec<f64>; 2],
+    heading: [f64; 2],
     /// q = e^{−2kh} [-], 0 in deep water.
-    seabed: Vec<f64>,
+    seabed: f64,
     /// 1/(1 − q) [-].
-    whole: Vec<f64>,
+    whole: f64,
+    /// Height below which no place is moved by this component or by those after it [m].
+    reach: f64,
+    /// Height below which the elevation of this component, and of those after it, stretches no place [m].
+    stretch: f64,
 }
 
-impl Table {
+impl Train {
+    fn new(component: &Component, number: f64, depth: Option<f64>, [reach, stretch]: [f64; 2]) -> Train {
+        Train {
+            amplitude: component.amplitude,
+            frequency: component.frequency,
+            number,
+            heading: [component.direction.cos(), component.direction.sin()],
+            seabed: depth.map_or(0.0, |h| (-2.0 * number * h).exp()),
+            whole: depth.map_or(1.0, |h| -1.0 / (-2.0 * number * h).exp_m1()),
+            reach,
+            stretch: stretch.min(reach),
+        }
+    }
+
+    /// k cos θ and k sin θ [1/m].
     #[inline(always)]
-    fn headings(&self, at: usize) -> (Lanes, Lanes) {
-        let [east, north] = &self.heading;
-        (Lanes::load(east, at), Lanes::load(north, at))
+    fn vector(&self) -> [f64; 2] {
+        self.heading.map(|part| self.number * part)
+    }
+
+    /// cosh k(z + h)/sinh kh and sinh k(z + h)/sinh kh [-] at four heights: (E ± q/E)/(1 − q) with E = e^{kz}, q = e^{−2kh}.
+    #[inline(always)]
+    fn decay(&self, z: Lanes) -> [Lanes; 2] {
+        let grown = exp(Lanes::splat(self.number) * z);
+        if self.seabed == 0.0 {
+            return [grown; 2];
+        }
+        let mirrored = Lanes::splat(self.seabed) * grown.recip();
+        let whole = Lanes::splat(self.whole);
+        [(grown + mirrored) * whole, (grown - mirrored) * whole]
     }
 }
 
@@ -166,8 +195,8 @@ pub struct Instant {
     turn: Vec<f64>,
     /// Growth of the ramp [-], with its rate [1/s] and the rate of that [1/s²].
     growth: [f64; 3],
-    sine: Vec<f64>,
-    cosine: Vec<f64>,
+    /// sin ψ and cos ψ of the components at four places.
+    phase: Vec<[Lanes; 2]>,
 }
 
 /// Wave number k [1/m] of a circular frequency ω > 0 [rad/s] over a depth [m], deep water where none, under gravity [m/s²].
@@ -194,29 +223,15 @@ impl Waves {
         components.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
         let number = |c: &Component| wave_number(c.frequency, depth, gravity);
         let numbers: Vec<f64> = components.iter().map(number).collect();
-        let column = |value: &dyn Fn(&Component, f64) -> f64| {
-            let mut column: Vec<f64> = components
-                .iter()
-                .zip(&numbers)
-                .map(|(c, k)| value(c, *k))
-                .collect();
-            column.resize(components.len().next_multiple_of(LANES), 0.0);
-            column
+        let heights = reach(&components, &numbers)
+            .into_iter()
+            .zip(stretch(&components, &numbers));
+        let constants = components.iter().zip(&numbers).zip(heights);
+        let train = |((c, k), (reach, stretch)): ((&Component, &f64), (f64, f64))| {
+            Train::new(c, *k, depth, [reach, stretch])
         };
         Waves {
-            table: Table {
-                amplitude: column(&|c, _| c.amplitude),
-                frequency: column(&|c, _| c.frequency),
-                wave_number: column(&|_, k| k),
-                heading: [
-                    column(&|c, _| c.direction.cos()),
-                    column(&|c, _| c.direction.sin()),
-                ],
-                seabed: column(&|_, k| depth.map_or(0.0, |h| (-2.0 * k * h).exp())),
-                whole: column(&|_, k| depth.map_or(1.0, |h| -1.0 / (-2.0 * k * h).exp_m1())),
-            },
-            reach: reach(&components, &numbers),
-            stretch: stretch(&components, &numbers),
+            trains: constants.map(train).collect(),
             intervals: intervals(&components, &numbers),
             components,
             depth,
@@ -242,7 +257,7 @@ impl Waves {
 
     /// Number of components, of the lowest frequencies, that move the water at a height [m].
     pub fn reaching(&self, z: f64) -> usize {
-        self.reach.partition_point(|reach| *reach <= z)
+        self.trains.partition_point(|train| train.reach <= z)
     }
 
     /// Turns the instant to a time [s].
@@ -250,119 +265,103 @@ impl Waves {
         if instant.time.replace(t) == Some(t) {
             return;
         }
-        let size = self.table.amplitude.len();
         let turn = |c: &Component| (c.phase - c.frequency * t).rem_euclid(TAU);
         instant.turn.clear();
         instant.turn.extend(self.components.iter().map(turn));
-        instant.turn.resize(size, 0.0);
-        instant.sine.resize(size, 0.0);
-        instant.cosine.resize(size, 0.0);
         instant.growth = self.growth(t);
     }
 
     /// Elevation of the surface at x, y [m] and time t [s], in [m].
     pub fn elevation(&self, x: f64, y: f64, t: f64) -> f64 {
+        let train = |(train, c): (&Train, &Component)| {
+            let [along, across] = train.vector();
+            c.amplitude * (along * x + across * y - c.frequency * t + c.phase).cos()
+        };
+        let trains = self.trains.iter().zip(&self.components);
+        self.growth(t)[0] * trains.map(train).sum::<f64>()
+    }
+
+    /// Motion of the water at a place [m] and time t [s]; above the surface that of the surface.
+    pub fn orbit(&self, place: Vector3<f64>, t: f64) -> Orbit {
         let mut instant = Instant::default();
         self.turn_to(t, &mut instant);
-        let all = self.table.amplitude.len();
-        instant.growth[0] * self.raised(x, y, [0, all], &mut instant)
+        let [orbit, ..] = self.orbits([place; LANES], &mut instant);
+        orbit
     }
 
-    /// Motion of the water at a place [m] and an instant; above the surface that of the surface.
+    /// Motion of the water at four places [m] and an instant; above the surface that of the surface. No place depends on the others.
     #[inline(always)]
-    pub fn orbit(&self, place: Vector3<f64>, instant: &mut Instant) -> Orbit {
-        let count = self.reaching(place.z).next_multiple_of(LANES);
-        let [growth, rate, bend] = instant.growth;
-        let stretched = self.stretch.partition_point(|height| *height <= place.z);
-        let stretched = stretched.next_multiple_of(LANES).max(count);
-        let raised = self.raised(place.x, place.y, [count, stretched], instant);
+    pub fn orbits(&self, places: [Vector3<f64>; LANES], instant: &mut Instant) -> [Orbit; LANES] {
+        let heights = places.iter().map(|place| place.z);
+        let highest = heights.fold(f64::NEG_INFINITY, f64::max);
+        let count = self.reaching(highest);
+        let stretched = self.trains.partition_point(|train| train.stretch <= highest);
+        let places = Vectors::new(places);
+        let raised = self.raised(&places, stretched, instant);
+        let [growth, rate, bend] = instant.growth.map(Lanes::splat);
         let elevation = growth * raised;
-        let z = match self.depth {
-            Some(h) => {
-                let surface = elevation.max(-TROUGH_MAX * h);
-                (h * (place.z - surface) / (h + surface)).clamp(-h, 0.0)
-            }
-            None => (place.z - elevation).min(0.0),
-        };
-        let Sums {
-            velocity,
-            acceleration,
-            jerk,
-            rise,
-        } = self.sums(z, count, instant);
-        Orbit {
-            velocity: growth * velocity,
-            acceleration: growth * acceleration + rate * velocity,
-            jerk: growth * jerk + 2.0 * rate * acceleration + bend * velocity,
-            elevation,
-            rise: growth * rise + rate * raised,
-        }
+        let sums = self.sums([places.z, self.stretched(places.z, elevation)], count, instant);
+        let [velocity, acceleration, jerk] = sums.rates;
+        let grown = [
+            velocity.scale(growth),
+            acceleration.scale(growth) + velocity.scale(rate),
+            jerk.scale(growth) + acceleration.scale(rate + rate) + velocity.scale(bend),
+        ];
+        let rise = growth * sums.rise + rate * raised;
+        apart(&grown, &[elevation, rise])
     }
 
-    /// Elevation of the first `stretched` components without the ramp [m]; leaves the sines and cosines of the first `count` in the instant.
+    /// Heights stretched after Wheeler under an elevation [m], between the seabed and 0.
     #[inline(always)]
-    fn raised(&self, x: f64, y: f64, [count, stretched]: [usize; 2], instant: &mut Instant) -> f64 {
-        let table = &self.table;
-        let (x, y) = (Lanes::splat(x), Lanes::splat(y));
+    fn stretched(&self, z: Lanes, elevation: Lanes) -> Lanes {
+        let still = Lanes::splat(0.0);
+        let Some(depth) = self.depth else {
+            return (z - elevation).min(still);
+        };
+        let depth = Lanes::splat(depth);
+        let seabed = still - depth;
+        let surface = elevation.max(seabed * Lanes::splat(TROUGH_MAX));
+        let stretched = depth * (z - surface) * (depth + surface).recip();
+        stretched.max(seabed).min(still)
+    }
+
+    /// Elevation at four places by the first components without the ramp [m]; leaves their sines and cosines in the instant.
+    #[inline(always)]
+    fn raised(&self, places: &Vectors, stretched: usize, instant: &mut Instant) -> Lanes {
+        instant.phase.clear();
         let mut sum = Lanes::splat(0.0);
-        for at in (0..stretched).step_by(LANES) {
-            let (east, north) = table.headings(at);
-            let way = x * east + y * north;
-            let angle = Lanes::load(&table.wave_number, at) * way + Lanes::load(&instant.turn, at);
-            let (sine, cosine) = sin_cos(angle);
-            sum = sum + Lanes::load(&table.amplitude, at) * cosine;
-            if at < count {
-                sine.store(&mut instant.sine, at);
-                cosine.store(&mut instant.cosine, at);
-            }
+        for (train, turn) in self.trains[..stretched].iter().zip(&instant.turn) {
+            let [east, north] = train.vector().map(Lanes::splat);
+            let (sine, cosine) = sin_cos(places.x * east + places.y * north + Lanes::splat(*turn));
+            sum = sum + above(places.z, train.stretch, train.amplitude) * cosine;
+            instant.phase.push([sine, cosine]);
         }
-        let [sum] = added_up(&[sum]);
         sum
     }
 
-    /// Sums over the first `count` components at a stretched height [m], without the ramp.
+    /// Sums over the first `count` components at four heights [m], as they are and stretched, without the ramp.
     #[inline(always)]
-    fn sums(&self, z: f64, count: usize, instant: &Instant) -> Sums {
-        let table = &self.table;
-        let mut sums = [Lanes::splat(0.0); 10];
-        for at in (0..count).step_by(LANES) {
-            let frequency = Lanes::load(&table.frequency, at);
-            let sine = Lanes::load(&instant.sine, at);
-            let cosine = Lanes::load(&instant.cosine, at);
-            let speed = Lanes::load(&table.amplitude, at) * frequency;
-            let [level, upward] = self.decay(at, z);
-            let (level, upward) = (speed * level, speed * upward);
-            // u ~ cos ψ, ∂u/∂t ~ ω sin ψ, ∂²u/∂t² ~ −ω² cos ψ; w ~ sin ψ, −ω cos ψ, −ω² sin ψ
-            let along = [cosine, frequency * sine, frequency * frequency * cosine];
-            let across = [sine, frequency * cosine, frequency * frequency * sine];
-            let (east, north) = table.headings(at);
-            let (east, north) = (level * east, level * north);
-            for order in 0..3 {
-                sums[3 * order] = sums[3 * order] + east * along[order];
-                sums[3 * order + 1] = sums[3 * order + 1] + north * along[order];
-                sums[3 * order + 2] = sums[3 * order + 2] + upward * across[order];
+    fn sums(&self, [height, z]: [Lanes; 2], count: usize, instant: &Instant) -> Sums {
+        let mut sums = Sums {
+            rates: [Vectors::zero(); 3],
+            rise: Lanes::splat(0.0),
+        };
+        for (train, [sine, cosine]) in self.trains[..count].iter().zip(&instant.phase) {
+            let speed = above(height, train.reach, train.amplitude * train.frequency);
+            let [level, upward] = train.decay(z).map(|decay| speed * decay);
+            let [east, north] = train.heading.map(|part| level * Lanes::splat(part));
+            // u ~ cos ψ and w ~ sin ψ, with their first two rates
+            let [omega, back] = [train.frequency, -train.frequency].map(Lanes::splat);
+            let once = [omega * *sine, back * *cosine];
+            let twice = [omega * once[1], back * once[0]];
+            for (sum, [along, across]) in sums.rates.iter_mut().zip([[*cosine, *sine], once, twice]) {
+                sum.x = sum.x + east * along;
+                sum.y = sum.y + north * along;
+                sum.z = sum.z + upward * across;
             }
-            sums[9] = sums[9] + speed * sine;
+            sums.rise = sums.rise + speed * *sine;
         }
-        let [vx, vy, vz, ax, ay, az, jx, jy, jz, rise] = added_up(&sums);
-        Sums {
-            velocity: Vector3::new(vx, vy, vz),
-            acceleration: Vector3::new(ax, ay, -az),
-            jerk: -Vector3::new(jx, jy, jz),
-            rise,
-        }
-    }
-
-    /// cosh k(z + h)/sinh kh and sinh k(z + h)/sinh kh [-] of four components: (E ± q/E)/(1 − q) with E = e^{kz}, q = e^{−2kh}.
-    #[inline(always)]
-    fn decay(&self, at: usize, z: f64) -> [Lanes; 2] {
-        let grown = exp(Lanes::load(&self.table.wave_number, at) * Lanes::splat(z));
-        if self.depth.is_none() {
-            return [grown; 2];
-        }
-        let mirrored = Lanes::load(&self.table.seabed, at) * grown.recip();
-        let whole = Lanes::load(&self.table.whole, at);
-        [(grown + mirrored) * whole, (grown - mirrored) * whole]
+        sums
     }
 
     /// ½(1 − cos πt/t_r), with its first two rates.
@@ -378,18 +377,33 @@ impl Waves {
     }
 }
 
-/// The sum of each four. Out of line: the compiler would lay out the loops before by how these sums pair the lanes, in halves of the width.
-#[inline(never)]
-fn added_up<const N: usize>(fours: &[Lanes; N]) -> [f64; N] {
-    fours.map(Lanes::sum)
+/// A value where a height z is at least a limit [m], else 0.
+#[inline(always)]
+fn above(z: Lanes, limit: f64, value: f64) -> Lanes {
+    (Lanes::splat(limit) - z).choose(Lanes::splat(0.0), Lanes::splat(value))
 }
 
-/// Sums over components.
+/// Motion at each of four places. Out of line: the compiler would lay out the loops before by how the lanes are taken apart, in halves of the width.
+#[inline(never)]
+fn apart(rates: &[Vectors; 3], [elevation, rise]: &[Lanes; 2]) -> [Orbit; LANES] {
+    std::array::from_fn(|lane| {
+        let [velocity, acceleration, jerk] = rates.each_ref().map(|vectors| vectors.get(lane));
+        Orbit {
+            velocity,
+            acceleration,
+            jerk,
+            elevation: elevation[lane],
+            rise: rise[lane],
+        }
+    })
+}
+
+/// Sums over components at four places, without the ramp.
 struct Sums {
-    velocity: Vector3<f64>,
-    acceleration: Vector3<f64>,
-    jerk: Vector3<f64>,
-    rise: f64,
+    /// Velocity [m/s] with its first two rates.
+    rates: [Vectors; 3],
+    /// Rate of the elevation [m/s].
+    rise: Lanes,
 }
 
 /// √Σ(aωⁿ)², √2 times a standard deviation.
@@ -521,12 +535,6 @@ mod tests {
         assert_relative_eq!(wave_number(2.0, None, GRAVITY), 4.0 / GRAVITY);
     }
 
-    fn orbit(waves: &Waves, place: Vector3<f64>, t: f64) -> Orbit {
-        let mut instant = Instant::default();
-        waves.turn_to(t, &mut instant);
-        waves.orbit(place, &mut instant)
-    }
-
     /// Velocity by the equations as written, component by component.
     fn written_out(waves: &Waves, place: Vector3<f64>, t: f64) -> Vector3<f64> {
         let angle = |c: &Component, k: f64| {
@@ -573,7 +581,7 @@ mod tests {
             for (x, z, t) in [(0.0, -1.0, 0.0), (40.0, -5.0, 13.0), (-300.0, -11.9, 777.0)] {
                 let place = Vector3::new(x, 0.7 * x, z);
                 let expected = written_out(&waves, place, t);
-                let found = orbit(&waves, place, t).velocity;
+                let found = waves.orbit(place, t).velocity;
                 let error = (found - expected).norm();
                 assert!(error < 1e-4 * expected.norm(), "{depth:?}, z = {z} m: {error:e}");
             }
@@ -587,7 +595,7 @@ mod tests {
             let slope = |axis: usize| {
                 let mut step = Vector3::zeros();
                 step[axis] = d;
-                let at = |r| orbit(&waves, r, t).velocity;
+                let at = |r| waves.orbit(r, t).velocity;
                 (at(place + step) - at(place - step)) / (2.0 * d)
             };
             let [x, y, z] = [slope(0), slope(1), slope(2)];
@@ -603,13 +611,13 @@ mod tests {
         let (x, y, t, d) = (5.0, 2.0, 7.0, 1e-3);
         let surface = waves.elevation(x, y, t);
         let rise = (waves.elevation(x, y, t + d) - waves.elevation(x, y, t - d)) / (2.0 * d);
-        let water = orbit(&waves, Vector3::new(x, y, surface), t);
+        let water = waves.orbit(Vector3::new(x, y, surface), t);
         assert_relative_eq!(water.velocity.z, rise, max_relative = 1e-6);
         assert_relative_eq!(water.rise, rise, max_relative = 1e-6);
-        assert_eq!(water.elevation, surface);
-        let seabed = orbit(&waves, Vector3::new(x, y, -30.0), t);
-        assert!(seabed.velocity.z.abs() < 1e-18 && seabed.velocity.x != 0.0);
-        let above = orbit(&waves, Vector3::new(x, y, surface + 9.0), t);
+        assert_relative_eq!(water.elevation, surface, max_relative = 1e-12);
+        let seabed = waves.orbit(Vector3::new(x, y, -30.0), t);
+        assert!(seabed.velocity.z.abs() < 1e-11 * seabed.velocity.x.abs());
+        let above = waves.orbit(Vector3::new(x, y, surface + 9.0), t);
         assert_eq!(above, water);
     }
 
@@ -618,7 +626,7 @@ mod tests {
         for ramp in [None, Some(9.0)] {
             let (mut waves, d) = (sea(None), 1e-3);
             waves.ramp = ramp;
-            let at = |t| orbit(&waves, Vector3::new(3.0, -7.0, -8.0), t);
+            let at = |t| waves.orbit(Vector3::new(3.0, -7.0, -8.0), t);
             let (before, now, after) = (at(4.0 - d), at(4.0), at(4.0 + d));
             let rate = (after.velocity - before.velocity) / (2.0 * d);
             assert!((rate - now.acceleration).norm() < 1e-4 * rate.norm());
@@ -637,9 +645,9 @@ mod tests {
         let steps = 400;
         for step in 0..steps {
             let [t0, t1] = [0, 1].map(|k| f64::from(step + k) * waves.interval_below(place.z));
-            let (before, after) = (orbit(&waves, place, t0), orbit(&waves, place, t1));
+            let (before, after) = (waves.orbit(place, t0), waves.orbit(place, t1));
             let middle = 0.5 * (t0 + t1);
-            let exact = orbit(&waves, place, middle);
+            let exact = waves.orbit(place, middle);
             let found = Orbit::between(&before, &after, [t0, t1], middle);
             worst = worst.max((found.acceleration - exact.acceleration).norm_squared());
             square += exact.acceleration.norm_squared();
@@ -658,10 +666,11 @@ mod tests {
         let waves = Waves::new(&components, None, None, GRAVITY);
         let heights = [-0.0, -1.0, -4.0, -12.0, -50.0, -2000.0];
         let intervals = heights.map(|z| waves.interval_below(z));
-        assert!(intervals.is_sorted() && intervals[5] == INTERVAL_MAX);
+        assert!(intervals.is_sorted());
+        assert_relative_eq!(intervals[5], 0.5 / 0.3, max_relative = 1e-2); // the longest wave alone
         assert!(intervals[3] > 1.3 * intervals[0], "{intervals:?}");
         for (z, interval) in heights.into_iter().zip(intervals).take(5) {
-            let at = |t: f64| orbit(&waves, Vector3::new(4.0, 9.0, z), t);
+            let at = |t: f64| waves.orbit(Vector3::new(4.0, 9.0, z), t);
             let (mut error, mut square) = (0.0, 0.0);
             for step in 0..4000 {
                 let times = [0.7, 1.7].map(|k| 7.3 * f64::from(step) + k * interval);
@@ -692,8 +701,20 @@ mod tests {
         }
         assert_eq!(waves.reaching(0.0), 30);
         assert!((1..15).contains(&waves.reaching(-150.0)));
-        let still = orbit(&waves, Vector3::new(0.0, 0.0, -5000.0), 3.0);
+        let still = waves.orbit(Vector3::new(0.0, 0.0, -5000.0), 3.0);
         assert_eq!(still.acceleration, Vector3::zeros());
+    }
+
+    #[test]
+    fn the_motion_at_a_place_does_not_depend_on_the_places_beside_it() {
+        for depth in [Some(60.0), None] {
+            let waves = storm(depth);
+            let places = [-1.0, -59.0, -12.0, -31.0].map(|z| Vector3::new(3.0 * z, -z, z));
+            let mut instant = Instant::default();
+            waves.turn_to(9.0, &mut instant);
+            let together = waves.orbits(places, &mut instant);
+            assert_eq!(together, places.map(|place| waves.orbit(place, 9.0)));
+        }
     }
 
     #[test]
@@ -701,13 +722,15 @@ mod tests {
         let mut waves = storm(None);
         let surface = root(&waves.components, 2);
         let places = [-1.0, -5.0, -20.0, -60.0, -140.0].map(|z| Vector3::new(12.0, 5.0, z));
-        let found = places.map(|place| orbit(&waves, place, 8.0).acceleration);
-        let felt = |z: f64| waves.stretch.partition_point(|height| *height <= z);
+        let found = places.map(|place| waves.orbit(place, 8.0).acceleration);
+        let felt = |z: f64| waves.trains.partition_point(|train| train.stretch <= z);
         assert!((1..400).any(|depth| (1..30).contains(&felt(f64::from(-depth)))));
-        assert!(waves.stretch.iter().all(|height| *height < -1.0));
-        waves.stretch.fill(f64::NEG_INFINITY);
+        assert!(waves.trains.iter().all(|train| train.stretch < -1.0));
+        for train in &mut waves.trains {
+            train.stretch = f64::NEG_INFINITY;
+        }
         for (place, found) in places.into_iter().zip(found) {
-            let all = orbit(&waves, place, 8.0).acceleration;
+            let all = waves.orbit(place, 8.0).acceleration;
             assert!((all - found).norm() < 1e-4 * surface, "z = {} m", place.z);
         }
     }

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use crate::common::*;
 use moorline::dynamics::StepFailure;
 use moorline::model::Body;
-use moorline::physics::airy::{Instant, Waves};
+use moorline::physics::airy::Waves;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::{EndMotion, FLOW_COMPONENTS, Simulation, WaterFlow};
 use nalgebra::Vector3;
@@ -50,7 +50,6 @@ fn waves(components: &str) -> String {
 /// A host with Airy's field.
 struct Host {
     waves: Waves,
-    instant: Instant,
     flow: WaterFlow,
 }
 
@@ -60,19 +59,15 @@ impl Host {
         let model = moorline::model::Model::new(waves).unwrap();
         Host {
             waves: model.waves.unwrap(),
-            instant: Instant::default(),
             flow: WaterFlow::still(simulation.model()),
         }
     }
 
     /// Gives the flow of a time [s] at the places where it is due.
     fn give(&mut self, simulation: &mut Simulation, time: f64) {
-        self.waves.turn_to(time, &mut self.instant);
         for line in 0..simulation.model().lines.len() {
             for node in 0..self.flow.node_count(line) {
-                let orbit = self
-                    .waves
-                    .orbit(simulation.flow_place(line, node), &mut self.instant);
+                let orbit = self.waves.orbit(simulation.flow_place(line, node), time);
                 self.flow
                     .set(line, node, orbit.velocity.into(), orbit.acceleration.into());
             }

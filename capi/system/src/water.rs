@@ -1,6 +1,5 @@
 //! Water and seabed.
 
-use moorline::physics::airy::Instant;
 use nalgebra::Vector3;
 
 use crate::failure::{Failure, Outcome};
@@ -17,7 +16,7 @@ pub struct Flow {
     pub elevation: f64,
 }
 
-/// Sentence of everything that needs water from a host.
+/// Message for every call that needs water from a host.
 pub const NO_HOST_WATER: &str = "water kinematics that the host gives are not modelled: give waves and currents in the deck \
      (WaveKin 7 or 0, Currents 1 or 0)";
 
@@ -42,9 +41,7 @@ impl System {
                 ..Flow::default()
             });
         };
-        let mut instant = Instant::default();
-        waves.turn_to(time, &mut instant);
-        let orbit = waves.orbit(Vector3::from(place), &mut instant);
+        let orbit = waves.orbit(Vector3::from(place), time);
         Ok(Flow {
             velocity: (velocity + orbit.velocity).into(),
             acceleration: orbit.acceleration.into(),
