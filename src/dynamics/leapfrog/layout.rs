@@ -146,7 +146,7 @@ impl Layout {
                 .as_ref()
                 .map(|bending| Joints::new(bending, striping)),
             viscoelastic,
-            surface: SurfaceNow::new(line),
+            surface: SurfaceNow::new(line, striping),
         })
     }
 

@@ -1,7 +1,8 @@
 //! The water's surface over the line of a leapfrog: between two steps, weight, drag and mass of the nodes that it crosses are set
 //! to their values there, so that the kernels need no special case.
 
-use crate::math::striping::{Field, Striping};
+use crate::math::lanes::{LANES, Lanes};
+use crate::math::striping::{Column, Field, Striping};
 use crate::model::{Dry, Line, Nodes, Surface};
 
 /// A line that may pierce the surface, as it lies at t_n.
@@ -9,8 +10,11 @@ use crate::model::{Dry, Line, Nodes, Surface};
 pub struct SurfaceNow {
     surface: Surface,
     nodes: Nodes,
-    /// Height of the water at the nodes [m].
-    pub level: Vec<f64>,
+    /// Greatest radius of the segments at the nodes [m].
+    radius: Column,
+    /// Height of the water at the nodes, and the least of it [m].
+    level: Vec<f64>,
+    lowest: f64,
     dry: Vec<Dry>,
     /// Buoyancy that the nodes would lack in calm water [N], where there are waves.
     calm: Vec<f64>,
@@ -18,6 +22,8 @@ pub struct SurfaceNow {
     pub lifted: f64,
     /// Dry parts at t_{n−1} [-].
     before: Vec<f64>,
+    /// Whether a node is dry, or was at t_{n−1}.
+    crosses: bool,
 }
 
 /// A node at t_n.
@@ -35,25 +41,51 @@ pub struct NodeNow {
 
 impl SurfaceNow {
     /// Surface over a line; `None` where it does not meet the surface.
-    pub fn new(line: &Line) -> Option<SurfaceNow> {
+    pub fn new(line: &Line, striping: Striping) -> Option<SurfaceNow> {
+        let surface = line.surface.clone()?;
         let count = line.segment_count() + 1;
+        let segments = |i: usize| &surface.radius[i.saturating_sub(1)..(i + 1).min(count - 1)];
+        let greatest = |i: usize| segments(i).iter().copied().fold(0.0, f64::max);
+        let radii: Vec<f64> = (0..count).map(greatest).collect();
         Some(SurfaceNow {
-            surface: line.surface.clone()?,
+            radius: striping.column(&radii, f64::NEG_INFINITY),
+            surface,
             nodes: line.nodes.clone(),
             level: vec![0.0; count],
+            lowest: 0.0,
             dry: vec![Dry::default(); count],
             before: vec![0.0; count],
             calm: vec![0.0; count],
             lifted: 0.0,
+            crosses: false,
         })
+    }
+
+    /// Sets the height of the water at the nodes [m].
+    pub fn set_level(&mut self, level: impl Fn(usize) -> f64) {
+        self.lowest = f64::INFINITY;
+        for (i, height) in self.level.iter_mut().enumerate() {
+            *height = level(i);
+            self.lowest = self.lowest.min(*height);
+        }
     }
 
     /// Finds the dry parts of a line whose nodes are at `position` [m].
     pub fn find(&mut self, striping: Striping, position: &Field) {
+        let submerged = self.top(striping, position) <= self.lowest;
+        if submerged && !self.crosses {
+            return;
+        }
+        self.crosses = false;
         for (before, dry) in self.before.iter_mut().zip(&mut self.dry) {
             *before = dry.part;
             *dry = Dry::default();
+            self.crosses |= *before > 0.0;
         }
+        if submerged {
+            return;
+        }
+        self.crosses = true;
         for i in 0..self.surface.radius.len() {
             let heights = [i, i + 1].map(|node| position.get(striping.slot(node)).z - self.level[node]);
             let Some(at) = self.surface.segment(i, heights, 0.0) else {
@@ -70,6 +102,9 @@ impl SurfaceNow {
     /// Finds the buoyancy that nodes at `position` [m] would lack in calm water.
     pub fn find_calm(&mut self, striping: Striping, position: &Field) {
         self.calm.fill(0.0);
+        if self.top(striping, position) <= 0.0 {
+            return;
+        }
         for i in 0..self.surface.radius.len() {
             let heights = [i, i + 1].map(|node| position.get(striping.slot(node)).z);
             if let Some(at) = self.surface.segment(i, heights, 0.0) {
@@ -80,6 +115,15 @@ impl SurfaceNow {
         }
     }
 
+    /// Upper bound of the height of the line's highest part over still water, with its nodes at `position` [m].
+    fn top(&self, striping: Striping, position: &Field) -> f64 {
+        let last = striping.rows();
+        let rows = position.rows(last).iter().zip(self.radius.rows(last));
+        let tops = rows.skip(1).map(|(position, radius)| position.z + *radius);
+        let top = tops.fold(Lanes::splat(f64::NEG_INFINITY), Lanes::max);
+        (0..LANES).map(|lane| top[lane]).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Adds the work of the difference in buoyancy between waves and still water on node `i` as it rises by `way` [m].
     pub fn lift(&mut self, i: usize, way: f64) {
         self.lifted += (self.calm[i] - self.dry[i].weight) * way;
@@ -87,7 +131,8 @@ impl SurfaceNow {
 
     /// Nodes that are dry, or were before the last [`Self::find`].
     pub fn crossed(&self) -> impl Iterator<Item = usize> + '_ {
-        let nodes = self.dry.iter().zip(&self.before).enumerate();
+        let count = if self.crosses { self.dry.len() } else { 0 };
+        let nodes = self.dry[..count].iter().zip(&self.before).enumerate();
         nodes.filter_map(|(i, (dry, before))| (dry.part > 0.0 || *before > 0.0).then_some(i))
     }
 

@@ -163,9 +163,7 @@ impl Layout {
             return;
         };
         if let Some(waves) = &self.waves {
-            for (i, level) in surface.level.iter_mut().enumerate() {
-                *level = waves.elevation(i);
-            }
+            surface.set_level(|node| waves.elevation(node));
             surface.find_calm(self.striping, &self.position);
         }
         surface.find(self.striping, &self.position);
