@@ -1,7 +1,7 @@
 /* Octave and Matlab: force = moorline_run(scene, displacements, step) drives the first body of a scene by the rows of `displacements` [m, rad] and
  * returns the force [N, N m] after every step, a row each.
  *
- *     mkoctfile --mex -I capi/include capi/examples/moorline_run.c -L target/release -lmoorline_c
+ *     mkoctfile --mex -Icapi/include capi/examples/moorline_run.c -Ltarget/release -lmoorline_c
  *
  * Matlab can also load the library as it is: loadlibrary('libmoorline_c', 'moorline.h'). */
 #include "mex.h"

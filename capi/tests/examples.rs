@@ -58,10 +58,8 @@ fn run_host(program: &Path) -> String {
 }
 
 fn link(command: &mut Command) {
-    command
-        .arg("-L")
-        .arg(library("moorline_c").parent().unwrap())
-        .args(["-lmoorline_c", "-lm"]);
+    let libraries = library("moorline_c").parent().unwrap().display().to_string();
+    command.args([&format!("-L{libraries}"), "-lmoorline_c", "-lm"]);
 }
 
 #[test]
@@ -127,7 +125,9 @@ fn the_host_in_octave_has_the_force_of_the_host_in_rust() {
         }
         None => return,
     };
-    command.arg("-I").arg(folder().join("include")).arg(source);
+    // in one word: mkoctfile takes no folder of its own
+    let headers = format!("-I{}", folder().join("include").display());
+    command.arg(headers).arg(source);
     command.arg("-o").arg(built.path().join("moorline_run.mex"));
     link(&mut command);
     run(&mut command);
