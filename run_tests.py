@@ -103,11 +103,13 @@ def test_wheel(interpreter, arguments):
 def run_all(arguments):
     """Runs every test and returns what failed."""
     interpreter = python()
-    must("cargo", "build", "--release", "--locked", *SLOW_TESTS)
+    everything = "--release", "--workspace", *LEFT_OUT, "--locked", *SLOW_TESTS
+    # With the tests, whose dependencies change features of the library's: otherwise it would be built again for them.
+    must("cargo", "build", *everything, "--lib", "--bins", "--tests")
     program = release_folder() / ("moorline.exe" if os.name == "nt" else "moorline")
     failed = []
     # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
-    if not run("cargo", "test", "--release", "--workspace", *LEFT_OUT, "--locked", "--no-fail-fast", *SLOW_TESTS):
+    if not run("cargo", "test", *everything, "--no-fail-fast"):
         failed.append("cargo test")
     if CONFORMANCE.is_file():
         path = os.pathsep.join([str(interpreter.parent), os.environ["PATH"]])
