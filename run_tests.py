@@ -7,8 +7,8 @@ Which tests run where:
     cargo test                                 the fast suite, at most two minutes of processor time after building: all tests of the
                                                packages but those marked slow, which it counts as ignored
     cargo test --features moorline/slow-tests  all of them: `cfg_attr(not(feature = "slow-tests"), ignore = "slow")` marks a slow test
-    run_tests.py                               all of them in the optimised build, fmu/conformance/run.sh, python_tests, and python/tests
-                                               on the wheel of python/build.py
+    run_tests.py                               all of them in the optimised build, with fmu/conformance; python_tests; and python/tests on the
+                                               wheel of python/build.py
     cargo test -- --ignored NAME               by hand only: tests that write tests/reference/*.csv anew, long surveys (ten thousand
                                                random scenes or lines, each with a shorter suite beside it) and those that show one scene
 
@@ -21,6 +21,7 @@ import hashlib
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,13 +31,12 @@ import venv
 ROOT = pathlib.Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 REQUIREMENTS = [ROOT / "python_tests" / "requirements.txt", ROOT / "python" / "requirements.txt"]
-CONFORMANCE = ROOT / "fmu" / "conformance" / "run.sh"
 PYTHON_MIN = (3, 11)
-# Does not change the program: it is built with the feature so that the library is built once.
+# Slow tests do not change the program: it is built with them so that the library is built once.
 PACKAGES = "moorline", "moorline-accuracy", "moorline-c", "moorline-cli", "moorline-fmu", "moorline-moordyn"
-SLOW_TESTS = "--features", ",".join(f"{package}/slow-tests" for package in PACKAGES)
-# The first needs libclang from .venv and has a script of its own; the second is a module of Python, tested as its wheel.
-LEFT_OUT = "--exclude", "moorline-conformance", "--exclude", "moorline-python"
+FEATURES = ",".join([*(f"{package}/slow-tests" for package in PACKAGES), "moorline-conformance/fmi-sys"])
+# A module of Python, which is tested as its wheel.
+LEFT_OUT = "--exclude", "moorline-python"
 
 
 class Failure(Exception):
@@ -79,13 +79,27 @@ def python():
     return interpreter
 
 
-def release_folder():
-    """Where cargo puts the optimised build."""
-    command = ["cargo", "metadata", "--format-version", "1", "--no-deps", "--locked"]
+def output(*command):
+    """What a command prints."""
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
-        raise Failure("cargo metadata failed")
-    return pathlib.Path(json.loads(done.stdout)["target_directory"]) / "release"
+        raise Failure(f"{command[0]} failed")
+    return done.stdout.strip()
+
+
+def release_folder():
+    """Where cargo puts the optimised build."""
+    metadata = output("cargo", "metadata", "--format-version", "1", "--no-deps", "--locked")
+    return pathlib.Path(json.loads(metadata)["target_directory"]) / "release"
+
+
+def libclang(interpreter):
+    """Settings with which the bindings of fmu/conformance find libclang, from .venv, and the headers that it lacks."""
+    folder = "import clang, pathlib; print(pathlib.Path(clang.__path__[0]) / 'native')"
+    settings = {"LIBCLANG_PATH": output(interpreter, "-c", folder)}
+    if shutil.which("gcc"):
+        settings["BINDGEN_EXTRA_CLANG_ARGS"] = f"-I{output('gcc', '-print-file-name=include')}"
+    return settings
 
 
 def test_wheel(interpreter, arguments):
@@ -103,18 +117,15 @@ def test_wheel(interpreter, arguments):
 def run_all(arguments):
     """Runs every test and returns what failed."""
     interpreter = python()
-    everything = "--release", "--workspace", *LEFT_OUT, "--locked", *SLOW_TESTS
-    # With the tests, whose dependencies change features of the library's: otherwise it would be built again for them.
-    must("cargo", "build", *everything, "--lib", "--bins", "--tests")
+    everything = "--release", "--workspace", *LEFT_OUT, "--locked", "--features", FEATURES
     program = release_folder() / ("moorline.exe" if os.name == "nt" else "moorline")
+    settings = {**libclang(interpreter), "MOORLINE": str(program)}
+    # With the tests, whose dependencies change features of the library's: otherwise it would be built again for them.
+    must("cargo", "build", *everything, "--lib", "--bins", "--tests", **settings)
     failed = []
     # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
-    if not run("cargo", "test", *everything, "--no-fail-fast"):
+    if not run("cargo", "test", *everything, "--no-fail-fast", **settings):
         failed.append("cargo test")
-    if CONFORMANCE.is_file():
-        path = os.pathsep.join([str(interpreter.parent), os.environ["PATH"]])
-        if not run("bash", CONFORMANCE, interpreter, PATH=path, VIRTUAL_ENV=str(VENV), MOORLINE=str(program)):
-            failed.append("fmu/conformance/run.sh")
     if not run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program)):
         failed.append("pytest")
     if not test_wheel(interpreter, arguments):

@@ -1,6 +1,6 @@
 //! The `fmi` crate, a host by other authors, opens and drives the FMU in both versions.
 //!
-//! The FMU is packaged by the command line in the environment variable MOORLINE, which `run.sh` sets.
+//! The FMU is packaged by the command line in the environment variable MOORLINE, which `run_tests.py` sets.
 
 use std::fs::File;
 use std::io::{Cursor, Read as _, Write as _};
