@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs all tests of moorline: those in Rust, those of the Python package, those that drive its FMUs from Python, and the check of its C
-interface.
+interface. The last step counts instructions, where there is valgrind.
 
 Which tests run where:
 
@@ -32,11 +32,10 @@ ROOT = pathlib.Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 REQUIREMENTS = [ROOT / "python_tests" / "requirements.txt", ROOT / "python" / "requirements.txt"]
 PYTHON_MIN = (3, 11)
-# Slow tests do not change the program: it is built with them so that the library is built once.
+# Slow tests do not change the program: it is built with them, and all packages together, so that the library is built once.
 PACKAGES = "moorline", "moorline-accuracy", "moorline-c", "moorline-cli", "moorline-fmu", "moorline-moordyn"
 FEATURES = ",".join([*(f"{package}/slow-tests" for package in PACKAGES), "moorline-conformance/fmi-sys"])
-# A module of Python, which is tested as its wheel.
-LEFT_OUT = "--exclude", "moorline-python"
+EVERYTHING = "--workspace", "--locked", "--features", FEATURES
 
 
 class Failure(Exception):
@@ -102,10 +101,10 @@ def libclang(interpreter):
     return settings
 
 
-def test_wheel(interpreter, arguments):
-    """Builds the wheel of the Python package, installs it into .venv and runs its tests; returns whether they passed."""
+def test_wheel(interpreter, built, arguments):
+    """Packs the wheel of the Python package around what cargo built, installs it into .venv and runs its tests; returns whether they passed."""
     with tempfile.TemporaryDirectory() as folder:
-        if not run(interpreter, ROOT / "python" / "build.py", "-o", folder):
+        if not run(interpreter, ROOT / "python" / "build.py", "--built", built, "-o", folder):
             return False
         (wheel,) = pathlib.Path(folder).glob("*.whl")
         quiet = ["--quiet", "--disable-pip-version-check"]
@@ -117,20 +116,20 @@ def test_wheel(interpreter, arguments):
 def run_all(arguments):
     """Runs every test and returns what failed."""
     interpreter = python()
-    everything = "--release", "--workspace", *LEFT_OUT, "--locked", "--features", FEATURES
-    program = release_folder() / ("moorline.exe" if os.name == "nt" else "moorline")
-    settings = {**libclang(interpreter), "MOORLINE": str(program)}
+    built = release_folder()
+    program = built / ("moorline.exe" if os.name == "nt" else "moorline")
+    module = {"PYO3_BUILD_EXTENSION_MODULE": "1", "PYO3_PYTHON": str(interpreter)}
+    settings = {**libclang(interpreter), **module, "MOORLINE": str(program)}
     # With the tests, whose dependencies change features of the library's: otherwise it would be built again for them.
-    must("cargo", "build", *everything, "--lib", "--bins", "--tests", **settings)
-    failed = []
+    must("cargo", "build", "--release", *EVERYTHING, "--lib", "--bins", "--tests", "--bench", "instructions", **settings)
     # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
-    if not run("cargo", "test", *everything, "--no-fail-fast", **settings):
-        failed.append("cargo test")
-    if not run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program)):
-        failed.append("pytest")
-    if not test_wheel(interpreter, arguments):
-        failed.append("pytest of the Python package")
-    return failed
+    passed = {
+        "cargo test": run("cargo", "test", "--release", *EVERYTHING, "--no-fail-fast", **settings),
+        "pytest": run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program)),
+        "pytest of the Python package": test_wheel(interpreter, built, arguments),
+        "instructions": run("cargo", "bench", *EVERYTHING, "--bench", "instructions", **settings),
+    }
+    return [name for name, passed in passed.items() if not passed]
 
 
 def main():
