@@ -33,7 +33,7 @@ VENV = ROOT / ".venv"
 REQUIREMENTS = [ROOT / "python_tests" / "requirements.txt", ROOT / "python" / "requirements.txt"]
 PYTHON_MIN = (3, 11)
 # Slow tests do not change the program: it is built with them, and all packages together, so that the library is built once.
-PACKAGES = "moorline", "moorline-accuracy", "moorline-c", "moorline-cli", "moorline-fmu", "moorline-moordyn"
+PACKAGES = "moorline", "moorline-accuracy", "moorline-c", "moorline-cli", "moorline-moordyn"
 FEATURES = ",".join([*(f"{package}/slow-tests" for package in PACKAGES), "moorline-conformance/fmi-sys"])
 EVERYTHING = "--workspace", "--locked", "--features", FEATURES
 

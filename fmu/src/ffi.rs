@@ -362,6 +362,77 @@ pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instance::tests::instance;
+
+    /// Categories and texts of messages.
+    type Messages = Vec<[String; 2]>;
+
+    /// Logger of a host that keeps the messages.
+    unsafe extern "C" fn keep(
+        environment: *mut c_void,
+        _: u32,
+        category: *const c_char,
+        message: *const c_char,
+    ) {
+        // SAFETY: the environment of the sink below, and texts of C.
+        let (messages, [category, message]) = unsafe {
+            (
+                &mut *environment.cast::<Messages>(),
+                [text(category), text(message)],
+            )
+        };
+        messages.push([category, message].map(|text| text.unwrap().to_string()));
+    }
+
+    /// A function of the interface with a bug.
+    unsafe extern "C" fn provoke(handle: *mut c_void) -> u32 {
+        // SAFETY: a live handle.
+        unsafe { call(handle, FmiVersion::Three, "provoke", |_| panic!("provoked")) }
+    }
+
+    #[test]
+    fn a_panic_is_fatal_for_the_instance_and_harmless_for_the_host() {
+        let mut messages = Messages::new();
+        let environment = (&raw mut messages).cast();
+        let handle = || {
+            let sink = Sink::Three {
+                logger: Some(keep),
+                environment,
+            };
+            let make = || Ok(instance(FmiVersion::Three));
+            let handle = instantiate(FmiVersion::Three, sink, None, make);
+            assert!(!handle.is_null());
+            handle
+        };
+        let start = |instance: &mut Instance| {
+            instance.enter_initialization()?;
+            instance.exit_initialization()
+        };
+        let step = |instance: &mut Instance| instance.do_step(0.0, 0.05);
+        let [lost, other] = [handle(), handle()];
+        // SAFETY: live handles, each freed once.
+        unsafe {
+            for handle in [lost, other] {
+                let started = call(handle, FmiVersion::Three, "start", start);
+                assert_eq!(started, Status::Ok as u32);
+            }
+            assert_eq!(provoke(lost), Status::Fatal as u32);
+            let stepped = call(lost, FmiVersion::Three, "step", step);
+            assert_eq!(stepped, Status::Fatal as u32);
+            free(lost);
+            let stepped = call(other, FmiVersion::Three, "step", step);
+            assert_eq!(stepped, Status::Ok as u32);
+            free(other);
+        }
+        let mut fatal = messages
+            .iter()
+            .filter(|[category, _]| category == "logStatusFatal");
+        let [_, message] = fatal.next().unwrap();
+        assert!(
+            message.contains("provoked") && message.contains("ffi.rs"),
+            "{message}"
+        );
+    }
 
     #[test]
     fn a_text_with_a_zero_byte_is_carried_with_a_space() {

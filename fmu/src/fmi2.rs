@@ -510,11 +510,3 @@ unsafe extern "C" fn fmi2GetStringStatus(
 fn no_status(kind: fmi2StatusKind, kind_of_value: &str) -> Refusal {
     Refusal(format!("there is no {kind_of_value} status of kind {kind}"))
 }
-
-/// Panics inside the guard, for the test that a host survives it.
-#[cfg(feature = "provoke-panic")]
-#[unsafe(no_mangle)]
-unsafe extern "C" fn moorline_provoke_panic(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's handle.
-    unsafe { ffi::call(c, VERSION, "moorline_provoke_panic", |_| panic!("provoked")) }
-}

@@ -497,7 +497,7 @@ fn hand_over(inputs: &[BodyInput], simulation: &mut Simulation) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use moorline::interface::Kind;
 
     use super::*;
@@ -539,7 +539,7 @@ mod tests {
         assert_eq!(real(&mut instance, "rope.mass"), mass);
     }
 
-    fn instance(version: FmiVersion) -> Instance {
+    pub(crate) fn instance(version: FmiVersion) -> Instance {
         instance_of(SCENE, version)
     }
 

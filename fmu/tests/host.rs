@@ -50,7 +50,7 @@ fn a_host_gets_the_bits_of_the_library_in_both_versions() {
         expected.push(simulation.tension_b(0).to_bits());
     }
     for version in VERSIONS {
-        let fmu = common::open(version, &[]);
+        let fmu = common::open(version);
         let mut slave = fmu.instantiate("mooring", true).unwrap();
         start(&mut slave);
         let x = fmu.reference("fairlead.x").unwrap();
@@ -71,7 +71,7 @@ fn a_host_gets_the_bits_of_the_library_in_both_versions() {
 #[test]
 fn a_saved_state_replays_bit_for_bit() {
     for version in VERSIONS {
-        let fmu = common::open(version, &[]);
+        let fmu = common::open(version);
         let mut slave = fmu.instantiate("mooring", false).unwrap();
         start(&mut slave);
         let state = slave.save_state().unwrap();
@@ -88,7 +88,7 @@ fn a_saved_state_replays_bit_for_bit() {
 #[test]
 fn a_refused_call_says_which_function_refused_and_why() {
     for version in VERSIONS {
-        let fmu = common::open(version, &[]);
+        let fmu = common::open(version);
         let mut slave = fmu.instantiate("mooring", true).unwrap();
         start(&mut slave);
         match slave.do_step(7.0, 0.05).unwrap_err() {
@@ -110,7 +110,7 @@ fn a_refused_call_says_which_function_refused_and_why() {
 #[test]
 fn a_wrong_token_is_refused_in_words() {
     for version in VERSIONS {
-        let fmu = common::open(version, &[]);
+        let fmu = common::open(version);
         let error = fmu.instantiate_with_token("mooring", "other", false).unwrap_err();
         assert!(error.to_string().contains("token"), "{error}");
     }
@@ -120,7 +120,7 @@ fn a_wrong_token_is_refused_in_words() {
 fn the_host_reads_the_description_that_was_written() {
     let scene = Scene::from_toml(common::SCENE).unwrap();
     for version in VERSIONS {
-        let fmu = common::open(version, &[]);
+        let fmu = common::open(version);
         let written = Description::new(common::SCENE, &scene, version).unwrap();
         let read = fmu.description();
         assert_eq!(read.token, written.token);
@@ -139,7 +139,7 @@ fn the_host_reads_the_description_that_was_written() {
 
 #[test]
 fn the_log_says_which_integrator_was_chosen() {
-    let fmu = common::open(FmiVersion::Two, &[]);
+    let fmu = common::open(FmiVersion::Two);
     let mut slave = fmu.instantiate("mooring", true).unwrap();
     start(&mut slave);
     let log = slave.take_log();
@@ -152,7 +152,7 @@ fn the_log_says_which_integrator_was_chosen() {
 
 #[test]
 fn the_unpacked_folder_goes_with_the_last_instance() {
-    let fmu = common::open(FmiVersion::Three, &[]);
+    let fmu = common::open(FmiVersion::Three);
     let place = fmu.folder().to_path_buf();
     let slave = fmu.instantiate("mooring", false).unwrap();
     drop(fmu);
