@@ -293,8 +293,7 @@ fn damping_enough(line: &Line) -> f64 {
 /// be stiffer than the axial stiffness. Found by bisection with Sturm's theorem (Golub & Van Loan 2013, Matrix
 /// Computations, section 8.4).
 pub fn axial_frequency_squared(line: &Line, shares: EndShares) -> f64 {
-    let law = |law: &StretchLaw| matches!(law, StretchLaw::Engineering | StretchLaw::Tabulated(_));
-    if line.segments.viscoelastic.is_some() || !line.segments.law.iter().all(law) {
+    if line.segments.viscoelastic.is_some() || line.segments.law.iter().any(StretchLaw::may_stiffen) {
         return f64::INFINITY;
     }
     let nodes = nodes_between(line, shares.map(|share| share.is_some()));

@@ -75,6 +75,11 @@ impl StretchLaw {
         }
     }
 
+    /// Returns whether a segment may be stiffer than its EA: the slope may exceed 1.
+    pub fn may_stiffen(&self) -> bool {
+        matches!(self, StretchLaw::Green | StretchLaw::Logarithmic { .. })
+    }
+
     /// The strain [-] at which the force is greatest, if there is one: N' = 0 at ln λ = 1/(2ν).
     pub fn limit_strain(&self) -> Option<f64> {
         match *self {

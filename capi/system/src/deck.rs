@@ -35,6 +35,8 @@ pub struct Deck {
     pub lists: Lists,
     /// Objects that the host moves, in the order of their degrees of freedom.
     pub coupled: Vec<Coupled>,
+    /// Indices in the scene of the points, by row.
+    points: Vec<Option<usize>>,
     /// Path of the deck without its extension, to which those of output files are added.
     pub stem: PathBuf,
     /// Remarks of the reader.
@@ -71,6 +73,7 @@ impl Deck {
         remarks.extend(rows_of_tables(&scene, path));
         Ok(Deck {
             coupled: coupled(&lists, &scene),
+            points: points(&lists, &scene),
             stem: path.with_extension(""),
             remarks,
             lists,
@@ -85,8 +88,7 @@ impl Deck {
 
     /// Index in the scene of the point of a deck's row, counted from 0.
     pub fn point(&self, row: usize) -> Option<usize> {
-        let name = format!("point{}", self.lists.points.get(row)?);
-        self.scene.points.iter().position(|point| point.name == name)
+        *self.points.get(row)?
     }
 
     /// The coupled object of a body's row, counted from 0.
@@ -123,6 +125,15 @@ fn check(lists: &Lists, scene: &Scene) -> Outcome {
         return Err(Failure::missing(message));
     }
     Ok(())
+}
+
+/// Indices in the scene of the points of a deck, by row.
+fn points(lists: &Lists, scene: &Scene) -> Vec<Option<usize>> {
+    let index = |number: &usize| {
+        let name = format!("point{number}");
+        scene.points.iter().position(|point| point.name == name)
+    };
+    lists.points.iter().map(index).collect()
 }
 
 fn coupled(lists: &Lists, scene: &Scene) -> Vec<Coupled> {

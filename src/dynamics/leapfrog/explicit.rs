@@ -35,7 +35,7 @@ use crate::math::striping::{Column, Field, Slot};
 use crate::model::{End, Kinematics, Line, LineState, Model, Network};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::slender::Slender;
-use crate::physics::stretch::{StretchLaw, total_tension};
+use crate::physics::stretch::total_tension;
 use sweep::{Drift, Pull, Sweep};
 use winch::WinchWork;
 
@@ -343,7 +343,7 @@ impl ExplicitLine {
     /// Stiffness of the stiffest segment over the one that the step limit assumes [-], at least 1.
     pub(super) fn stiffening(&self) -> f64 {
         let line = &self.layout;
-        if line.law == StretchLaw::Engineering {
+        if !line.law.may_stiffen() {
             return 1.0;
         }
         let slope = |i: usize| {

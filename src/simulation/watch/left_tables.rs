@@ -108,6 +108,13 @@ fn look_at_strain(
         &simulation.model.lines[line],
         &simulation.snapshot.state.lines[line].position,
     );
+    let least = sections.iter().map(|section| section.strain_max);
+    let stretch = 1.0 + least.fold(f64::INFINITY, f64::min);
+    let mut segments = nodes.windows(2).zip(&of.segments.length);
+    // at every communication point: without roots
+    if !segments.any(|(pair, length)| (pair[1] - pair[0]).norm_squared() > (stretch * length).powi(2)) {
+        return;
+    }
     for (k, (pair, length)) in nodes.windows(2).zip(&of.segments.length).enumerate() {
         let middle = of.nodes.arc[k] + 0.5 * length;
         let section = sections.iter().find(|section| middle <= section.end);
