@@ -32,7 +32,7 @@ ROOT = pathlib.Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 REQUIREMENTS = [ROOT / "python_tests" / "requirements.txt", ROOT / "python" / "requirements.txt"]
 PYTHON_MIN = (3, 11)
-# Slow tests do not change the program: it is built with them, and all packages together, so that the library is built once.
+# All packages with their slow tests, which do not change the programs: one selection for all calls of cargo, so that the library is built once.
 PACKAGES = "moorline", "moorline-accuracy", "moorline-c", "moorline-cli", "moorline-moordyn"
 FEATURES = ",".join([*(f"{package}/slow-tests" for package in PACKAGES), "moorline-conformance/fmi-sys"])
 EVERYTHING = "--workspace", "--locked", "--features", FEATURES
@@ -120,7 +120,7 @@ def run_all(arguments):
     program = built / ("moorline.exe" if os.name == "nt" else "moorline")
     module = {"PYO3_BUILD_EXTENSION_MODULE": "1", "PYO3_PYTHON": str(interpreter)}
     settings = {**libclang(interpreter), **module, "MOORLINE": str(program)}
-    # With the tests, whose dependencies change features of the library's: otherwise it would be built again for them.
+    # Programs, tests and bench in one build: dependencies of the tests add features to those of the library, which would then be built twice.
     must("cargo", "build", "--release", *EVERYTHING, "--lib", "--bins", "--tests", "--bench", "instructions", **settings)
     # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
     passed = {

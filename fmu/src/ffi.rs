@@ -367,7 +367,7 @@ mod tests {
     /// Categories and texts of messages.
     type Messages = Vec<[String; 2]>;
 
-    /// Logger of a host that keeps the messages.
+    /// Logger of a host; stores the messages in the environment, which is a [`Messages`].
     unsafe extern "C" fn keep(
         environment: *mut c_void,
         _: u32,
@@ -384,7 +384,7 @@ mod tests {
         messages.push([category, message].map(|text| text.unwrap().to_string()));
     }
 
-    /// A function of the interface with a bug.
+    /// Function of the interface that panics.
     unsafe extern "C" fn provoke(handle: *mut c_void) -> u32 {
         // SAFETY: a live handle.
         unsafe { call(handle, FmiVersion::Three, "provoke", |_| panic!("provoked")) }

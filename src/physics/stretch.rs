@@ -75,7 +75,7 @@ impl StretchLaw {
         }
     }
 
-    /// Returns whether a segment may be stiffer than its EA: the slope may exceed 1.
+    /// Returns whether the slope may exceed 1, so that a segment is stiffer than its EA.
     pub fn may_stiffen(&self) -> bool {
         matches!(self, StretchLaw::Green | StretchLaw::Logarithmic { .. })
     }

@@ -149,9 +149,15 @@ fn lengths(simulation: &Simulation, line: usize) -> impl Iterator<Item = (f64, f
     pairs.map(|(pair, length)| ((pair[1] - pair[0]).norm_squared(), *length))
 }
 
-/// Returns whether any segment of a line is strained beyond a limit [-]. Called at every communication point, so it takes no roots.
+/// Returns whether any segment of a line is strained beyond a limit [-].
 fn exceeds_strain(simulation: &Simulation, line: usize, limit: f64) -> bool {
-    lengths(simulation, line).any(|(square, length)| square > ((1.0 + limit) * length).powi(2))
+    lengths(simulation, line).any(|(square, length)| is_beyond(limit, square, length))
+}
+
+/// Returns whether a segment of a squared stretched length [m²] and an unstretched length [m] is strained beyond a limit [-]. Takes no roots, since all segments
+/// are compared at every communication point.
+fn is_beyond(limit: f64, square: f64, length: f64) -> bool {
+    square > ((1.0 + limit) * length).powi(2)
 }
 
 /// Greatest strain of a line's segments [-].

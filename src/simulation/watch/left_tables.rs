@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
+use super::is_beyond;
 use crate::scene::{Line, Note, Scene, Section};
 use crate::simulation::Simulation;
 
@@ -108,11 +109,10 @@ fn look_at_strain(
         &simulation.model.lines[line],
         &simulation.snapshot.state.lines[line].position,
     );
-    let least = sections.iter().map(|section| section.strain_max);
-    let stretch = 1.0 + least.fold(f64::INFINITY, f64::min);
+    let limits = sections.iter().map(|section| section.strain_max);
+    let least = limits.fold(f64::INFINITY, f64::min);
     let mut segments = nodes.windows(2).zip(&of.segments.length);
-    // at every communication point: without roots
-    if !segments.any(|(pair, length)| (pair[1] - pair[0]).norm_squared() > (stretch * length).powi(2)) {
+    if !segments.any(|(pair, length)| is_beyond(least, (pair[1] - pair[0]).norm_squared(), *length)) {
         return;
     }
     for (k, (pair, length)) in nodes.windows(2).zip(&of.segments.length).enumerate() {
