@@ -143,7 +143,7 @@ pub fn write_units(columns: &[Column], out: impl Write) -> io::Result<()> {
 
 /// The fewest digits that read back to the same bits, in scientific notation for values far from 1.
 pub(super) fn shortest(value: f64) -> String {
-    format!("{value:?}")
+    zmij::Buffer::new().format(value).to_string()
 }
 
 /// Value rounded to a number of significant digits.
@@ -166,7 +166,7 @@ pub(super) fn push_whole(text: &mut Vec<u8>, value: f64) {
 
 /// Appends [`shortest`] of a value.
 pub(super) fn push_shortest(text: &mut Vec<u8>, value: f64) {
-    write!(text, "{value:?}").expect("a vector takes any text");
+    text.extend_from_slice(zmij::Buffer::new().format(value).as_bytes());
 }
 
 #[cfg(test)]
