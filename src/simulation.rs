@@ -24,7 +24,7 @@ use crate::dynamics::energy_balance::{self, EnergyBalance};
 use crate::dynamics::motion::Extrapolation;
 use crate::dynamics::{Choice, StepError};
 use crate::model::{Line, LineState, Model, State, WaveSpans};
-use crate::scene::{InitialShape, Scene, SceneError};
+use crate::scene::{InitialShape, Scene, SceneError, few};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
 use coupling::StepStart;
@@ -226,6 +226,29 @@ impl Simulation {
     /// Integrator of each network, with its step limits.
     pub fn choices(&self) -> impl Iterator<Item = &Choice> {
         self.work.choices()
+    }
+
+    /// Integrators with their step limits in sentences, with the names of the lines where their networks differ.
+    pub fn choices_in_words(&self) -> Vec<String> {
+        let mut kinds: Vec<(String, Vec<&str>)> = Vec::new();
+        for (choice, network) in self.choices().zip(&self.model.networks) {
+            let words = choice.in_words();
+            let names = network
+                .lines
+                .iter()
+                .map(|&line| self.model.lines[line].name.as_str());
+            match kinds.iter_mut().find(|(known, _)| *known == words) {
+                Some((_, lines)) => lines.extend(names),
+                None => kinds.push((words, names.collect())),
+            }
+        }
+        if let [(words, _)] = &mut kinds[..] {
+            return vec![std::mem::take(words)];
+        }
+        let kinds = kinds.iter();
+        kinds
+            .map(|(words, names)| format!("{}: {words}", few(names)))
+            .collect()
     }
 
     /// Number of threads that share communication steps of a given length [s], with the reason.

@@ -139,7 +139,7 @@ fn a_line_that_its_tension_at_rest_breaks_is_noted_at_the_start() {
     };
     assert_eq!(note.at, "lines[1].break.tension");
     assert!(
-        note.text.contains("breaks in its first step") && note.text.contains("1000 N breaks it"),
+        note.text.contains("breaks in its first step") && note.text.contains("it breaks at 1000 N"),
         "{note}"
     );
     assert_eq!(noted("1.0e8"), []);

@@ -1,7 +1,6 @@
 //! `moorline check`: description of a scene's model, in words.
 
 use moorline::discretisation;
-use moorline::dynamics::Choice;
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Model;
 use moorline::output::channels::Channels;
@@ -80,10 +79,9 @@ pub(crate) fn check(input: &Input, write: bool) -> Result<(), Failure> {
     print(&format!("\n{}\n", hold::hold(&loaded, held.as_ref())?))
 }
 
-/// Integrator and step of every network, each in a sentence once.
+/// Integrators with their steps, and threads, each in a sentence.
 fn steps_in_words(scene: &Scene, simulation: &Simulation) -> Vec<String> {
-    let mut said: Vec<String> = simulation.choices().map(Choice::in_words).collect();
-    said.dedup();
+    let mut said = simulation.choices_in_words();
     let threads = simulation.threads_in_words(scene.output.interval);
     said.push(format!("lines on {threads}"));
     said

@@ -220,20 +220,8 @@ impl Instance {
         let Some(simulation) = &self.simulation else {
             return;
         };
-        for (network, choice) in simulation.model().networks.iter().zip(simulation.choices()) {
-            self.log.push(Topic::Event, || {
-                let lines: Vec<&str> = network
-                    .lines
-                    .iter()
-                    .map(|&line| simulation.model().lines[line].name.as_str())
-                    .collect();
-                format!(
-                    "{}: integrator {:?}, {}",
-                    lines.join(", "),
-                    choice.integrator,
-                    choice.in_words()
-                )
-            });
+        for words in simulation.choices_in_words() {
+            self.log.push(Topic::Event, || format!("integrator: {words}"));
         }
     }
 
@@ -334,7 +322,9 @@ impl Instance {
             self.has_warned_of_time = true;
             let time = self.time;
             self.log.push(Topic::Warning, || {
-                format!("the host's time {at} s differs from {time} s, where the last step ended; said once")
+                format!(
+                    "the host's time {at} s differs from {time} s, where the last step ended; reported once"
+                )
             });
         }
         let simulation = self

@@ -45,7 +45,7 @@ use std::borrow::Cow;
 
 use crate::model::mesh::line_elements;
 use crate::model::{Model, line_shares};
-use crate::scene::{Integrator, Line, Scene, percent};
+use crate::scene::{Integrator, Line, Scene, few, percent};
 use crate::simulation::{self, Simulation};
 use kinds::Kinds;
 use search::Search;
@@ -56,8 +56,6 @@ pub use expense::expense;
 const AIM: f64 = 0.7;
 /// Greatest number of elements that is extrapolated to [-].
 const ELEMENTS_MAX: f64 = 400.0;
-/// Greatest number of line names in a sentence [-].
-const NAMES: usize = 3;
 
 /// A mesh that was tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -155,7 +153,7 @@ impl Discretisation {
         let solver = &self.scene.solver;
         if solver.integrator == Integrator::AxialImplicit {
             said.push(format!(
-                "steps up to {} s with the axial tension implicit are cheaper than explicit ones, and as near; the limit that holds stands below",
+                "axial-implicit steps up to {} s cost less than explicit ones at the same error; their limits are below",
                 solver.time_step_max
             ));
         }
@@ -169,20 +167,20 @@ impl Discretisation {
         let of_mesh = |mesh: &Mesh| {
             let coarse = (!mesh.tried && mesh.error > tolerance).then(|| {
                 format!(
-                    "an error of up to about {:.2} % is expected with {} elements a line, more than solver.tolerance = {tolerance}; give `elements` \
-                     for a finer mesh",
+                    "an error of up to about {:.2} % is expected with {} elements, above solver.tolerance = {tolerance}; set `elements` for a finer \
+                     mesh",
                     100.0 * mesh.error,
                     mesh.elements
                 )
             });
             let unknown = match mesh.short_sections {
                 _ if mesh.is_unknown() => Some("this mesh"),
-                None => Some("one element in each of the short sections"),
+                None => Some("short sections with one element"),
                 Some(_) => None,
             };
             let unknown = unknown.map(|mesh_or_part| {
                 format!(
-                    "{}: the error with {mesh_or_part} is unknown, since no trial could be run; compare with a run with more `elements`",
+                    "{}: the error of {mesh_or_part} is unknown, since no trial could be run; compare with a run with more `elements`",
                     self.names(&[mesh])
                 )
             });
@@ -197,16 +195,9 @@ impl Discretisation {
 
     /// Names of the lines of networks of one kind.
     fn names(&self, kind: &[&Mesh]) -> String {
-        let lines: Vec<usize> = kind.iter().flat_map(|mesh| mesh.lines.clone()).collect();
-        let names = lines
-            .iter()
-            .take(NAMES)
-            .map(|&line| &self.scene.lines[line].name[..]);
-        let names = names.collect::<Vec<_>>().join(", ");
-        match lines.len().saturating_sub(NAMES) {
-            0 => names,
-            more => format!("{names} and {more} more"),
-        }
+        let lines = kind.iter().flat_map(|mesh| &mesh.lines);
+        let names: Vec<&str> = lines.map(|&line| &self.scene.lines[line].name[..]).collect();
+        few(&names)
     }
 
     fn mesh_in_words(&self, mesh: &Mesh) -> Vec<String> {
@@ -215,11 +206,15 @@ impl Discretisation {
         let tried: Vec<String> = tried
             .map(|trial| format!("{} with {}", rounded(trial.error), trial.elements))
             .collect();
-        let target = format!("for the target error of {}", percent(self.scene.solver.tolerance));
+        let target = format!("for a target error of {}", percent(self.scene.solver.tolerance));
+        let on = match mesh.lines.len() {
+            1 => "",
+            _ => " on the longest line",
+        };
         let mut said = Vec::new();
         if !tried.is_empty() {
             said.push(format!(
-                "{} elements a line alone {target}, tried on {:.0} s of the scene's motion: errors of {}",
+                "{} elements{on} {target}, by trials over {:.0} s of the scene's motion: errors of {}",
                 mesh.rest.map_or(mesh.elements, |rest| rest.fewer),
                 self.duration,
                 tried.join(", ")
@@ -228,25 +223,25 @@ impl Discretisation {
         match mesh.short_sections {
             Some(1) => {}
             Some(elements) => said.push(format!(
-                "{elements} elements in sections that are one element on coarse and fine meshes alike, of which these trials do not give the error"
+                "{elements} elements in short sections, which have one element on all meshes that were tried, so that their error is unknown"
             )),
             None => said.push(
-                "these trials do not give the error of sections that are one element on coarse and fine meshes alike, and no further trial could be run"
+                "the error of short sections is unknown: they have one element on all meshes that were tried, and no further trial could be run"
                     .to_string(),
             ),
         }
         if let Some(rest) = mesh.rest {
             let [before, after] = rest.errors.map(rounded);
             said.push(format!(
-                "{} elements a line alone {target}: at rest the tension would miss that of the catenary by {before} with {}, and misses it by {after}",
+                "{} elements{on} {target}: the tension at rest differs from that of the catenary by {after}, with {} elements by {before}",
                 mesh.elements, rest.fewer
             ));
         }
         if mesh.is_unknown() {
-            said.push("no trial of this mesh could be run: its error is unknown".to_string());
+            said.push("the error of this mesh is unknown, since no trial could be run".to_string());
         } else if !mesh.tried {
             said.push(format!(
-                "that is extrapolated, trials being bounded: up to about {} is expected",
+                "extrapolated, since trials are limited in cost: an error of up to about {} is expected",
                 rounded(mesh.error)
             ));
         }

@@ -50,31 +50,31 @@ impl Choice {
         let (step, explicit) = (seconds(self.step_max), seconds(self.explicit.step));
         match self.integrator {
             Integrator::Leapfrog if self.step_max < self.explicit.step => {
-                format!("explicit steps of at most {step}; axial waves would allow {explicit}")
+                format!("explicit, steps up to {step} (axial waves would allow {explicit})")
             }
             Integrator::Leapfrog => {
-                format!("explicit steps of at most {step}, which axial waves limit")
+                format!("explicit, steps up to {step}, limited by axial waves")
             }
             Integrator::AxialImplicit => {
-                let growing = match self.longest > self.step_max {
+                let steps = match self.longest > self.step_max {
                     true => format!(
-                        "{} and, at three times the static tension, ",
+                        "{} ({step} at three times the static tension)",
                         seconds(self.longest)
                     ),
-                    false => String::new(),
+                    false => step,
                 };
                 format!(
-                    "axial tension implicit, steps of at most {growing}{step}: explicit ones, {AXIAL_IMPLICIT_COST} times cheaper, would be \
-                     limited to {explicit} by axial waves"
+                    "axial-implicit, steps up to {steps}; explicit steps would cost {AXIAL_IMPLICIT_COST} times less but axial waves would limit \
+                     them to {explicit}"
                 )
             }
             Integrator::GeneralisedAlpha if IMPLICIT_COST * self.explicit.step < self.step_max => {
                 format!(
-                    "fully implicit steps of at most {step}: explicit ones, {IMPLICIT_COST} times cheaper, would be limited to {explicit}"
+                    "implicit, steps up to {step}; explicit steps would cost {IMPLICIT_COST} times less but be limited to {explicit}"
                 )
             }
-            Integrator::QuasiStatic => "an equilibrium at every communication point".to_string(),
-            _ => format!("fully implicit steps of at most {step}"),
+            Integrator::QuasiStatic => "equilibrium at every communication point".to_string(),
+            _ => format!("implicit, steps up to {step}"),
         }
     }
 

@@ -265,12 +265,12 @@ impl WorkEstimate {
             false => count(steps),
         };
         if self.networks < 2 && self.lines_in_waves < 2 {
-            return format!("{shared}: there is one network of lines");
+            return format!("{shared}, since there is one network of lines");
         }
         if let Threads::Number(asked) = self.asked {
             return match steps.max(waves) < asked {
                 true => format!(
-                    "{shared} of the {asked} given: there are {} networks of lines",
+                    "{shared} of the {asked} given, since there are {} networks of lines",
                     self.networks
                 ),
                 false => format!("{shared}, as given"),
@@ -278,12 +278,12 @@ impl WorkEstimate {
         }
         let time = micro((self.rate * length).max(self.least));
         let sampling = match self.sampling > 0.0 {
-            true => format!(" (and {} for a sample of the waves)", micro(self.sampling)),
+            true => format!(" and {} per sample of the waves", micro(self.sampling)),
             false => String::new(),
         };
         format!(
-            "{shared}: {} networks of lines take about {time} a communication step{sampling}; this machine runs {} at once, and a thread is \
-             added for every {} of work",
+            "{shared}: {} networks of lines take about {time} per communication step{sampling}; this machine has {}, and one is used for every \
+             {} of work",
             self.networks,
             count(self.available),
             micro(WORTH),

@@ -30,7 +30,7 @@ fn push_free(variables: &mut Vec<Variable>, body: Body, name: &str, axis: usize)
         _ => ("moment", Unit::NEWTON_METRE),
     };
     let of = format!(
-        "{of} of the mooring without inertia at the end of the coming step, at no displacement and velocity, on"
+        "{of} of the mooring without inertia at the end of the coming step, for zero displacement and velocity, on"
     );
     let meaning = component(&of, name, POSES[axis % 3]);
     let binding = Binding::Interface {
@@ -47,7 +47,7 @@ fn push_matrix(variables: &mut Vec<Variable>, body: Body, name: &str, quantity: 
     let (label, [what, motion], units) = match quantity {
         InterfaceQuantity::Mass => (
             "mass",
-            ["mass of the mooring's ends", "acceleration"],
+            ["mass of the line ends", "acceleration"],
             [Unit::KILOGRAM, Unit::KILOGRAM_METRE, Unit::KILOGRAM_SQUARE_METRE],
         ),
         InterfaceQuantity::Damping => (
@@ -112,9 +112,9 @@ pub(super) fn missing(name: &str, quantity: InterfaceQuantity) -> String {
     match quantity {
         InterfaceQuantity::StaticStiffness => {
             format!(
-                "{name}: there is no stiffness where the equilibrium is unstable, or a line is a beam or released"
+                "{name}: the stiffness is undefined if the equilibrium is unstable, or if a line is a beam or released"
             )
         }
-        _ => format!("{name}: a step as long as the last one fails from the present state"),
+        _ => format!("{name}: a step of the last length fails from the present state"),
     }
 }

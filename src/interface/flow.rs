@@ -33,7 +33,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
             let name = format!("{owner}.flow.{label}");
             at_nodes(variables, (layout, count), &name, |name, place, node| {
                 let of = format!(
-                    "{owner}: global {label} of the place for which the next flow is due, at {place} from end A"
+                    "{owner}: global {label} of the position at which the next flow is needed, at {place} from end A"
                 );
                 let binding = Binding::FlowPlace { line, axis, node };
                 row(name, of, Causality::Output, Unit::METRE, binding)

@@ -33,7 +33,7 @@ fn quantities(bends: bool) -> Vec<(&'static str, String, Unit, ProfileQuantity)>
         )
     };
     let mut quantities: Vec<_> = axes.map(position).collect();
-    let tension = "effective tension (at the ends the size of the line's force)".into();
+    let tension = "effective tension (at the ends the magnitude of the line's force)".into();
     quantities.push(("tension", tension, Unit::NEWTON, ProfileQuantity::Tension));
     if bends {
         quantities.push((

@@ -34,9 +34,9 @@ macro_rules! results {
 results! {
     /// Results of a line.
     pub enum LineResult {
-        /// Size of the line's force at end B [N], with weight, drag and inertia of the last half segment.
+        /// Magnitude of the line's force at end B [N], including weight, drag and inertia of the last half segment.
         TensionB = "tension_b" => |simulation, line| Some(simulation.tension_b(line)),
-        /// Size of the line's force at end A [N], with weight, drag and inertia of the last half segment.
+        /// Magnitude of the line's force at end A [N], including weight, drag and inertia of the first half segment.
         TensionA = "tension_a" => |simulation, line| Some(simulation.tension_a(line)),
         /// Greatest of the axial tension along the line and the forces at its ends [N].
         TensionMax = "tension_max" => |simulation, line| Some(simulation.tension_max(line)),
@@ -66,7 +66,7 @@ results! {
     pub enum SolverResult {
         /// Internal steps of the last communication step [-].
         Substeps = "substeps" => |simulation, _| Some(simulation.substeps() as f64),
-        /// Estimated error of tension [-], over its variation, from the path of the displacements between communication points.
+        /// Estimated error of tension [-], over its standard deviation, caused by the path between communication points.
         InputError = "input_error" => |simulation, _| Some(simulation.input_error()),
         /// Energy that the time integration has produced (positive) or lost since the start [J].
         EnergyError = "energy_error" => |simulation, _| simulation.energy_balance().map(|balance| balance.error()),

@@ -69,7 +69,7 @@ pub(super) fn range(node: Option<usize>, count: usize) -> Range<usize> {
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Origin of a velocity that the host does not give.
-const NOT_GIVEN: &str = "if never set but to 0, derived from displacements that change, or 0 where solver.input_reconstruction is 1";
+const NOT_GIVEN: &str = "if never set to a non-zero value, it is derived from the displacements, or 0 if solver.input_reconstruction is 1";
 
 /// Displacements of a body; a point has the first three.
 pub(super) const POSES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
@@ -113,7 +113,7 @@ pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
         let along = AXES[axis % 3];
         let meaning = match axis {
             _ if is_point => format!(
-                "force of all lines at {name}, and of its own mass and volume, on what carries it, along global {along}"
+                "force of all lines at {name}, and of its own mass and volume, on the body that drives it, along global {along}"
             ),
             0..3 => component("force of the mooring on", name, along),
             _ => component("moment about the origin of the mooring on", name, along),
@@ -137,13 +137,13 @@ pub(super) fn controls(variables: &mut Vec<Variable>, index: usize, line: &scene
     };
     if let Some(end) = line.release {
         let meaning = format!(
-            "true lets end {} go of its point, for good",
+            "true releases end {} from its point permanently",
             end.word().to_uppercase()
         );
         add("release", meaning, Unit::ONE, Binding::Release { line: index });
     }
     if line.winch.is_some() {
-        let meaning = "length that the winch at end B has paid out, negative where it has hauled in".into();
+        let meaning = "length paid out by the winch at end B, negative if hauled in".into();
         add(
             "length_change",
             meaning,

@@ -230,6 +230,11 @@ pub(super) fn number(value: f64) -> String {
     }
 }
 
+/// A number rounded to significant digits.
+pub(super) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
 /// A number and its unit; a bare number where it has none.
 pub(super) fn quantity(value: f64, unit: &str) -> String {
     if unit == "-" {

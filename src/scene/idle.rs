@@ -25,7 +25,7 @@ impl Scene {
             self.idle_by_rule(&at, point, &mut notes);
             rules! { &mut notes, &at;
                 "" if moves && point.volume.is_none() && point.added_mass.is_some() =>
-                    "it is a part of the mass of displaced water, and without `volume` `added_mass` changes nothing";
+                    "it is a fraction of the displaced mass: without `volume` `added_mass` changes nothing";
             }
         }
         for (i, vessel) in self.vessels.iter().enumerate() {
@@ -49,7 +49,7 @@ impl Scene {
         let damped = |seabed: &Seabed| seabed.damping != Seabed::level(seabed.depth).damping;
         rules! { &mut notes, "";
             "water" if surface.is_some() && self.all_beams() =>
-                "beams are under water throughout: `surface` changes nothing";
+                "beams are always submerged: `surface` changes nothing";
             "water" if self.has_host_flow() && !pushed && !self.points.iter().any(wet) =>
                 "no line has a `diameter` and no point a `volume` or `drag_area`: `flow` changes nothing";
             "seabed" if self.is_quasi_static() && self.seabed.as_ref().is_some_and(damped) =>
@@ -64,7 +64,7 @@ impl Scene {
         let radius = [Integrator::AxialImplicit, Integrator::GeneralisedAlpha];
         rules! { &mut notes, "solver";
             "" if self.solver.spectral_radius.is_some() && !chosen.any(|integrator| radius.contains(&integrator)) =>
-                "with the integrator that is chosen here, `spectral_radius` changes nothing";
+                "with the integrator chosen here, `spectral_radius` changes nothing";
         }
         notes
     }
@@ -75,7 +75,7 @@ impl Scene {
         let sounded = self.seabed.as_ref().is_some_and(|seabed| seabed.grid.is_some());
         rules! { &mut notes, "seabed";
             "" if sounded && self.waves().is_none() =>
-                "with soundings and without waves, `depth` changes nothing";
+                "with soundings and no waves, `depth` changes nothing";
         }
         notes
     }
@@ -120,9 +120,9 @@ impl Scene {
             "" if bare && line_type.diameter.is_some() && !spun =>
                 "without [water] and [seabed], `diameter` changes nothing";
             "" if section.is_some() && !sheared && !bent =>
-                "what follows from it is given or not modelled, so that `solid_section` changes nothing";
+                "`solid_section` changes nothing, since its properties are given or not modelled";
             "solid_section" if ratio && !sheared =>
-                "what follows from it is given or not modelled, so that `poisson` changes nothing";
+                "`poisson` changes nothing, since its properties are given or not modelled";
         }
     }
 

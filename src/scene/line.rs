@@ -21,7 +21,7 @@ table! {
         pub elements: Option<usize> => elements(),
         /// Shape at the start, at rest.
         pub initial: InitialShape = InitialShape::Static,
-        /// Shape that is free of bending and torsion.
+        /// Shape without bending and torsion.
         pub rest_shape: RestShape = RestShape::Straight,
         /// Direction of the line from A to B at end A [-], where that end is clamped; pinned where absent.
         pub clamped_a: Option<[f64; 3]> => magnitude(1e6),
@@ -29,9 +29,9 @@ table! {
         pub clamped_b: Option<[f64; 3]> => magnitude(1e6),
         /// End that is released from its point when the host's input `L.release` becomes true; there is no such input where absent.
         pub release: Option<LineEnd>,
-        /// Tension or time at which the line breaks off one of its points.
+        /// Tension or time at which the line breaks from one of its points.
         pub failure: Option<Break> => super::table::PLAIN.called("break"),
-        /// Winch that pays out and hauls in the line at one of its ends.
+        /// Winch that pays out and hauls in the line at one end.
         pub winch: Option<Winch>,
     }
 }
@@ -100,9 +100,9 @@ table! {
     pub struct Winch, "`winch`" {
         /// End of the line that is on the winch.
         pub end: LineEnd,
-        /// Greatest length that the winch pays out beyond the length of the section at its end [m].
+        /// Greatest length paid out, in addition to that of the section at its end [m].
         pub length_max: f64 => positive(1e6),
-        /// Greatest speed [m/s]; where a host asks for more, the winch lags behind. No limit where absent.
+        /// Greatest speed [m/s]; if the host requests more, the winch lags behind. No limit where absent.
         pub speed_max: Option<f64> => positive(1e3),
         /// Length paid out in time [m], negative where the line is hauled in, where the scene's own motion is followed.
         pub path: Option<TimeFunction>,
@@ -112,7 +112,7 @@ table! {
 table! {
     /// A break of a line: the earlier of a tension and a time.
     pub struct Break, "`break`" {
-        /// End that breaks off its point.
+        /// End that breaks from its point.
         pub at: LineEnd,
         /// Tension of the end's segment that breaks it [N].
         pub tension: Option<f64> => positive(1e15),

@@ -33,7 +33,7 @@ table! {
         pub rotary_inertia: Option<f64> => positive(1e9).label("rotary inertia").acts(Acts::InMotion).parameter(),
         /// Mass in air per unstretched length [kg/m]; weight/gravity where absent.
         pub mass: Option<f64> => not_negative(1e6).elsewhere(&["mass/l", "massden", "m"]).label("mass").parameter(),
-        /// Weight in the surroundings per unstretched length [N/m]; where given, buoyancy is not subtracted again.
+        /// Weight in water, or in air without water, per unstretched length [N/m]; buoyancy is included in it.
         pub weight: Option<f64> => magnitude(1e8).elsewhere(&["w"]).label("weight").parameter(),
         /// Volume-equivalent diameter [m].
         pub diameter: Option<f64> => positive(100.0).elsewhere(&["diam", "d"]).label("diameter").parameter(),

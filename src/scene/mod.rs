@@ -105,7 +105,7 @@ use table::{not_negative, table};
 pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use water::{Current, FlowSource, RegularWave, Sea, SpectrumKind, Water, WaveComponents, Waves};
-pub(crate) use words::percent;
+pub(crate) use words::{few, metres, percent};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -138,7 +138,7 @@ table! {
         pub points: Vec<Point> = Vec::new() => table::PLAIN.elsewhere(&["nodes"]),
         /// Lines between points.
         pub lines: Vec<Line> = Vec::new(),
-        /// Floating bodies that carry points, moved by the host.
+        /// Floating bodies that carry points, driven by the host.
         pub vessels: Vec<Vessel> = Vec::new(),
         /// Solver settings.
         pub solver: Solver = Solver::default(),

@@ -59,7 +59,7 @@ impl Scene {
             let is_loop = chord_between(self, names.ends(line))
                 .is_some_and(|chord| chord <= ENDS_APART * line.length());
             rules! { &mut notes, &format!("lines[{i}]");
-                "" if is_loop => "both ends are at one place: it hangs in a loop";
+                "" if is_loop => "both ends are at the same place: the line hangs in a loop";
             }
         }
         note_names(self, &mut notes);
@@ -75,7 +75,7 @@ impl Scene {
 
     /// Returns the remark on the inputs that a run without a host lacks.
     pub fn without_host(&self) -> Option<Note> {
-        let remark = "there is no host in this run to give the flow: the water is at rest but for a current";
+        let remark = "no host gives the flow in this run: the water is at rest except for a current";
         self.has_host_flow().then(|| Note::new("water.flow", remark))
     }
 
@@ -103,12 +103,12 @@ impl Scene {
 
     fn advice_on_damping(&self, line_type: &LineType, longest: f64) -> String {
         if line_type.model == LineModel::Beam {
-            return "no damping within the line: waves along it are not damped".to_string();
+            return "no structural damping: waves along the line are not damped".to_string();
         }
-        let open = "no `axial_damping`: the default damping falls as meshes get finer, so that waves along the line decay slowly and results converge slowly";
+        let open = "no `axial_damping`: the default decreases on finer meshes, so that axial waves decay slowly and results converge slowly";
         match self.damping_of_first_mode(line_type, longest) {
             Some(damping) => format!(
-                "{open}; `axial_damping = {damping:.1e}` [N s] would damp the first axial mode of {} by {} %",
+                "{open}; `axial_damping = {damping:.1e}` [N s] would damp the first axial mode of {} with {} % of critical",
                 quantity(longest, "m"),
                 number(100.0 * FIRST_MODE_RATIO)
             ),
@@ -137,11 +137,11 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
     rules! { notes, &format!("line_types.{}", quoted(name));
         "" if !used => "no line uses this line type";
         "" given pushing = pushing.filter(|_| !drags) =>
-            "no `drag_normal`: the {pushing} no normal drag on the line, and the water does not damp it";
+            "no `drag_normal`: the {pushing} no normal drag on the line, and transverse motion is not damped by the water";
         "" if !drags && pushing.is_none() && moves =>
-            "no `drag_normal`: the water does not damp the line's transverse motion";
+            "no `drag_normal`: transverse motion is not damped by the water";
         "" if used && scene.seabed.is_some() && scene.weight(line_type) < 0.0 =>
-            "lighter than the water: it floats up from the seabed";
+            "lighter than water: it floats off the seabed";
     }
 }
 
@@ -185,11 +185,10 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
         .as_ref()
         .filter(|_| joined.any(|line| !scene.meets_surface_between(line, names.ends(line))));
     let open = water.is_some_and(|water| water.surface.is_none());
-    let everywhere =
-        "but the water is taken to fill all space for its lines, so that they are submerged there too";
+    let everywhere = "but its lines are modelled as submerged there too";
     let end = match scene.all_beams() {
         true => "",
-        false => "; `surface = true` in [water] ends it at z = 0",
+        false => "; `surface = true` in [water] models the free surface at z = 0",
     };
     let seabed = scene.seabed.as_ref().filter(|seabed| !seabed.is_level());
     let buried = seabed
@@ -201,9 +200,9 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
         "" if open && height <= 0.0 && lifted > 0.0 =>
             "the scene's motion takes it to z = {lifted:.3} m, {everywhere}{end}";
         "position" if buried > BURIED =>
-            "lies {} m below the seabed there: nodes next to it are pushed up", number(buried);
+            "{} m below the seabed: nodes next to it are pushed up", number(buried);
         "force" if point.force.is_some() && point.kind != PointKind::Free =>
-            "a force on a point that forces do not move only changes the reaction of its support";
+            "a force on a point that is not free changes only the reaction of its support";
     }
 }
 
@@ -222,7 +221,7 @@ fn note_twins(scene: &Scene, names: &Names, notes: &mut Vec<Note>) {
             .or_insert(line);
         let is_twin = first.name != line.name && first.sections == line.sections;
         rules! { notes, &format!("lines[{i}]");
-            "" if is_twin => "lies where {} does, with the same sections: their forces add up", first.name;
+            "" if is_twin => "same ends and sections as {}: their forces add up", first.name;
         }
     }
 }
@@ -233,7 +232,7 @@ fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
     for (at, name) in scene.names() {
         let first = known.entry(name.to_lowercase()).or_insert(name);
         rules! { notes, &at;
-            "name" if *first != name => "\"{name}\" and \"{first}\" differ in upper and lower case alone";
+            "name" if *first != name => "\"{name}\" and \"{first}\" differ only in case";
         }
     }
 }
@@ -241,7 +240,7 @@ fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
 fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
     rules! { notes, "water.waves";
         "" if waves.ramp().is_none() =>
-            "no `ramp`: lines at rest are in the full sea from the start, and swing in";
+            "no `ramp`: lines at rest meet the full sea at the start, and a transient follows";
     }
     for (name, line_type) in &scene.line_types {
         rules! { notes, &format!("line_types.{}", quoted(name));
@@ -261,9 +260,9 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
     rules! { notes, "";
         "gravity" if scene.gravity == 0.0 => "0: lines and points are weightless";
         "seabed.friction" if slides && types.any(|kind| kind.model == LineModel::Beam) =>
-            "beams lie on the seabed without friction: for them `friction` changes nothing";
+            "beams have no friction on the seabed: for them `friction` changes nothing";
         "output.interval" if (steps - steps.round()).abs() > 1e-6 * steps =>
-            "the duration of {} s is not a whole number of intervals: the last one is shorter",
+            "the duration of {} s is not a whole number of intervals: the last interval is shorter",
             number(scene.output.duration);
     }
 }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::check::{Findings, number, quantity, rules};
+use super::check::{Findings, number, quantity, rounded, rules};
 use super::motion_file::AXES;
 use super::names::Names;
 use super::notes::{Note, chord_between, reference_position};
@@ -166,7 +166,7 @@ fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
     };
     (height > limit).then(|| {
         format!(
-            "a wave of {} and {} breaks: {} would be the highest, and linear waves are much lower still",
+            "a wave with a height of {} and a period of {} breaks: the highest is {}, and linear waves are much lower",
             quantity(height, "m"),
             quantity(period, "s"),
             quantity((100.0 * limit).round() / 100.0, "m")
@@ -226,14 +226,14 @@ fn wave_speed(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Vec<Not
     let speed = (ea / mass).sqrt();
     rules! { notes, at;
         "{key}" if outside(speed, WAVE_SPEED) =>
-            "EA of {ea:.3e} N and a mass of {} make axial waves travel at {speed:.0} m/s: 300 to 6000 m/s is usual, with EA in N and the \
+            "EA of {ea:.3e} N and a mass of {} give axial waves a speed of {speed:.0} m/s: 300 to 6000 m/s is usual, with EA in N and the \
              mass in kg/m", quantity(significant(mass), "kg/m");
     }
 }
 
 /// A number with four digits.
 fn significant(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+    rounded(value, 4)
 }
 
 fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Vec<Note>) {
@@ -253,7 +253,7 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
     let heavy = dense(diameter, mass, MASS_PER_VOLUME[1], "diameter").filter(|_| !light && !on_bar);
     rules! { notes, at;
         "diameter" if light =>
-            "a mass of {} and a diameter of {} make {density:.3} kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m",
+            "a mass of {} and a diameter of {} give a density of {density:.3} kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m",
             quantity(significant(mass), "kg/m"), quantity(diameter, "m");
         "diameter" given heavy = heavy => "{heavy}";
     }
@@ -268,16 +268,15 @@ pub fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> 
     }
     let steel_diameter = (mass / (STEEL * circle::area(1.0))).sqrt();
     let as_steel = format!(
-        "{key} counts for buoyancy and drag as that of a cylinder of the line's volume ({steel_diameter:.4} m, were it of steel)"
+        "for buoyancy and drag, {key} is that of a cylinder of the line's volume ({steel_diameter:.4} m if it is steel)"
     );
     Some(if CHAIN.contains(&(density / STEEL)) {
         format!(
-            "mass and {key} {diameter} m fit a chain whose bar has this diameter, for the density comes out as {density:.0} kg/m³, far \
-             from steel; {as_steel}"
+            "mass and {key} {diameter} m are those of a chain with this bar diameter, since the density would be {density:.0} kg/m³; {as_steel}"
         )
     } else {
         format!(
-            "mass and {key} {diameter} m make a density of {density:.0} kg/m³, more than steel; {as_steel}"
+            "mass and {key} {diameter} m give a density of {density:.0} kg/m³, more than steel; {as_steel}"
         )
     })
 }

@@ -12,11 +12,11 @@ table! {
     pub struct Point, "`[[points]]`" {
         /// Name, the stem of the point's variables.
         pub name: String,
-        /// Reference position [m]; of a point on a vessel in the axes of the vessel.
+        /// Reference position [m]; of a point on a vessel, in the vessel's frame.
         pub position: [f64; 3] => magnitude(1e7),
         /// Motion of the point.
         pub kind: PointKind,
-        /// Vessel that a coupled point rides on; its position is then in the vessel's axes.
+        /// Vessel that carries a coupled point, whose position is then in the vessel's frame.
         pub on: Option<String>,
         /// Axes along which a free point may move; all where absent.
         pub free: Option<Vec<Axis>>,
@@ -53,13 +53,13 @@ impl Point {
 choice! {
     /// Motion of a point.
     pub enum PointKind {
-        /// It never moves.
+        /// Does not move.
         Fixed = "fixed",
-        /// The host moves it: a fairlead.
+        /// Driven by the host: a fairlead.
         Coupled = "coupled",
-        /// Its own path in time moves it, in every host.
+        /// Moves along its own path in time, in every host.
         Prescribed = "prescribed",
-        /// The forces on it move it.
+        /// Moves under the forces on it.
         Free = "free",
     }
 }
@@ -101,7 +101,7 @@ table! {
 }
 
 table! {
-    /// A floating body that the host moves: a frame that carries points.
+    /// A floating body driven by the host: a frame that carries points.
     pub struct Vessel, "`[[vessels]]`" {
         /// Name, the stem of the vessel's variables.
         pub name: String,

@@ -57,12 +57,11 @@ table! {
 choice! {
     /// Use of the seabed's stiffness and damping at the nodes.
     pub enum ContactLaw {
-        /// Softened together until a resting node compresses its spring by a small part of its segment length; the spring begins that much
-        /// above the seabed, so that the node lies on it. The damper keeps a part of critical damping, where the given one has as much.
+        /// Both are reduced until a node at rest compresses its spring by a small fraction of its segment length; the spring begins that far above the seabed, so that the node lies on it. The damper keeps a fraction of critical damping if the given one has as much.
         Regularised = "regularised",
-        /// Exactly the given coefficients.
+        /// The given coefficients.
         AsGiven = "as_given",
-        /// Exactly the given coefficients at the nodes alone, not along the segments between them, as in MoorDyn. Beams have them along their elements.
+        /// The given coefficients at the nodes only, not along the segments between them, as in MoorDyn. Beams have them along their elements.
         AtNodes = "at_nodes",
     }
 }

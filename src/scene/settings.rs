@@ -16,9 +16,9 @@ table! {
         /// Target error of fairlead tension [-].
         pub tolerance: f64 = 0.02 => within(1e-12, 0.5).described("target error of fairlead tension; sets integrator and steps where the \
             scene leaves them open; elements stay those of the packaged scene"),
-        /// Quantity whose RMS error over its standard deviation the trials of meshes and steps hold to the tolerance.
+        /// Quantity whose RMS error, over its standard deviation, the selected mesh and step keep within the tolerance.
         pub tolerance_of: ToleranceOf = ToleranceOf::Tension,
-        /// Elements of a line alone [-], where lines and sections leave their number open; chosen from the tolerance where absent.
+        /// Elements of a line, of a network those of its longest line [-], where lines and sections leave their number open; chosen from the tolerance where absent.
         pub elements: Option<usize> => within(1.0, ELEMENTS_MAX).elsewhere(&["segments"]),
         /// Time integrator; `dynamics` is another name of the key.
         pub integrator: Integrator = Integrator::Auto => PLAIN.or_called("dynamics"),
@@ -62,7 +62,7 @@ impl ToleranceOf {
 choice! {
     /// Time integrator.
     pub enum Integrator {
-        /// Chosen from the step limits.
+        /// Automatic, from the step limits.
         Auto = "auto",
         /// Explicit leapfrog.
         Leapfrog = "leapfrog",
@@ -95,10 +95,9 @@ choice! {
     pub enum Reconstruction {
         /// C1 cubic towards the predicted position: second order or better.
         Smooth = "smooth",
-        /// Constant velocity from the position that the host gives, as in other codes: it jumps at communication points.
+        /// Constant velocity from the position given by the host, as in other codes: the point jumps at communication points.
         Jump = "jump",
-        /// Cubics through inputs that hold for the end of the communication step, without prediction: for hosts that know the motion, or that
-        /// step the floating body first.
+        /// Cubics through inputs that apply at the end of the communication step, without prediction: for hosts that know the motion, or that step the floating body first.
         Interpolate = "interpolate",
         /// As `smooth`, with a noise filter for displacements that are given without velocities. The memory of the filter follows from their scatter.
         Filtered = "filtered",
@@ -119,21 +118,21 @@ table! {
         pub energy_balance: bool = false,
         /// Force `fx` … of a coupled point or a vessel in the variables.
         pub force: ForceOutput = ForceOutput::Total,
-        /// Further variables for hosts that solve for a body together with its mooring; none where absent.
+        /// Additional variables for hosts that solve for a body together with its mooring; none where absent.
         pub interface: Option<InterfaceOutput>,
         /// True if the quasi-static stiffness of the mooring on every vessel is a variable.
         pub stiffness: bool = false,
         /// True if forces have derivatives with respect to the motion at the end of a step, FMI's directional derivatives, and to time. The state at
         /// the start of each step is then kept.
         pub derivatives: bool = false,
-        /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
+        /// Additional columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),
         /// Format of the tables of `moorline run`; `csv` where absent.
         pub format: Option<Format>,
         /// Significant digits of the results in the tables of `moorline run` [-]; all where absent. Times and counts keep theirs. In Parquet, 6 digits or
         /// fewer are stored as 32-bit numbers.
         pub digits: Option<usize> => within(1.0, DIGITS_MAX),
-        /// Shapes that `moorline run` writes for ParaView; `overview` where absent.
+        /// Files that `moorline run` writes for ParaView; `overview` where absent.
         pub frames: Option<Frames>,
     }
 }
@@ -201,7 +200,7 @@ choice! {
     pub enum ForceOutput {
         /// Reaction with the inertia of the half elements at the end.
         Total = "total",
-        /// Reaction without the mass of the end times its acceleration: the host has the mass on its own side.
+        /// Reaction without the mass of the end times its acceleration, for hosts that account for this mass.
         WithoutInertia = "without_inertia",
     }
 }
@@ -209,7 +208,7 @@ choice! {
 choice! {
     /// Variables for hosts that solve for a body together with its mooring.
     pub enum InterfaceOutput {
-        /// Mass of the mooring's ends on the body.
+        /// Mass of the line ends on the body.
         Mass = "mass",
         /// The mass, and force, stiffness and damping over the coming step.
         Impedance = "impedance",

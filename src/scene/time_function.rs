@@ -26,13 +26,13 @@ pub enum TimeFunction {
 table! {
     /// The keys of a function of time, of which one is given.
     struct FunctionText, "a function of time" {
-        /// The same value at all times, as a plain number is.
+        /// A constant value, as a plain number is.
         constant: Option<f64> => MIXED,
         /// `[t0, f0, t1, f1]`: a cubic step from f0 before t0 to f1 after t1, with zero slope at both.
         step: Option<[f64; 4]> => MIXED,
-        /// `[t0, f0, t1, f1]`: straight from f0 before t0 to f1 after t1.
+        /// `[t0, f0, t1, f1]`: linear from f0 before t0 to f1 after t1.
         ramp: Option<[f64; 4]> => MIXED,
-        /// Rows `[t, f]` of ascending time, straight between them and constant outside; two rows at one time are a jump.
+        /// Rows `[t, f]` of ascending time, linear between rows and constant outside; two rows at the same time are a jump.
         table: Option<Vec<[f64; 2]>> => MIXED,
     }
 }

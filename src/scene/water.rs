@@ -8,7 +8,7 @@ use super::table::{Key, Kind, MIXED, PLAIN, Rule, Table, Value, choice, magnitud
 use super::{SceneError, TimeFunction};
 
 table! {
-    /// Water. Its surface is at z = 0 for free points and for lines that may come out of it; other lines are under water everywhere.
+    /// Water. The free surface is at z = 0 for free points and for lines that may come out of the water; other lines are always submerged.
     pub struct Water, "`[water]`" {
         /// Density of the water [kg/m³].
         pub density: f64 => positive(1e5).elsewhere(&["rho", "wtrdnsty", "rhow"])
@@ -57,14 +57,13 @@ pub(super) const SPEED: Rule = magnitude(100.0).usual(
 pub(super) const SPEED_USUAL: f64 = 5.0;
 
 table! {
-    /// A current: one `velocity` at all heights, or a `profile` over the height, which may stand in a `file`; with `factor`, a function of
-    /// time that multiplies it.
+    /// A current: a uniform `velocity`, or a `profile` over depth, which may be in a `file`; `factor` is a function of time that multiplies it.
     pub struct Current, "`current`" {
-        /// Velocity at all heights [m/s].
+        /// Velocity, uniform over depth [m/s].
         pub velocity: Option<[f64; 3]> => SPEED,
-        /// File of MoorDyn's format with the profile: below three lines of headings, rows of z [m] and vx, vy, vz [m/s].
+        /// File in MoorDyn's format with the profile: three header lines, then rows of z [m] and vx, vy, vz [m/s].
         pub file: Option<String>,
-        /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at one height; straight between them and constant outside.
+        /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at the same height; linear between rows and constant outside.
         pub profile: Option<Vec<[f64; 3]>> => MIXED.in_units("m, m/s"),
         /// Factor of the velocity in time [-]; 1 where absent.
         pub factor: Option<TimeFunction>,
@@ -88,14 +87,14 @@ const HEIGHT: Rule = positive(100.0);
 table! {
     /// A sea: `regular`, rows of `components`, a `file` of them, or a `spectrum`, with a `ramp`.
     pub struct Sea, "`waves`, each sea" {
-        /// One train of waves.
+        /// One regular wave.
         pub regular: Option<RegularWave>,
         /// Rows of amplitude [m], period [s], direction [rad] and phase [rad]; or, of a spectrum, the number of components.
         pub components: Option<WaveComponents> => MIXED.in_units("m, s, rad, rad"),
-        /// File of MoorDyn's format with the components: rows of ω [rad/s], real and imaginary part of the amplitude [m] of sin(ωt − kx) and
+        /// File in MoorDyn's format with the components: rows of ω [rad/s], real and imaginary part of the amplitude [m] of sin(ωt − kx) and
         /// direction [rad].
         pub file: Option<String>,
-        /// Spectrum that components are drawn from.
+        /// Spectrum from which components are drawn.
         pub spectrum: Option<SpectrumKind>,
         /// Significant height of a spectrum [m], four standard deviations of the elevation.
         pub significant_height: Option<f64> => HEIGHT.elsewhere(&["hs", "wavehs"]),
@@ -115,7 +114,7 @@ table! {
 }
 
 table! {
-    /// One train of waves, η = a cos(k·x − ωt + phase). Give its `height` or its `amplitude`.
+    /// One regular wave, η = a cos(k·x − ωt + phase). Give its `height` or its `amplitude`.
     pub struct RegularWave, "`regular`" {
         /// Height from trough to crest [m].
         pub height: Option<f64> => HEIGHT,

@@ -11,7 +11,7 @@ mod surroundings;
 pub(super) use points::motion_in_words;
 
 use super::channel::Channel;
-use super::check::{number, quantity};
+use super::check::{number, quantity, rounded};
 use super::table::{Choice, Kind, Table};
 use super::{ForceOutput, Format, Frames, Integrator, InterfaceOutput, Output, Reconstruction, Scene};
 
@@ -19,9 +19,9 @@ use super::{ForceOutput, Format, Frames, Integrator, InterfaceOutput, Output, Re
 const WIDTH: usize = 110;
 
 /// Relation of the tensions among the channels to the variables of a line.
-const TENSIONS_OF_CHANNELS: &str = "tensions among them are those of segments, as in MoorDyn-C: of the last one for FairTen, of the first for \
-     AnchTen, the mean of the two next to an inner node; `tension_a` and `tension_b` of a line are the forces on the points at its \
-     ends, with the weight, drag and inertia of half a segment";
+const TENSIONS_OF_CHANNELS: &str = "tensions among them are those of segments, as in MoorDyn-C: the last one for FairTen, the first for AnchTen, \
+     the mean of both segments at an inner node; `tension_a` and `tension_b` of a line are the forces on the points at its ends, including the \
+     weight, drag and inertia of half a segment";
 
 impl Scene {
     /// Describes the scene in sentences, with one line per line type, vessel, point and line.
@@ -30,7 +30,7 @@ impl Scene {
         if !self.title.is_empty() {
             paragraph(&mut text, "", &self.title);
         }
-        section(&mut text, "surroundings", self.surroundings_in_words());
+        section(&mut text, "environment", self.surroundings_in_words());
         let types = self.line_types.iter();
         let types = types.map(|(name, kind)| self.line_type_in_words(name, kind));
         section(&mut text, "line types", types);
@@ -51,14 +51,14 @@ impl Scene {
     fn solution_in_words(&self) -> Vec<String> {
         let (solver, output) = (&self.solver, &self.output);
         let compression = if solver.negative_tension {
-            "axial damping acts in compression and springs do not, so tension can be negative, as in other codes"
+            "axial damping acts in compression and stiffness does not: tension may be negative, as in other codes"
         } else if self.all_beams() {
             "beams carry compression as well as tension"
         } else {
             self.compression_in_words()
         };
         let nodes = if output.profile.is_given() {
-            ", with all nodes"
+            " of all nodes"
         } else {
             ""
         };
@@ -67,27 +67,29 @@ impl Scene {
         let inputs = match solver.input_reconstruction {
             Reconstruction::Smooth => None,
             Reconstruction::Jump => {
-                Some("coupled points jump to the positions that a host gives".to_string())
+                Some("coupled points jump to the positions given by the host".to_string())
             }
-            Reconstruction::Interpolate => Some("inputs of a host hold for the end of its step".to_string()),
-            Reconstruction::Filtered => Some("displacements of a host are filtered".to_string()),
+            Reconstruction::Interpolate => {
+                Some("inputs of the host apply at the end of its step".to_string())
+            }
+            Reconstruction::Filtered => Some("displacements given by the host are filtered".to_string()),
         };
         let channels = (!output.channels.is_empty())
-            .then(|| format!("further columns of `run`: {}", output.channels.join(", ")));
+            .then(|| format!("additional columns of `run`: {}", output.channels.join(", ")));
         let tensions = output.channels.iter().any(|name| Channel::is_tension(name));
         let always = [
             self.integrator_in_words(),
             format!(
-                "target error of {} {}",
+                "target error of {}: {}",
                 solver.tolerance_of.in_words(),
                 percent(solver.tolerance)
             ),
             compression.to_string(),
-            format!("`run` covers {duration} and writes every {interval}{nodes}{tables}"),
+            format!("`run` simulates {duration}, with output{nodes} every {interval}{tables}"),
         ];
         let balance = output
             .energy_balance
-            .then(|| "with the energy balance".to_string());
+            .then(|| "the energy balance is evaluated".to_string());
         let tensions = tensions.then(|| TENSIONS_OF_CHANNELS.to_string());
         let rest = [inputs, balance, channels, tensions].into_iter().flatten();
         let rest = rest.chain(interface_in_words(output).map(str::to_string));
@@ -98,21 +100,21 @@ impl Scene {
         let integrator = match self.solver.integrator {
             Integrator::QuasiStatic => {
                 let slides = self.seabed.as_ref().is_some_and(|seabed| seabed.friction.acts());
-                let drag = self.current().map_or("", |_| " but the current's");
+                let drag = self.current().map_or("", |_| " except that of the current");
                 let laid = if slides {
-                    ", seabed friction found anew in each"
+                    ", with its own seabed friction"
                 } else {
                     ""
                 };
                 return format!(
-                    "quasi-static: an equilibrium at every output, no inertia, no drag{drag}{laid}"
+                    "quasi-static: an equilibrium at every output{laid}, no inertia, no drag{drag}"
                 );
             }
-            Integrator::Auto => "integrator chosen from the step limits".to_string(),
+            Integrator::Auto => "automatic choice of the integrator".to_string(),
             other => format!("integrator {}", other.word()),
         };
         let step = quantity(self.solver.time_step_max, "s");
-        format!("{integrator}, steps of at most {step}")
+        format!("{integrator}, time steps up to {step}")
     }
 
     /// Effects that are not modelled.
@@ -165,6 +167,16 @@ fn join<T: AsRef<str>>(parts: &[T]) -> String {
     }
 }
 
+/// The first names of a list: "a, b, c and 4 more".
+pub(crate) fn few(names: &[&str]) -> String {
+    const SHOWN: usize = 3;
+    let first = names[..names.len().min(SHOWN)].join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
+}
+
 /// "(1, 0, 0)".
 fn triple(values: [f64; 3]) -> String {
     let [x, y, z] = values.map(number);
@@ -206,8 +218,12 @@ pub(super) fn paragraph(text: &mut String, indent: &str, sentence: &str) {
 
 /// Five significant digits: enough to recognise a number.
 pub(super) fn significant(value: f64) -> String {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    number(rounded)
+    number(rounded(value, 5))
+}
+
+/// A length with four digits.
+pub(crate) fn metres(length: f64) -> String {
+    quantity(rounded(length, 4), "m")
 }
 
 /// A part of a whole [-] in percent.
@@ -215,11 +231,11 @@ pub(crate) fn percent(part: f64) -> String {
     format!("{} %", significant(100.0 * part))
 }
 
-/// ", to tables of Parquet, with 6 significant digits, with a shape for ParaView every 1 s".
+/// ", as Parquet, with 6 significant digits, with a ParaView file every 1 s".
 fn tables_in_words(output: &Output) -> String {
     let format = match output.format {
-        Some(Format::Parquet) => ", to tables of Parquet",
-        Some(Format::Csv) => ", to tables of CSV",
+        Some(Format::Parquet) => ", as Parquet",
+        Some(Format::Csv) => ", as CSV",
         None => "",
     };
     let digits = match output.digits {
@@ -228,10 +244,10 @@ fn tables_in_words(output: &Output) -> String {
     };
     let shapes = match output.frames {
         None => String::new(),
-        Some(Frames::Overview) => ", with shapes for ParaView".to_string(),
-        Some(Frames::None) => ", without shapes for ParaView".to_string(),
+        Some(Frames::Overview) => ", with ParaView files".to_string(),
+        Some(Frames::None) => ", without ParaView files".to_string(),
         Some(Frames::Every(interval)) => {
-            format!(", with a shape for ParaView every {}", quantity(interval, "s"))
+            format!(", with a ParaView file every {}", quantity(interval, "s"))
         }
     };
     format!("{format}{digits}{shapes}")
@@ -240,14 +256,16 @@ fn tables_in_words(output: &Output) -> String {
 /// Sentences on the output for hosts that solve for bodies together with their mooring.
 fn interface_in_words(output: &Output) -> impl Iterator<Item = &'static str> {
     let interface = output.interface.map(|interface| match interface {
-        InterfaceOutput::Mass => "with the mass of the mooring's ends for a host",
-        InterfaceOutput::Impedance => "with mass, damping and stiffness of the coming step for a host",
+        InterfaceOutput::Mass => "outputs for a host: mass of the line ends",
+        InterfaceOutput::Impedance => "outputs for a host: mass, damping and stiffness over the coming step",
     });
     let inertia = (output.force == ForceOutput::WithoutInertia)
-        .then_some("forces on coupled points and vessels are without the inertia of the ends");
+        .then_some("forces on coupled points and vessels exclude the inertia of the line ends");
     let stiffness = output
         .stiffness
-        .then_some("with the quasi-static stiffness on vessels");
-    let derivatives = output.derivatives.then_some("with derivatives of the forces");
+        .then_some("the quasi-static stiffness on vessels is an output");
+    let derivatives = output
+        .derivatives
+        .then_some("the FMU gives derivatives of the forces");
     [interface, inertia, stiffness, derivatives].into_iter().flatten()
 }

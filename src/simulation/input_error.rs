@@ -296,26 +296,24 @@ impl Simulation {
         ) {
             (Reconstruction::Jump, _) => (
                 "a path that jumps at each of them",
-                " or solver.input_reconstruction = \"smooth\"",
+                " or set solver.input_reconstruction = \"smooth\"",
             ),
-            (Reconstruction::Interpolate, true) => (
-                "the velocities derived from them",
-                " or velocities as well as displacements",
-            ),
+            (Reconstruction::Interpolate, true) => ("the velocities derived from them", " or velocities"),
             (Reconstruction::Interpolate, false) => ("the cubics between them", ""),
             (Reconstruction::Smooth | Reconstruction::Filtered, true) => (
                 "its extrapolation",
-                " or velocities as well as displacements or solver.input_reconstruction = \"interpolate\"",
+                " or velocities, or set solver.input_reconstruction = \"interpolate\"",
             ),
             (Reconstruction::Smooth | Reconstruction::Filtered, false) => (
                 "its extrapolation",
-                " or solver.input_reconstruction = \"interpolate\"",
+                " or set solver.input_reconstruction = \"interpolate\"",
             ),
         };
         let time = self.time();
         Some(format!(
-            "at t = {time:.6} s, about {points:.0} communication steps a period of the motion are too few for {fault}: tension is off \
-             by about {:.2} % of its variation, {:.2} % are allowed next to the error of the mesh (solver.tolerance); communication steps of {} s{cure} would do; said once",
+            "at t = {time:.6} s, about {points:.0} communication steps per period of the motion are too few for {fault}: the estimated error of \
+             tension is {:.2} % of its standard deviation, above the {:.2} % that solver.tolerance leaves beside the error of the mesh; give \
+             communication steps of {} s{cure}; reported once",
             100.0 * error,
             100.0 * allowed,
             rounded_down(step),

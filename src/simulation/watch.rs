@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::Simulation;
 use crate::model::{End, Release};
-use crate::scene::{Note, Scene};
+use crate::scene::{Note, Scene, metres};
 
 /// Fraction of the unstretched length of a line by which its end may move in one communication step [-].
 const JUMP: f64 = 0.1;
@@ -107,12 +107,13 @@ fn jump(
     let mut jumps = [0, 1].into_iter().filter(prescribed);
     let end = jumps.find(|end| moved(*end) > JUMP * length)?;
     let text = format!(
-        "at t = {} s, {} has moved by {:.3} m in one communication step, more than a tenth of {}, which is {length:.6} m long: a path \
-         without jumps, or shorter steps, is usual; said once",
+        "at t = {} s, {} has moved by {:.3} m in one communication step, more than a tenth of {} ({} long): paths without jumps, or shorter \
+         steps, are usual; reported once",
         simulation.time(),
         model.points[data.ends[end]].name,
         moved(end),
-        data.name
+        data.name,
+        metres(length)
     );
     Some(Note::new(format!("lines[{line}]"), text))
 }
@@ -133,7 +134,7 @@ fn breaks_at_once(simulation: &Simulation, line: usize, end: End, limit: f64) ->
     };
     let tension = simulation.segment_tension(line, node);
     let text = format!(
-        "{} breaks in its first step: its tension there is {tension:.0} N at the start, and {limit:.0} N breaks it",
+        "{} breaks in its first step: its initial tension there is {tension:.0} N, and it breaks at {limit:.0} N",
         data.name
     );
     (tension >= limit).then(|| Note::new(format!("lines[{line}].break.tension"), text))
@@ -169,7 +170,7 @@ fn strain(simulation: &Simulation, line: usize) -> f64 {
 
 fn strained(simulation: &Simulation, line: usize, strain: f64, limit: f64) -> Note {
     let text = format!(
-        "at t = {} s, {} is strained by {:.1} %: less than {:.0} % is usual, with EA in N and lengths in m; said once",
+        "at t = {} s, {} is strained by {:.1} %: less than {:.0} % is usual, with EA in N and lengths in m; reported once",
         simulation.time(),
         simulation.model.lines[line].name,
         100.0 * strain,

@@ -114,7 +114,7 @@ fn a_line_alone_stays_on_one_thread_and_words_say_why_many_lines_do_too() {
         simulation.threads_in_words(step)
     };
     let alone = said(&shipped("oc4_chain"), 0.05);
-    assert_eq!(alone, "one thread: there is one network of lines");
+    assert_eq!(alone, "one thread, since there is one network of lines");
     let few = said(&semi(6, false, Integrator::Leapfrog), 0.05);
     assert!(few.starts_with("one thread: 12 networks of lines"), "{few}");
     let mut asked = semi(6, false, Integrator::Leapfrog);

@@ -106,13 +106,13 @@ fn words_say_the_stiffness_and_where_it_comes_from() {
     let mut collar = shipped("collar");
     let wire = collar.line_types.get_mut("wire").unwrap();
     (wire.bending_stiffness, wire.fibres) = (Some(10.0), Some(20));
-    let shared = "bending stiffness 0.5 N m², which is EI 10 N m² as given shared by 20 fibres (EI/20";
+    let shared = "bending stiffness 0.5 N m²: EI 10 N m² as given, divided among 20 fibres (EI/20";
     assert_says(
         &in_words(&collar),
         &[shared, "not modelled torsion and shear of lines"],
     );
     collar.line_types.get_mut("wire").unwrap().fibre_law = FibreLaw::Squared;
-    assert_says(&in_words(&collar), &["0.025 N m², which is EI 10 N m² as given"]);
+    assert_says(&in_words(&collar), &["0.025 N m²: EI 10 N m² as given"]);
     let simulation = start(&collar);
     let joints = simulation.model().lines[0].bending.as_ref().unwrap();
     assert_eq!(joints.stiffness[0], 0.025);

@@ -41,7 +41,7 @@ fn words_say_what_is_modelled_and_what_is_not() {
     let weight = "weight 902.03 N/m in water";
     let drag = "normal drag coefficient 1.2,";
     let absent = "no tangential drag, no normal added mass, no tangential added mass";
-    assert_says(&words, &["still water of 1025 kg/m³", weight, drag, absent]);
+    assert_says(&words, &["still water, 1025 kg/m³", weight, drag, absent]);
     let dry = SCENE
         .replace("[water]\ndensity = 1025.0\n", "")
         .replace("[seabed]\ndepth = 50.0\n", "");
@@ -96,15 +96,15 @@ fn a_flow_from_the_host_is_described_and_noted_where_no_host_gives_it_or_it_acts
     let words = in_words(&scene);
     assert_says(
         &words,
-        &["a host gives its velocity and acceleration at the nodes"],
+        &["its velocity and acceleration at the nodes are inputs of the host"],
     );
     assert!(
-        !words.contains("still water") && !words.contains("to which the current"),
+        !words.contains("still water") && !words.contains("in addition to the current"),
         "{words}"
     );
     let remark = scene.without_host().unwrap().to_string();
     assert!(
-        remark.starts_with("water.flow: there is no host in this run"),
+        remark.starts_with("water.flow: no host gives the flow in this run"),
         "{remark}"
     );
     assert!(scene.notes().iter().all(|note| note.at != "water"));
@@ -134,9 +134,9 @@ fn rows_that_look_written_twice_or_closed_by_mistake_are_noted() {
     let notes = lines.scene().notes();
     let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
     let wanted = [
-        "lines[3]: both ends are at one place: it hangs in a loop",
-        "points[1].name: \"A\" and \"a\" differ in upper and lower case alone",
-        "lines[1]: lies where one does, with the same sections: their forces add up",
+        "lines[3]: both ends are at the same place: the line hangs in a loop",
+        "points[1].name: \"A\" and \"a\" differ only in case",
+        "lines[1]: same ends and sections as one: their forces add up",
     ];
     for part in wanted {
         assert_eq!(
@@ -167,11 +167,11 @@ fn a_motion_is_described_with_its_rotations_whatever_it_is_made_of() {
     for (motion, said) in [
         (
             "{ pitch = [[0.05, 10.0]] }",
-            "it swings by 0.05 rad every 10 s in pitch",
+            "it oscillates by 0.05 rad every 10 s in pitch",
         ),
         (
             "{ x = [[2.5, 12.0]], pitch = [[0.05, 10.0]] }",
-            "it swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch",
+            "it oscillates by 2.5 m every 12 s in x, 0.05 rad every 10 s in pitch",
         ),
         (
             "{ table = [[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0]] }",
@@ -180,6 +180,6 @@ fn a_motion_is_described_with_its_rotations_whatever_it_is_made_of() {
     ] {
         let words = with(motion);
         assert_says(&words, &[said]);
-        assert!(!words.contains("stays where it is"), "{words}");
+        assert!(!words.contains("stays at rest"), "{words}");
     }
 }

@@ -412,12 +412,12 @@ fn check_says_which_current_there_is_and_what_is_not_modelled() {
     assert_says(
         &words,
         &[
-            "with a current: from (0.2, -0.3) m/s at z = -200 m to (1.1, 0.4) m/s at z = 0 m, straight between 3 heights",
-            "times 1.2",
-            "waves and the water's surface",
+            "current from (0.2, -0.3) m/s at z = -200 m to (1.1, 0.4) m/s at z = 0 m, linear between 3 depths",
+            "with a factor of 1.2",
+            "waves and the free surface",
         ],
     );
-    assert!(!words.contains("still water of"), "{words}");
+    assert!(!words.contains("still water"), "{words}");
 }
 
 /// Taut rope along a current of 3 m/s, its top moved by a centimetre: drag is stiff compared with axial waves in

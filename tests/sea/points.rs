@@ -221,7 +221,7 @@ fn a_network_whose_lines_have_shapes_of_their_own_needs_no_equilibrium_to_start(
 #[test]
 fn check_says_where_each_free_point_starts() {
     let resting = "mass 100 kg, starts in static equilibrium";
-    let placed = "mass 100 kg, starts at its position, as no line of its network is `static`";
+    let placed = "mass 100 kg, starts at the given position, since no line of its network is `static`";
     for (near, words) in [("static", resting), ("straight", placed)] {
         assert_says(&in_words(&beside(near, "static")), &[words]);
     }

@@ -426,7 +426,7 @@ fn a_scene_with_a_rough_grid_is_written_and_read_back_the_same() {
         &words,
         &[
             "30 by 11 soundings",
-            "coefficients 0.4 along the line, 0.7 across it",
+            "coefficients of 0.4 along the line, 0.7 across it",
         ],
     );
 }
@@ -455,7 +455,7 @@ fn a_point_under_a_seabed_that_is_not_level_is_noted() {
         scene.points[0].position = [10.0, 0.0, -100.0];
         let notes: Vec<String> = scene.notes().iter().map(ToString::to_string).collect();
         assert!(
-            notes.iter().any(|note| note.contains("below the seabed there")),
+            notes.iter().any(|note| note.contains("below the seabed")),
             "{notes:?}"
         );
     }

@@ -289,7 +289,7 @@ fn a_line_out_of_the_water_has_no_closed_form_and_check_says_what_it_lacks_there
     let words = in_words(&piercing);
     assert_says(
         &words,
-        &["with its surface at z = 0: above it line has no buoyancy, drag and added mass"],
+        &["with a free surface at z = 0, above which line has no buoyancy, drag or added mass"],
     );
     let absent = words.split("not modelled").nth(1).unwrap();
     assert_says(absent, &["current and waves;"]);

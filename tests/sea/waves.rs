@@ -438,12 +438,12 @@ fn check_says_which_waves_there_are_and_what_is_not_modelled() {
     assert_says(
         &storm,
         &[
-            "linear waves (Airy) over a depth of 100 m",
-            "a JONSWAP spectrum of peakedness 3.3, significant height 5 m, peak period 9 s",
-            "60 wave trains of equal energy drawn with the seed 7",
-            "growing over a ramp of 10 s",
-            "stretched to the surface as Wheeler does",
-            "no drift, no breaking",
+            "linear (Airy) waves in a water depth of 100 m",
+            "JONSWAP spectrum, peak enhancement 3.3, significant height 5 m, peak period 9 s",
+            "60 components of equal energy, seed 7",
+            "with a ramp of 10 s",
+            "Wheeler stretching",
+            "no drift, wave breaking or wave-current interaction",
         ],
     );
     assert!(!storm.contains("Not modelled: waves"), "{storm}");
@@ -452,7 +452,7 @@ fn check_says_which_waves_there_are_and_what_is_not_modelled() {
         &two,
         &[
             "a regular wave of height 4 m and period 8 s",
-            "together of a significant height of",
+            "of significant height in total",
         ],
     );
 }
@@ -462,7 +462,7 @@ fn waves_that_would_break_and_seas_without_a_ramp_are_remarked_on() {
     let mut scene = riser(Integrator::Auto, 0.02);
     set_waves(&mut scene, regular(5.0, 6.0, 0.0, None));
     let notes = scene.notes();
-    for said in ["a wave of 10 m and 6 s breaks", "no `ramp`"] {
+    for said in ["a height of 10 m and a period of 6 s breaks", "no `ramp`"] {
         assert!(notes.iter().any(|note| note.text.contains(said)), "{notes:?}");
     }
 }

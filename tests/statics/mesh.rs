@@ -61,17 +61,17 @@ fn the_mesh_is_described_with_its_reasons() {
     let words = |scene: &Scene| Model::new(scene).unwrap().mesh_in_words(scene);
     assert_eq!(
         words(&shipped("oc3_catenary")),
-        ["line1: 40 elements of 22.5550 m, as given"]
+        ["line1: 40 elements of 22.55 m, as given"]
     );
     assert_eq!(
         words(&shipped("bridle"))[0],
-        "leg_port: 3 elements of 8.3333 m, for the target error of 2 %, in proportion to the longest line it is tied to"
+        "leg_port: 3 elements of 8.333 m, for a target error of 2 %, in proportion to the longest line that it is tied to"
     );
     let cable = &words(&open(bent_cable()))[0];
     println!("{cable}");
     assert_says(
         cable,
-        &["at the clamp at end B, where it bends over", "at the touchdown"],
+        &["at the clamp at end B for a bend of", "at the touchdown"],
     );
 }
 

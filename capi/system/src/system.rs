@@ -299,7 +299,7 @@ impl System {
         if self.has_stepped && !self.has_warned_of_time {
             self.has_warned_of_time = true;
             let text = format!(
-                "the host steps from {t} s, but the last step ended at {} s; said once",
+                "the host steps from {t} s, but the last step ended at {} s; reported once",
                 t - gap
             );
             self.log.write(WARNING, &text);

@@ -440,7 +440,7 @@ fn samples_too_few_for_a_path_that_jumps_are_noted_with_the_variable_that_sets_t
     let log = std::fs::read_to_string(log).unwrap();
     for words in [
         "are too few for a path that jumps at each of them",
-        "MOORLINE_PATH=smooth would do",
+        "set MOORLINE_PATH=smooth",
     ] {
         assert_eq!(log.matches(words).count(), 1, "{log}");
     }

@@ -53,7 +53,7 @@ fn a_map_deck_runs_through_equilibria_without_trials_of_elements() {
     assert_says(&remarks, &["quasi-static, as MAP++ is"]);
     let report = folder.read("out/report.html");
     assert!(
-        !report.contains("tried on") && !said.contains("tried on"),
+        !report.contains("by trials") && !said.contains("by trials"),
         "{said}"
     );
     let (names, rows) = table(&folder.path("out/results.csv"));

@@ -138,7 +138,7 @@ fn a_run_that_leaves_a_table_is_remarked_on_once_with_its_name_and_its_time() {
     let said = folder_with(&[("left.toml", &scene)]).remarks("run left.toml -o out");
     for part in [
         "line_types.rope.tension_strain: line1 is strained by ",
-        "where MoorDyn stays at the last tension",
+        "where MoorDyn keeps the last tension",
         "water.current.profile: line1 is at z = -20.00 m at t = 0 s, below the lowest row at -10 m",
         "seabed.grid: line1 lies at (",
         "motion.fairlead: the table ends at 0.5 s, the run at 1 s: in between it stays at its last row",
@@ -198,7 +198,7 @@ fn a_run_whose_water_a_host_would_move_is_one_in_still_water_and_says_so_once() 
     folder.write("still.toml", &still);
     folder.write("hosted.toml", format!("water.flow = \"host\"\n{still}"));
     let said = folder.remarks("run hosted.toml -o hosted");
-    let note = "note: hosted.toml:1: water.flow: there is no host in this run to give the flow: the water is at rest";
+    let note = "note: hosted.toml:1: water.flow: no host gives the flow in this run: the water is at rest";
     assert_eq!(said.matches(note).count(), 1, "{said}");
     assert!(!folder.remarks("run still.toml -o still").contains("flow"));
     let results = |name: &str| {

@@ -47,7 +47,7 @@ fn a_diameter_that_is_too_large_or_too_small_for_the_mass_is_noted_and_that_of_o
         said.lines().filter(line).collect::<Vec<_>>().join("\n")
     };
     assert_eq!(of("0.09     77.7 "), "");
-    let light = "make 12.214 kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m";
+    let light = "give a density of 12.214 kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m";
     assert!(of("0.09  0.0777  ").contains(light), "{}", of("0.09  0.0777  "));
     assert!(of("90.0     77.7 ").contains("with the diameter in m"));
     assert!(of("0.009    77.7 ").contains("more than steel"));
@@ -61,12 +61,13 @@ fn the_words_for_a_deck_tell_of_its_vessel_and_of_where_points_are_on_it() {
     let words = in_words(&read("moordyn_c.txt").scene);
     assert_says(
         &words,
-        &[
-            "body1: moved by the host, its origin at (0, 0, -20) m, at roll 0 rad, pitch 0 rad, yaw 1.5708 rad",
-        ],
+        &["body1: driven by the host, origin at (0, 0, -20) m, roll 0 rad, pitch 0 rad, yaw 1.5708 rad"],
     );
-    assert_says(&words, &["carries point7; in `run` it stays where it is"]);
-    assert_says(&words, &["point7: rides on body1, at (5, 0, 15) m in its frame"]);
+    assert_says(&words, &["carries point7; in `run` it stays at rest"]);
+    assert_says(
+        &words,
+        &["point7: carried by body1, at (5, 0, 15) m in the frame of the vessel"],
+    );
     // In its body's frame the point is above z = 0, but the body lies deep, and turned.
     assert!(!notes(&read("moordyn_c.txt")).contains("above z = 0"));
     assert_says(
@@ -164,8 +165,7 @@ fn a_map_deck_that_is_repeated_by_an_angle_twice_is_noted() {
         ("repeat 360", 1),
     ] {
         let loaded = load_deep(&with(MAP, "repeat 120 240", angles)).unwrap();
-        let alike =
-            |note: &&moorline::scene::Note| note.text.contains("with the same sections: their forces add up");
+        let alike = |note: &&moorline::scene::Note| note.text.contains("same ends and sections as");
         assert_eq!(loaded.notes.iter().filter(alike).count(), twins, "{angles}");
     }
 }
@@ -273,7 +273,10 @@ fn mass_of_a_coupled_point_in_a_deck_reaches_the_force_on_what_moves_it() {
     let own = force(&heavy) - force(&light);
     assert!((own + (9000.0 - 1028.0 * 0.9) * 9.81).abs() < 1e-6, "{own} N");
     let words = in_words(&heavy.scene);
-    assert_says(&words, &["add to the force of its lines on what moves it"]);
+    assert_says(
+        &words,
+        &["act on the driving body in addition to those of the lines"],
+    );
 }
 
 #[test]
@@ -419,7 +422,7 @@ fn the_words_for_a_deck_name_both_orders_of_angles() {
         &words,
         &[
             "Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn",
-            "of the FMU by Rz(yaw)·Ry(pitch)·Rx(roll)",
+            "of the FMU of Rz(yaw)·Ry(pitch)·Rx(roll)",
         ],
     );
 }

@@ -7,7 +7,7 @@ use super::{LineLaw, Seabed, catenary_sections, line_law};
 use crate::model::mesh::{Place, Refinement, line_elements};
 use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Catenary, FlatSeabed};
-use crate::scene::{self, PointKind, Scene, percent};
+use crate::scene::{self, PointKind, Scene, metres, percent};
 
 /// Error of the curvature at a clamp times the square of the number of elements over λ = √(EI/T) there [-], where the tension becomes 1.4 times that at
 /// rest ([`crate::physics::bending`]).
@@ -278,34 +278,35 @@ pub(super) fn in_words(scene: &Scene, model: &Model) -> Vec<String> {
             let least = lengths.iter().copied().fold(f64::INFINITY, f64::min);
             let most = lengths.iter().copied().fold(0.0, f64::max);
             let range = if most - least <= 1e-6 * most {
-                format!("{least:.4} m")
+                metres(least)
             } else {
-                format!("{least:.4} to {most:.4} m")
+                format!("{} to {}", metres(least).trim_end_matches(" m"), metres(most))
             };
             let plural = if lengths.len() == 1 { "" } else { "s" };
+            let count = format!("{}: {} element{plural} of {range}", line.name, lengths.len());
             let reasons = reasons(scene, model, line, built, share);
-            format!(
-                "{}: {} element{plural} of {range}, {reasons}",
-                line.name,
-                lengths.len()
-            )
+            [vec![count], reasons].concat().join(", ")
         })
         .collect()
 }
 
-fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share: f64) -> String {
+fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share: f64) -> Vec<String> {
     if line.sections.iter().all(|section| section.elements.is_some()) {
-        return "as given".to_string();
+        return vec!["as given".to_string()];
     }
-    let mut reasons = match (line.elements, scene.solver.elements) {
-        (Some(elements), _) => format!("of the {elements} that the line is given"),
-        (None, Some(elements)) => format!("of the {elements} of a line alone"),
-        (None, None) => {
-            format!("for the target error of {}", percent(scene.solver.tolerance))
-        }
-    };
-    if line.elements.is_none() && share < alone(scene) {
-        reasons += ", in proportion to the longest line it is tied to";
+    let is_in_proportion = line.elements.is_none() && share < alone(scene);
+    let mut reasons = Vec::new();
+    match line.elements.or(scene.solver.elements) {
+        None => reasons.push(format!(
+            "for a target error of {}",
+            percent(scene.solver.tolerance)
+        )),
+        Some(_) if is_in_proportion => {}
+        Some(elements) if elements == built.segment_count() => {}
+        Some(elements) => reasons.push(format!("{elements} rounded to its sections")),
+    }
+    if is_in_proportion {
+        reasons.push("in proportion to the longest line that it is tied to".to_string());
     }
     let types = line
         .sections
@@ -328,14 +329,17 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
         let inside = inside.filter(|(arc, _)| arc[1] > wanted.from && arc[0] < wanted.to);
         let found = inside.map(|(_, length)| *length).fold(0.0, f64::max);
         let bend = wanted.bend;
-        reasons += &format!(", {found:.4} m at {place}, where it bends over {bend:.4} m");
         let resolved = match wanted.place {
             Place::Touchdown => bend,
             Place::ClampA | Place::ClampB => CLAMP_LENGTH_MAX * bend,
         };
-        if found > resolved {
-            reasons += ": too long to resolve that";
-        }
+        let coarse = if found > resolved {
+            ", which they do not resolve"
+        } else {
+            ""
+        };
+        let [found, bend] = [found, bend].map(metres);
+        reasons.push(format!("{found} at {place} for a bend of {bend}{coarse}"));
     }
     reasons
 }

@@ -27,7 +27,7 @@ impl Scene {
         parts.extend(bending_in_words(line_type));
         parts.extend(self.damping_in_words(name, line_type));
         if self.water.is_some() {
-            let within = line_type.weight.map_or("", |_| " within the weight");
+            let within = line_type.weight.map_or("", |_| " included in the weight");
             parts.push(format!("buoyancy{within}"));
             let left_out = line_type.entries().filter(|(_, value)| value.is_absent());
             let absent = left_out.filter_map(|(key, _)| key.rule.absence);
@@ -53,16 +53,16 @@ impl Scene {
         let elements = elements.join(" or ");
         if line_type.damping_ratio.is_some() {
             return Some(format!(
-                "the ratio is that of one of {elements} elements of a line, with the same damping on every mesh"
+                "the ratio refers to one of {elements} elements of a line and gives the same damping on every mesh"
             ));
         }
         let open = line_type.leaves_damping_open();
         match line_type.model {
             LineModel::Cable if open => Some(format!(
-                "axial damping {} of critical in each segment, and no less than with {elements} elements (default)",
+                "axial damping {} of critical in each segment, at least that with {elements} elements (default)",
                 number(NUMERICAL_DAMPING_RATIO)
             )),
-            LineModel::Beam if open => Some("no damping within the line".to_string()),
+            LineModel::Beam if open => Some("no structural damping".to_string()),
             _ => None,
         }
     }
@@ -83,13 +83,13 @@ impl Scene {
         }
     }
 
-    /// Returns whether and how cables carry compression.
+    /// Sentence on whether and how cables carry compression.
     pub(super) fn compression_in_words(&self) -> &'static str {
         if self.lines.iter().any(|line| self.bends(line)) {
-            "tension is never negative where a line is flexible; where it has bending stiffness an element of length l pushes with \
-             up to 4EI/l², beyond which it would buckle within itself"
+            "flexible lines carry no compression; lines with bending stiffness carry up to 4EI/l² in an element of length l, above which the \
+             element would buckle"
         } else {
-            "tension is never negative: a slack line carries nothing"
+            "lines carry no compression: the tension of a slack line is zero"
         }
     }
 }
@@ -120,7 +120,7 @@ fn bending_in_words(line_type: &LineType) -> Option<String> {
     let (share, law) = match line_type.fibre_law {
         FibreLaw::Linear => (
             solid / n,
-            format!("EI/{fibres}: strands that slide on each other side by side"),
+            format!("EI/{fibres}: strands side by side that slide without friction"),
         ),
         FibreLaw::Squared => (
             solid / n.powi(2),
@@ -129,6 +129,6 @@ fn bending_in_words(line_type: &LineType) -> Option<String> {
     };
     let share = quantity(share, "N m²");
     Some(format!(
-        "bending stiffness {share}, which is EI {of_one} {source} shared by {fibres} fibres ({law})"
+        "bending stiffness {share}: EI {of_one} {source}, divided among {fibres} fibres ({law})"
     ))
 }

@@ -13,7 +13,7 @@ impl Scene {
         let start = match &line.initial {
             InitialShape::Static => "in static equilibrium".to_string(),
             InitialShape::Catenary => {
-                "on the catenary between its ends, or straight where it has none, at rest".to_string()
+                "on the catenary between its ends (straight if there is none), at rest".to_string()
             }
             InitialShape::Straight => "straight, at rest".to_string(),
             InitialShape::Parabola(sag) => {
@@ -28,7 +28,7 @@ impl Scene {
         ];
         match (self.is_beam(line), self.bends(line)) {
             (true, _) => parts.push(format!("a beam, {}", ends_in_words(line))),
-            (_, true) => parts.push(format!("bends; {}", ends_in_words(line))),
+            (_, true) => parts.push(format!("has bending stiffness; {}", ends_in_words(line))),
             _ => {}
         }
         parts.extend(release_in_words(line));
@@ -63,11 +63,11 @@ fn fit_in_words(length: f64, chord: f64) -> String {
 fn ends_in_words(line: &Line) -> String {
     let end = |name: &str, clamp: Option<[f64; 3]>| match clamp {
         Some(along) => format!("clamped at end {name} along {}", triple(along)),
-        None => format!("free to turn at end {name}"),
+        None => format!("pinned at end {name}"),
     };
     let rest = match line.rest_shape {
-        RestShape::Straight => "unstressed where straight",
-        RestShape::Initial => "unstressed in its shape at the start",
+        RestShape::Straight => "unstressed when straight",
+        RestShape::Initial => "unstressed in its initial shape",
     };
     let [a, b] = [("A", line.clamped_a), ("B", line.clamped_b)].map(|(name, clamp)| end(name, clamp));
     format!("{a}, {b}; {rest}")
@@ -94,10 +94,10 @@ fn break_in_words(line: &Line) -> Option<String> {
     let failure = line.failure.as_ref()?;
     let (end, point) = end_of(line, failure.at);
     let tension = failure.tension.map(|tension| quantity(tension, "N"));
-    let tension = tension.map(|tension| format!("under {tension}"));
+    let tension = tension.map(|tension| format!("at a tension of {tension}"));
     let time = failure.time.map(|time| format!("at t = {}", quantity(time, "s")));
     let when: Vec<String> = tension.into_iter().chain(time).collect();
-    Some(format!("{end} breaks off {point} {}", when.join(" or ")))
+    Some(format!("{end} breaks from {point} {}", when.join(" or ")))
 }
 
 fn winch_in_words(line: &Line) -> Option<String> {
@@ -106,10 +106,10 @@ fn winch_in_words(line: &Line) -> Option<String> {
     let speed = winch.speed_max.map(|speed| quantity(speed, "m/s"));
     let speed = speed.map_or(String::new(), |speed| format!(", at no more than {speed}"));
     let path = match winch.path {
-        Some(_) => " (its own path where the scene's motion is followed)",
+        Some(_) => " (in `run` it follows its own path)",
         None => "",
     };
     Some(format!(
-        "end B is on a winch at {to}, which pays out up to {most} and hauls in by the input {name}.length_change{speed}{path}"
+        "end B is on a winch at {to}, which the input {name}.length_change drives and which pays out up to {most}{speed}{path}"
     ))
 }

@@ -15,16 +15,18 @@ const UNITS: [&str; 6] = ["m", "m", "m", "rad", "rad", "rad"];
 
 impl Scene {
     pub(super) fn point_in_words(&self, point: &Point) -> String {
-        let frame = if point.on.is_some() { " in its frame" } else { "" };
+        let frame = if point.on.is_some() {
+            " in the frame of the vessel"
+        } else {
+            ""
+        };
         let mut parts = vec![role(point), format!("at {} m{frame}", triple(point.position))];
         parts.extend(given(point, &["name", "position", "kind", "on", "free"]));
         parts.extend(self.sea_in_words(point));
         parts.extend(self.start_in_words(point).map(str::to_string));
         let mut lines = self.lines.iter();
         if point.moment.is_some() && lines.any(|line| self.bends(line) && line.joins(&point.name)) {
-            parts.push(
-                "the part of the moment along the line has no effect, since a cable has no torsion".into(),
-            );
+            parts.push("the moment about the line has no effect, since cables have no torsion".into());
         }
         let run = match (point.kind, &point.on) {
             (PointKind::Coupled, None) => self.run_in_words(&point.name),
@@ -33,10 +35,10 @@ impl Scene {
         format!("{}: {}{run}", point.name, parts.join(", "))
     }
 
-    /// "; in `run` it swings by …".
+    /// "; in `run` it oscillates by …".
     fn run_in_words(&self, body: &str) -> String {
         let motion = self.motion.get(body).map(motion_in_words);
-        let motion = motion.unwrap_or_else(|| "stays where it is".to_string());
+        let motion = motion.unwrap_or_else(|| "stays at rest".to_string());
         format!("; in `run` it {motion}")
     }
 
@@ -45,7 +47,7 @@ impl Scene {
         let [roll, pitch, yaw] = vessel.attitude.map(significant);
         let attitude = match vessel.attitude == [0.0; 3] {
             true => String::new(),
-            false => format!(", at roll {roll} rad, pitch {pitch} rad, yaw {yaw} rad"),
+            false => format!(", roll {roll} rad, pitch {pitch} rad, yaw {yaw} rad"),
         };
         let aboard = self.points.iter().filter(|point| point.on.as_ref() == Some(name));
         let aboard: Vec<&str> = aboard.map(|point| point.name.as_str()).collect();
@@ -58,13 +60,11 @@ impl Scene {
         let angles = match vessel.motion_angles {
             AngleOrder::Zyx => "",
             AngleOrder::Xyz => {
-                "; roll, pitch and yaw of a motion in `run` turn it by Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn, those of the FMU by \
+                "; roll, pitch and yaw of its motion in `run` are those of Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn, those of the FMU of \
                  Rz(yaw)·Ry(pitch)·Rx(roll)"
             }
         };
-        format!(
-            "{name}: moved by the host, its origin at {origin} m{attitude}, carries {carried}{run}{angles}"
-        )
+        format!("{name}: driven by the host, origin at {origin} m{attitude}, carries {carried}{run}{angles}")
     }
 
     /// Effects of the water and the seabed on a point; `None` where neither acts.
@@ -74,7 +74,7 @@ impl Scene {
             self.seabed_at_point(point)
         } else {
             let own = point.mass.is_some() || point.volume.is_some() || point.drag_area.is_some();
-            own.then(|| "these forces add to the force of its lines on what moves it".to_string())
+            own.then(|| "these forces act on the driving body in addition to those of the lines".to_string())
         };
         let said: Vec<String> = water.into_iter().chain(other).collect();
         (!said.is_empty()).then(|| said.join("; "))
@@ -90,7 +90,7 @@ impl Scene {
         let settles = shapes.any(|shape| *shape == InitialShape::Static);
         (!network.is_empty()).then_some(match settles {
             true => "starts in static equilibrium",
-            false => "starts at its position, as no line of its network is `static`",
+            false => "starts at the given position, since no line of its network is `static`",
         })
     }
 
@@ -140,9 +140,9 @@ impl Scene {
         let of = |acting: bool| effects.iter().filter(move |(_, acts)| *acts == acting);
         let acting: Vec<&str> = of(true).map(|(effect, _)| *effect).collect();
         let absent: String = of(false).map(|(effect, _)| format!(", no {effect}")).collect();
-        let acting = acting.join(", ");
+        let acting = join(&acting);
         Some(format!(
-            "in the water {acting}{absent}, as of a sphere of radius {radius} m as far as it is under z = 0"
+            "in the water {acting} of a sphere of radius {radius} m as far as it is below z = 0{absent}"
         ))
     }
 
@@ -150,17 +150,16 @@ impl Scene {
         let seabed = self.seabed.as_ref()?;
         let weight = point.mass.unwrap_or(0.0) * self.gravity;
         let sinks = point.free.as_ref().is_none_or(|axes| axes.contains(&Axis::Z));
-        (weight > 0.0 && sinks && seabed.stiffness > 0.0).then(|| {
-            "on the seabed it rests on a spring that its weight in air compresses by 0.02 m".to_string()
-        })
+        (weight > 0.0 && sinks && seabed.stiffness > 0.0)
+            .then(|| "on the seabed a spring that its weight in air compresses by 0.02 m".to_string())
     }
 }
 
 fn role(point: &Point) -> String {
     match (point.kind, &point.on, &point.free) {
-        (PointKind::Coupled, Some(vessel), _) => format!("rides on {vessel}"),
+        (PointKind::Coupled, Some(vessel), _) => format!("carried by {vessel}"),
         (PointKind::Coupled, None, _) => "coupled to the host".to_string(),
-        (PointKind::Prescribed, ..) => "moved along its own path".to_string(),
+        (PointKind::Prescribed, ..) => "moves along its own path".to_string(),
         (PointKind::Free, _, Some(axes)) => {
             let axes: Vec<&str> = axes.iter().map(|axis| axis.word()).collect();
             format!("free along {} only", join(&axes))
@@ -169,11 +168,11 @@ fn role(point: &Point) -> String {
     }
 }
 
-/// "swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch, growing over 15 s", for a sentence on a body.
+/// "oscillates by 2.5 m every 12 s in x, 0.05 rad every 10 s in pitch, with a ramp of 15 s", for a sentence on a body.
 pub(in crate::scene) fn motion_in_words(motion: &MotionPath) -> String {
     let follows = |what: String, rows: &[MotionRow]| match ranges_in_words(rows) {
         Some(ranges) => format!("follows {what}: {ranges}"),
-        None => format!("stays where it is, by {what}"),
+        None => format!("stays at rest, by {what}"),
     };
     match motion {
         MotionPath::File(file) => {
@@ -205,21 +204,23 @@ fn ranges_in_words(rows: &[MotionRow]) -> Option<String> {
 
 fn harmonic_in_words(harmonic: &HarmonicMotion) -> String {
     let axes = harmonic.axes().into_iter().zip(UNITS);
-    let sines = axes.flat_map(|((name, sines), unit)| sines.iter().map(move |sine| (name, unit, sine)));
-    let sines = sines.filter_map(|(name, unit, sine)| {
-        let (amplitude, period) = (sine.first()?, sine.get(1)?);
-        let how = if unit == "m" { "along" } else { "in" };
-        let (size, period) = (quantity(amplitude.abs(), unit), quantity(*period, "s"));
-        (*amplitude != 0.0).then(|| format!("{size} every {period} {how} {name}"))
+    let axes = axes.filter_map(|((name, sines), unit)| {
+        let sines = sines.iter().filter_map(|sine| {
+            let (amplitude, period) = (sine.first()?, sine.get(1)?);
+            let (size, period) = (quantity(amplitude.abs(), unit), quantity(*period, "s"));
+            (*amplitude != 0.0).then(|| format!("{size} every {period}"))
+        });
+        let sines: Vec<String> = sines.collect();
+        (!sines.is_empty()).then(|| format!("{} in {name}", join(&sines)))
     });
-    let sines: Vec<String> = sines.collect();
-    if sines.is_empty() {
-        return "stays where it is".to_string();
+    let axes: Vec<String> = axes.collect();
+    if axes.is_empty() {
+        return "stays at rest".to_string();
     }
     let ramp = harmonic
         .ramp
-        .map(|ramp| format!(", growing over {}", quantity(ramp, "s")));
-    format!("swings by {}{}", sines.join(" and "), ramp.unwrap_or_default())
+        .map(|ramp| format!(", with a ramp of {}", quantity(ramp, "s")));
+    format!("oscillates by {}{}", axes.join(", "), ramp.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -233,19 +234,18 @@ mod tests {
             ..HarmonicMotion::default()
         };
         let said = motion_in_words(&MotionPath::Harmonic(motion.clone()));
-        assert_eq!(said, "swings by 0.05 rad every 10 s in pitch");
-        motion.x = vec![vec![2.5, 12.0]];
+        assert_eq!(said, "oscillates by 0.05 rad every 10 s in pitch");
+        motion.x = vec![vec![2.5, 12.0], vec![1.0, 90.0]];
         motion.ramp = Some(15.0);
         let said = motion_in_words(&MotionPath::Harmonic(motion));
-        let expected =
-            "swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch, growing over 15 s";
+        let expected = "oscillates by 2.5 m every 12 s and 1 m every 90 s in x, 0.05 rad every 10 s in pitch, with a ramp of 15 s";
         assert_eq!(said, expected);
         let still = HarmonicMotion {
             x: vec![vec![0.0, 12.0]],
             ..HarmonicMotion::default()
         };
         let said = motion_in_words(&MotionPath::Harmonic(still));
-        assert_eq!(said, "stays where it is");
+        assert_eq!(said, "stays at rest");
     }
 
     #[test]
@@ -260,6 +260,6 @@ mod tests {
             "follows a table of 2 rows: x from 0 to 5 m and z at 1.5 m and pitch from -0.1 to 0.2 rad"
         );
         let said = motion_in_words(&MotionPath::Table(vec![[0.0; 7]; 3]));
-        assert_eq!(said, "stays where it is, by a table of 3 rows");
+        assert_eq!(said, "stays at rest, by a table of 3 rows");
     }
 }

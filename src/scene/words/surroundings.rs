@@ -9,8 +9,8 @@ use crate::scene::{
 impl Scene {
     pub(super) fn surroundings_in_words(&self) -> Vec<String> {
         let gravity = match self.gravity {
-            0.0 => "no gravity: nothing has a weight".to_string(),
-            gravity => format!("gravity {}, downwards along z", quantity(gravity, "m/s²")),
+            0.0 => "no gravity".to_string(),
+            gravity => format!("gravity {} along -z", quantity(gravity, "m/s²")),
         };
         let water = self.water.as_ref().map(|water| self.water_in_words(water));
         let seabed = self.seabed.as_ref().map(seabed_in_words);
@@ -18,18 +18,18 @@ impl Scene {
         vec![gravity, water, seabed.unwrap_or_else(|| "no seabed".to_string())]
     }
 
-    /// "still water of 1025 kg/m³ that fills all space".
+    /// "still water, 1025 kg/m³, without a free surface".
     fn water_in_words(&self, water: &Water) -> String {
         let still = water.current.is_none() && !water.accelerates();
         let still = if still { "still " } else { "" };
         let mut words = format!(
-            "{still}water of {} {}",
+            "{still}water, {}, {}",
             quantity(water.density, "kg/m³"),
             self.surface_in_words()
         );
         if let Some(current) = &water.current {
             words += &format!(
-                ", with a current: {}; the drag on lines follows their velocity through the water, at rest too",
+                "; current {}; drag follows the velocity relative to the water, in static equilibrium too",
                 current_in_words(current)
             );
         }
@@ -40,10 +40,10 @@ impl Scene {
             let added = water
                 .current
                 .as_ref()
-                .map_or("", |_| ", to which the current is added");
+                .map_or("", |_| ", in addition to the current");
             words += &format!(
-                "; a host gives its velocity and acceleration at the nodes{added}, and without a host they are zero; drag and the force of the \
-                 accelerated water on lines and points follow them, and the surface stays level"
+                "; its velocity and acceleration at the nodes are inputs of the host{added}, zero without a host; drag and inertia forces on \
+                 lines and points follow from them; the surface stays level"
             );
         }
         words
@@ -55,11 +55,11 @@ impl Scene {
         lines.map(|line| line.name.as_str()).collect()
     }
 
-    /// "that fills all space", or the lines that may come out of the water.
+    /// "without a free surface", or the lines that may come out of the water.
     fn surface_in_words(&self) -> String {
         let [piercing, submerged] = [true, false].map(|meet| self.lines_that_meet_surface(meet));
         if piercing.is_empty() {
-            return "that fills all space".to_string();
+            return "without a free surface".to_string();
         }
         let have = |names: &[&str]| {
             format!(
@@ -69,18 +69,18 @@ impl Scene {
             )
         };
         let moves = self.waves().is_some();
-        let level = if moves { ", which the waves move" } else { "" };
+        let level = if moves { ", moved by the waves" } else { "" };
         let others = match submerged.is_empty() {
             true => String::new(),
-            false => format!(", while {} them everywhere", have(&submerged)),
+            false => format!("; {} them everywhere", have(&submerged)),
         };
         let piercing = have(&piercing);
         format!(
-            "with its surface at z = 0{level}: above it {piercing} no buoyancy, drag and added mass{others}"
+            "with a free surface at z = 0{level}, above which {piercing} no buoyancy, drag or added mass{others}"
         )
     }
 
-    /// Effects of the water that are not modelled: "current, waves and the water's surface".
+    /// Effects of the water that are not modelled: "current, waves and the free surface".
     pub(super) fn absences_of_water(&self) -> String {
         let water = self.water.as_ref();
         let [piercing, submerged] = [true, false].map(|meet| self.lines_that_meet_surface(meet).len());
@@ -93,8 +93,8 @@ impl Scene {
         }
         match (piercing, submerged) {
             (1.., 0) => {}
-            _ if piercing > 0 || self.surface_matters() => absent.push("the water's surface over some lines"),
-            _ => absent.push("the water's surface"),
+            _ if piercing > 0 || self.surface_matters() => absent.push("the free surface above some lines"),
+            _ => absent.push("the free surface"),
         }
         if absent.is_empty() {
             absent.push("second-order waves");
@@ -102,26 +102,27 @@ impl Scene {
         join(&absent)
     }
 
-    /// "linear waves (Airy) …: significant height 6 m, …".
+    /// "linear (Airy) waves in …: significant height 6 m, …".
     fn waves_in_words(&self, waves: &Waves) -> String {
         let seas: Vec<String> = waves.seas.iter().map(sea_in_words).collect();
         let seas = seas.join("; ");
         let depth = self.seabed.as_ref().map(|seabed| quantity(seabed.depth, "m"));
-        let over = depth.map_or("deep water".to_string(), |depth| format!("a depth of {depth}"));
+        let over = depth.map_or("deep water".to_string(), |depth| {
+            format!("a water depth of {depth}")
+        });
         let height = height_of(waves.deviation());
         let all = match waves.seas.len() {
             1 => String::new(),
-            _ => format!(", together of a significant height of {height}"),
+            _ => format!(", {height} of significant height in total"),
         };
         let ramp = waves.ramp().map(|ramp| quantity(ramp, "s"));
-        let ramp = ramp.map_or(", at once in full".to_string(), |ramp| {
-            format!(", growing over a ramp of {ramp}")
+        let ramp = ramp.map_or(", without a ramp".to_string(), |ramp| {
+            format!(", with a ramp of {ramp}")
         });
         format!(
-            "linear waves (Airy) over {over}: {seas}{all}{ramp}; velocities and accelerations are stretched to the surface as Wheeler does, and \
-             components that do not reach a place are left out there (1e-4 of the surface's acceleration); drag, Froude-Krylov force and added \
-             mass act with the motion of the water past the line; no drift, no breaking, no waves made or turned by the current, and the \
-             equilibrium at the start is that of still water or of the current"
+            "linear (Airy) waves in {over}: {seas}{all}{ramp}; Wheeler stretching; components with less than 1e-4 of the acceleration at the \
+             surface are neglected; drag, Froude-Krylov force and added mass follow the motion relative to the water; no drift, wave breaking \
+             or wave-current interaction; the initial equilibrium includes the current but no waves"
         )
     }
 }
@@ -140,16 +141,16 @@ fn sea_in_words(sea: &Sea) -> String {
         return format!("a regular wave of height {height} and period {period} towards {direction}");
     }
     if let Some(WaveComponents::Rows(rows)) = &sea.components {
-        let (count, trains) = (rows.len(), if rows.len() == 1 { "train" } else { "trains" });
+        let (count, plural) = (rows.len(), if rows.len() == 1 { "" } else { "s" });
         let height = height_of(sea.variance().sqrt());
-        return format!("{count} wave {trains} of a significant height of {height}");
+        return format!("{count} wave component{plural} with a significant height of {height}");
     }
     let kind = match sea.spectrum {
-        Some(SpectrumKind::PiersonMoskowitz) => "a Pierson-Moskowitz spectrum".to_string(),
-        _ => format!("a JONSWAP spectrum of peakedness {}", number(sea.gamma())),
+        Some(SpectrumKind::PiersonMoskowitz) => "Pierson-Moskowitz spectrum".to_string(),
+        _ => format!("JONSWAP spectrum, peak enhancement {}", number(sea.gamma())),
     };
     let spread = sea.spreading.map(number);
-    let spread = spread.map(|s| format!(", spread by cos²ˢ of half the angle with s = {s}"));
+    let spread = spread.map(|s| format!(", cos²ˢ spreading of the half angle with s = {s}"));
     let [height, period] =
         [(sea.significant_height, "m"), (sea.peak_period, "s")].map(|(value, unit)| of(value, unit));
     let (direction, seed, count) = (
@@ -159,12 +160,12 @@ fn sea_in_words(sea: &Sea) -> String {
     );
     let spread = spread.unwrap_or_default();
     format!(
-        "{kind}, significant height {height}, peak period {period}, towards {direction}{spread}, as {count} wave trains of equal energy drawn \
-         with the seed {seed}"
+        "{kind}, significant height {height}, peak period {period}, towards {direction}{spread}; {count} components of equal \
+         energy, seed {seed}"
     )
 }
 
-/// "(1, 0, 0) m/s, a speed of 1 m/s, at all heights, steady".
+/// "(1, 0, 0) m/s (speed 1 m/s) at all depths, steady".
 fn current_in_words(current: &Current) -> String {
     let shape = match (&current.velocity, &current.profile) {
         (_, Some(rows)) => profile_in_words(rows),
@@ -176,20 +177,21 @@ fn current_in_words(current: &Current) -> String {
                 .sum::<f64>()
                 .sqrt();
             let speed = quantity((1e6 * speed).round() / 1e6, "m/s");
-            format!("{} m/s, a speed of {speed}, at all heights", triple(velocity))
+            format!("{} m/s (speed {speed}) at all depths", triple(velocity))
         }
     };
     let times = match &current.factor {
         None => ", steady".to_string(),
-        Some(TimeFunction::Constant(factor)) => format!(", steady, times {}", number(*factor)),
+        Some(TimeFunction::Constant(factor)) => format!(", steady, with a factor of {}", number(*factor)),
         Some(_) => {
-            ", times a function of time; the force of the water's own acceleration is left out".to_string()
+            ", with a factor that varies in time; inertia forces of the accelerating current are neglected"
+                .to_string()
         }
     };
     shape + &times
 }
 
-/// "from (0.3, 0) m/s at z = -200 m to (1, 0) m/s at z = 0 m, straight between 3 heights and constant outside".
+/// "from (0.3, 0) m/s at z = -200 m to (1, 0) m/s at z = 0 m, linear between 3 depths and constant beyond them".
 fn profile_in_words(rows: &[[f64; 3]]) -> String {
     let lower = rows.iter().min_by(|a, b| a[0].total_cmp(&b[0]));
     let upper = rows.iter().max_by(|a, b| a[0].total_cmp(&b[0]));
@@ -202,18 +204,18 @@ fn profile_in_words(rows: &[[f64; 3]]) -> String {
     };
     let [lower, upper] = [lower, upper].map(place);
     match rows.len() {
-        1 => format!("{lower}, and at all other heights"),
-        count => format!("from {lower} to {upper}, straight between {count} heights and constant outside"),
+        1 => format!("{lower} and at all other depths"),
+        count => format!("from {lower} to {upper}, linear between {count} depths and constant beyond them"),
     }
 }
 
 fn seabed_in_words(seabed: &Seabed) -> String {
     let law = match seabed.contact {
         ContactLaw::Regularised => {
-            "softened together to suit the mesh, with no less than 0.2 of critical damping where the seabed has it; a resting line lies on the seabed"
+            "both reduced on coarse meshes, where up to 0.2 of critical damping is kept; lines at rest lie on the seabed"
         }
-        ContactLaw::AsGiven => "exactly as given",
-        ContactLaw::AtNodes => "exactly as given, at the nodes alone",
+        ContactLaw::AsGiven => "used as given",
+        ContactLaw::AtNodes => "used as given, at the nodes only",
     };
     let chosen = if seabed.has_default_stiffness() {
         " (default)"
@@ -225,15 +227,18 @@ fn seabed_in_words(seabed: &Seabed) -> String {
         quantity(seabed.damping, "Pa s/m"),
     );
     let (shape, friction) = (shape_in_words(seabed), friction_in_words(seabed));
+    let statics = match seabed.is_level() {
+        true => "",
+        false => "; statics use elements, since there is no closed-form catenary on such a seabed",
+    };
     format!(
-        "{shape}: normal spring of {spring} and damper of {damper}{chosen} per metre of line and of diameter, {law}; {friction}"
+        "{shape}: normal stiffness {spring} and damping {damper}{chosen} per metre of length and of diameter, {law}; {friction}{statics}"
     )
 }
 
 /// Shape of the seabed.
 fn shape_in_words(seabed: &Seabed) -> String {
     let depth = quantity(-seabed.depth, "m");
-    let elements = "there is no closed-form catenary over such a seabed, elements are used instead";
     match (&seabed.grid, seabed.slope) {
         (Some(grid), _) => {
             let soundings = || grid.depth.iter().flatten().copied();
@@ -241,10 +246,10 @@ fn shape_in_words(seabed: &Seabed) -> String {
             let most = soundings().fold(f64::NEG_INFINITY, f64::max);
             let span = |line: &[f64]| match line {
                 [first, .., last] => format!("from {} to {}", number(*first), quantity(*last, "m")),
-                _ => "alike everywhere".to_string(),
+                _ => "uniform".to_string(),
             };
             format!(
-                "seabed through {} by {} soundings, x {}, y {}, from {} to {} deep, smooth between them and constant outside; {elements}",
+                "seabed interpolated from {} by {} soundings, x {}, y {}, depth from {} to {}, constant beyond them",
                 grid.x.len(),
                 grid.y.len(),
                 span(&grid.x),
@@ -254,7 +259,7 @@ fn shape_in_words(seabed: &Seabed) -> String {
             )
         }
         (None, Some([x, y])) if !seabed.is_level() => format!(
-            "seabed on a plane through z = {depth} at the origin that rises by {} per metre of x and {} per metre of y; {elements}",
+            "plane seabed through z = {depth} at the origin, rising by {} per metre of x and {} per metre of y",
             number(x),
             number(y)
         ),
@@ -269,12 +274,12 @@ fn friction_in_words(seabed: &Seabed) -> String {
     }
     let [axial, transverse] = [friction.axial, friction.transverse].map(number);
     let coefficients = match friction.axial == friction.transverse {
-        true => format!("Coulomb friction with the coefficient {axial}"),
+        true => format!("Coulomb friction with a coefficient of {axial}"),
         false => format!(
-            "Coulomb friction with the coefficients {axial} along the line, {transverse} across it and for points"
+            "Coulomb friction with coefficients of {axial} along the line, {transverse} across it and for points"
         ),
     };
     format!(
-        "{coefficients}, which sticks and slides; at the start every line lies as if laid without tension from end A, or from end B where only that is on the seabed, and hauled at the other end"
+        "{coefficients}, with sticking and sliding; each line starts as if laid without tension from end A (from end B if only that is on the seabed) and then pulled at the other end"
     )
 }

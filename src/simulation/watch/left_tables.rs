@@ -31,7 +31,7 @@ struct Stretched {
     /// Arc length of its end [m].
     end: f64,
     line_type: String,
-    /// Strain of the last row [-]; infinite where there is no table.
+    /// Strain of the last row [-]; infinite where there is no table, and once it was left.
     strain_max: f64,
 }
 
@@ -54,7 +54,7 @@ impl LeftTables {
 
     /// Notes on the tables that are newly left.
     pub(super) fn look(&mut self, simulation: &Simulation, notes: &mut Vec<Note>) {
-        for (line, sections) in &self.stretched {
+        for (line, sections) in &mut self.stretched {
             look_at_strain(simulation, *line, sections, &mut self.left, notes);
         }
         let lines = 0..simulation.model.lines.len();
@@ -101,7 +101,7 @@ fn stretched(scene: &Scene, line: &Line) -> Vec<Stretched> {
 fn look_at_strain(
     simulation: &Simulation,
     line: usize,
-    sections: &[Stretched],
+    sections: &mut [Stretched],
     left: &mut BTreeSet<String>,
     notes: &mut Vec<Note>,
 ) {
@@ -109,6 +109,7 @@ fn look_at_strain(
         &simulation.model.lines[line],
         &simulation.snapshot.state.lines[line].position,
     );
+    let last = sections.len() - 1;
     let limits = sections.iter().map(|section| section.strain_max);
     let least = limits.fold(f64::INFINITY, f64::min);
     let mut segments = nodes.windows(2).zip(&of.segments.length);
@@ -117,21 +118,20 @@ fn look_at_strain(
     }
     for (k, (pair, length)) in nodes.windows(2).zip(&of.segments.length).enumerate() {
         let middle = of.nodes.arc[k] + 0.5 * length;
-        let section = sections.iter().find(|section| middle <= section.end);
-        let Some(section) = section.or(sections.last()) else {
-            continue;
-        };
+        let number = sections.iter().position(|section| middle <= section.end);
+        let section = &mut sections[number.unwrap_or(last)];
         let strain = (pair[1] - pair[0]).norm() / length - 1.0;
         if strain > section.strain_max {
             let text = format!(
-                "{} is strained by {strain:.4} at t = {} s, beyond the last row at {}: tension goes on with its last slope there, where MoorDyn \
-                 stays at the last tension",
+                "{} is strained by {strain:.4} at t = {} s, beyond the last row at {}: its tension continues with the last slope, where MoorDyn \
+                 keeps the last tension",
                 of.name,
                 simulation.time(),
                 section.strain_max
             );
             let at = format!("line_types.{}.tension_strain", section.line_type);
             say(left, at, text, notes);
+            section.strain_max = f64::INFINITY;
         }
     }
 }

@@ -38,11 +38,11 @@ fn short_sections_keep_the_stated_error() {
     let [said, short] = words(0.005);
     assert_says(
         &said,
-        &["2 elements in sections that are one element on coarse and fine meshes alike"],
+        &["2 elements in short sections, which have one element on all meshes that were tried"],
     );
     assert_eq!(short, "");
     let [_, short] = words(2e-5);
-    assert_says(&short, &["more than solver.tolerance"]);
+    assert_says(&short, &["above solver.tolerance"]);
 }
 
 #[test]
@@ -56,11 +56,11 @@ fn a_mesh_of_which_no_trial_could_be_run_is_told() {
     let found = discretisation::select(&scene).unwrap();
     assert_says(
         &found.in_words().join("\n"),
-        &["no trial of this mesh could be run"],
+        &["the error of this mesh is unknown, since no trial could be run"],
     );
     assert_says(
         &found.shortfalls().join("\n"),
-        &["leg: the error with this mesh is unknown"],
+        &["leg: the error of this mesh is unknown"],
     );
 }
 
@@ -73,10 +73,7 @@ fn the_error_of_an_extrapolated_mesh_is_told_as_it_is_where_lines_snap() {
     println!("{:?}", mesh);
     assert!(!mesh.tried);
     assert!(mesh.error > 0.025, "{}, 0.029 against 1200 elements", mesh.error);
-    assert_says(
-        &found.shortfalls().join("\n"),
-        &["more than solver.tolerance = 0.02"],
-    );
+    assert_says(&found.shortfalls().join("\n"), &["above solver.tolerance = 0.02"]);
 }
 
 /// Snaps that last a fraction of a period: 25 samples at the same phases of every period miss some, or find all of them.
@@ -219,7 +216,7 @@ fn the_trials_are_described_in_words() {
     let selected = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();
     let words = selected.in_words();
     assert!(
-        words[0].starts_with("5 elements a line alone for the target error of 2 %"),
+        words[0].starts_with("5 elements for a target error of 2 %"),
         "{words:?}"
     );
 }
