@@ -363,6 +363,12 @@ impl AxesPath {
         [newest.xyz(), last.xyz(), second.xyz()]
     }
 
+    /// Jump of the acceleration along the first three axes to the path that continues this one [m/s², rad/s²].
+    pub fn jump(&self, after: &AxesPath) -> f64 {
+        let ([_, [.., last]], [[.., first], _]) = (self.ends(), after.ends());
+        (first - last).xyz().norm()
+    }
+
     /// Predicts from the positions of the host.
     #[inline(always)]
     fn predict(&mut self, extrapolation: &Extrapolation, samples: Samples) -> Prediction {

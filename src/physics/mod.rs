@@ -1,6 +1,7 @@
 //! One law per file, pointwise: value, exact slopes and energy. No scene, no index, no loop over nodes.
 
 pub mod airy;
+pub mod axial_wave;
 pub mod bending;
 pub mod catenary;
 pub mod contact_step;

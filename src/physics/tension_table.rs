@@ -2,7 +2,7 @@
 //!
 //! Between two rows the tension is the cubic Hermite polynomial with the slopes of [`rising_slopes`]. The least slope
 //! at the first row gives a line at rest resistance to the first pull. The curve is continuous with its slope, rises
-//! wherever the table rises, and continues beyond the last row with the last slope (MoorDyn stays at the last tension
+//! wherever the table rises, and continues beyond the last row with the last slope (MoorDyn keeps the last tension
 //! there). Below zero strain it continues with the first slope, which does not affect a line that cannot push. Its
 //! energy is the exact integral.
 //!

@@ -9,18 +9,18 @@
 //! J = 12 δ/h. An error δ that changes fast compared with the motion of the line changes its tension by Z δ, with the impedance Z = √(EA m_t) of axial
 //! waves. The error of tension over its standard deviation σ is estimated as
 //!
-//! √((2.5 e)² + (Z ⟨|J|⟩h/12 / σ)²).
+//! √((2.5 e)² + (A Z ⟨|J|⟩h/12 / σ)²).
 //!
-//! The second part is evaluated for the line with the greatest ratio of impedance to tension at rest, while this line is tight. It dominates where the
+//! with the amplification A by axial modes at the frequency of the communication points ([`super::light_end`]). The second part is evaluated for
+//! the line with the greatest ratio of impedance to tension at rest, while this line is tight. It dominates where the
 //! tension is small and follows the acceleration of the end, as on cables and risers. ⟨|J|⟩ is used in place of √⟨J²⟩, so that one jump in the
 //! acceleration of the motion itself does not count for ten periods. A path that is interpolated passes through the samples, m = 0; its velocities,
 //! where the host gives none, have errors δ too, and δ = J h/12 takes the place of m/h. A path that jumps has jumps m.
 //!
 //! With displacements only and 12 to 40 steps per period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and `taut_polyester`,
 //! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities, up to 26 times, where both are small. Interpolated displacements: 2.5
-//! to 17 times and 0.8 to 5 times. Jumps on lines other than cables: 1.1 to 4 times. It leaves out the resonance of a line with an axial mode at the
-//! frequency of the communication points, and the curvature of interpolated cubics with exact velocities, (ωh)²/12 of an acceleration of frequency ω: 2.3 %
-//! with 12 steps per period, 0.2 % with 40. The error falls with h³ or faster, as m/h does.
+//! to 17 times and 0.8 to 5 times. Jumps on lines other than cables: 1.1 to 4 times. It leaves out the curvature of interpolated cubics with exact
+//! velocities, (ωh)²/12 of an acceleration of frequency ω: 2.3 % with 12 steps per period, 0.2 % with 40. The error falls with h³ or faster, as m/h does.
 //!
 //! Mean values decay with a time constant of ten periods of the frequency √(⟨a²⟩/⟨v²⟩), with the acceleration a. The first samples, which do not determine
 //! a motion, are not counted. The fastest part of the motion dominates the measure, as it does the error of tension.
@@ -31,11 +31,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
+use super::light_end::LightEnd;
 use super::paths::Paths;
 use crate::dynamics::motion::AxesPath;
-use crate::dynamics::reaction;
-use crate::model::{End, Line, Model, Role, State};
-use crate::scene::{Integrator, Reconstruction};
+use crate::model::{Model, State};
+use crate::scene::Reconstruction;
 
 /// Error of tension over the relative error of velocity [-].
 const GAIN: f64 = 2.5;
@@ -69,7 +69,7 @@ pub(super) struct InputRecord {
     speed: f64,
     /// Σ a² h [m²/s³].
     bend: f64,
-    /// Σ |δ| h of the light end [m].
+    /// Σ A |δ| h of the light end, amplified by the axial modes of its line [m].
     drift: f64,
     /// Σ T h [N s] and Σ T² h [N² s] of its tension.
     tension: [f64; 2],
@@ -96,7 +96,7 @@ impl InputRecord {
         let mut squares = [0.0; 3];
         let mut add = |before: &AxesPath, after: &AxesPath, lever: f64| {
             let missed = match interpolates {
-                true => gaps[0] * gaps[0] / JUMP * jump(before, after),
+                true => gaps[0] * gaps[0] / JUMP * before.jump(after),
                 false => (after.newest()[0] - before.end()[0].xyz()).norm(),
             };
             let [velocity, acceleration] = rates(after.newest(), gaps);
@@ -116,10 +116,10 @@ impl InputRecord {
     }
 
     /// Records the light end with its tension in a state, from the paths before and after it.
-    fn watch(&mut self, end: &LightEnd, model: &Model, state: &State, paths: [&Paths; 2], step: f64) {
+    fn watch(&mut self, end: &mut LightEnd, model: &Model, state: &State, paths: [&Paths; 2], step: f64) {
         let tension = end.tension(model, state);
         if tension > 0.0 {
-            self.drift += step * step / JUMP * end.jump(paths);
+            self.drift += step * step / JUMP * end.jump(paths) * end.amplification(step);
         }
         self.tension[0] += step * tension;
         self.tension[1] += step * tension * tension;
@@ -164,89 +164,6 @@ impl InputRecord {
     }
 }
 
-/// End with the greatest ratio of impedance to tension at rest among the ends that a host moves.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LightEnd {
-    line: usize,
-    end: End,
-    /// Impedance of axial waves, √(EA m_t) [N s/m].
-    impedance: f64,
-    mover: Mover,
-}
-
-/// Source of the motion of a line end.
-#[derive(Debug, Clone, Copy)]
-enum Mover {
-    /// Coupled point, by its index among the coupled points.
-    Point(usize),
-    /// Vessel by its index, with the distance of the end from its origin [m].
-    Vessel(usize, f64),
-}
-
-impl LightEnd {
-    /// Returns the light end of a model at rest; `None` if a host moves no line with axial waves.
-    pub(super) fn new(model: &Model, at_rest: &State) -> Option<LightEnd> {
-        if model.solver.integrator == Integrator::QuasiStatic {
-            return None;
-        }
-        let (mut coupled, mut ends) = (0, Vec::new());
-        for point in &model.points {
-            let mover = match &point.role {
-                Role::Coupled { .. } => Mover::Point(coupled),
-                Role::Carried { vessel, arm } => Mover::Vessel(*vessel, arm.norm()),
-                _ => continue,
-            };
-            coupled += usize::from(matches!(mover, Mover::Point(_)));
-            let attached = point.attached.iter();
-            let attached = attached.filter(|(line, _)| model.lines[*line].beam.is_none());
-            ends.extend(attached.map(|&(line, end)| LightEnd::of(model, line, end, mover)));
-        }
-        let ratio = |end: &LightEnd| end.impedance / end.tension(model, at_rest).max(f64::MIN_POSITIVE);
-        ends.into_iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
-    }
-
-    fn of(model: &Model, index: usize, end: End, mover: Mover) -> LightEnd {
-        let line = &model.lines[index];
-        let (node, segment) = at(line, end);
-        let mass = line.nodes.mass_tangent[node] / line.nodes.length[node]; // m_t [kg/m]
-        LightEnd {
-            line: index,
-            end,
-            impedance: (line.segments.in_motion(segment).0 * mass).sqrt(),
-            mover,
-        }
-    }
-
-    /// Tension of its segment [N].
-    fn tension(&self, model: &Model, state: &State) -> f64 {
-        let (line, state) = (&model.lines[self.line], &state.lines[self.line]);
-        reaction::tension(line, state, at(line, self.end).1, model.solver.negative_tension)
-    }
-
-    /// Jump of its acceleration between two paths [m/s²].
-    fn jump(&self, [before, after]: [&Paths; 2]) -> f64 {
-        match self.mover {
-            Mover::Point(index) => jump(&before.points[index].0, &after.points[index].0),
-            Mover::Vessel(index, lever) => {
-                let [before, after] = [before, after].map(|paths| &paths.vessels[index].0);
-                jump(&before[0], &after[0]).hypot(lever * jump(&before[1], &after[1]))
-            }
-        }
-    }
-}
-
-/// Node at the end of a line, and the segment there.
-fn at(line: &Line, end: End) -> (usize, usize) {
-    let node = line.end_node(end);
-    (node, node.min(line.segment_count() - 1))
-}
-
-/// Jump of the acceleration between two paths [m/s², rad/s²].
-fn jump(before: &AxesPath, after: &AxesPath) -> f64 {
-    let ([_, [.., last]], [[.., first], _]) = (before.ends(), after.ends());
-    (first - last).xyz().norm()
-}
-
 /// Velocity [m/s, rad/s] and acceleration [m/s², rad/s²] of three samples, newest first, with the `gaps` between them [s].
 fn rates([newest, last, second]: [Vector3<f64>; 3], gaps: [f64; 2]) -> [Vector3<f64>; 2] {
     let velocity = (newest - last) / gaps[0];
@@ -256,7 +173,7 @@ fn rates([newest, last, second]: [Vector3<f64>; 3], gaps: [f64; 2]) -> [Vector3<
 
 impl Simulation {
     /// Record including the sample of the next step, whose paths are laid out.
-    pub(super) fn record_inputs(&self) -> InputRecord {
+    pub(super) fn record_inputs(&mut self) -> InputRecord {
         let (snapshot, paths) = (&self.snapshot, [&*self.snapshot.paths, &*self.paths]);
         let mut record = snapshot.input_record;
         if snapshot.follows_scene {
@@ -267,7 +184,7 @@ impl Simulation {
         {
             let interpolates = self.model.solver.input_reconstruction == Reconstruction::Interpolate;
             record.take(&self.scale.levers, paths, gaps, interpolates);
-            if let Some(end) = &self.light_end {
+            if let Some(end) = &mut self.light_end {
                 record.watch(end, &self.model, &snapshot.state, paths, gaps[0]);
             }
         }

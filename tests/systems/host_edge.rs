@@ -129,26 +129,24 @@ const SAMPLED: [(&str, f64); 3] = [
     ("taut_polyester", 8.0),
 ];
 
-/// Light lines, whose tension follows the acceleration of their end. Not with 21 points, which come at the frequency of the lowest axial mode of
-/// `lazy_wave`, 2.4 Hz: tension is then off by its whole variation, and 10 % are estimated.
-const LIGHT: [(&str, f64); 2] = [("power_cable", 9.0), ("lazy_wave", 9.0)];
+/// Light lines, whose tension follows the acceleration of their end. 21 points come at the frequency of the lowest axial mode of `lazy_wave`, 2.4 Hz, and 17 at
+/// that of `hanging_riser`, 1.9 Hz: tension is then off by its whole variation.
+const LIGHT: [(&str, f64); 3] = [("power_cable", 9.0), ("lazy_wave", 9.0), ("hanging_riser", 9.0)];
 
 #[test]
 fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
     for (name, period) in SAMPLED.into_iter().chain(LIGHT) {
         let model = by_rules(name);
         let cases = [12.0, 17.0, 21.0, 25.0].map(|points| (points, false));
-        let is_light = LIGHT.contains(&(name, period));
-        let cases = cases
-            .into_iter()
-            .filter(|&(points, _)| !(is_light && points == 21.0));
-        for (points, velocities) in cases.chain([(12.0, true)]) {
+        for (points, velocities) in cases.into_iter().chain([(12.0, true)]) {
             let Hosted {
                 error,
                 estimate,
                 warning,
             } = hosted(&model, period, points, velocities);
-            let ratio = estimate / error;
+            // the estimate is relative to the variation of a tension that contains the error
+            let ratio = estimate * error.hypot(1.0) / error;
+            println!("{name}, {points} points, velocities {velocities}: {error:.4} estimated {estimate:.4}");
             let what = format!("{name}, {points} points, velocities {velocities}");
             assert!(
                 ratio > 0.9 && ratio < 12.0,
@@ -156,7 +154,7 @@ fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
             );
             assert_eq!(warning.is_some(), estimate > ALLOWED, "{what}: {estimate}");
             if let Some(text) = warning {
-                assert_eq!(text.contains("or velocities as well"), !velocities, "{text}");
+                assert_eq!(text.contains("or velocities"), !velocities, "{text}");
             }
         }
     }
@@ -186,6 +184,7 @@ fn the_estimated_error_of_interpolated_displacements_is_a_bound_of_that_of_tensi
             let hosted = hosted(&model, period, points, false);
             let (error, estimate) = (hosted.error, hosted.estimate);
             let what = format!("{name}, {points} points: {error} estimated {estimate}");
+            println!("{what}");
             assert!(estimate > 0.8 * error && estimate < 20.0 * error, "{what}");
             assert_eq!(hosted.warning.is_some(), estimate > ALLOWED, "{what}");
             if let Some(text) = hosted.warning {
@@ -207,7 +206,7 @@ fn a_path_that_jumps_has_an_estimated_error_with_a_smooth_path_as_its_cure() {
             estimate > error && estimate < 6.0 * error,
             "{name}: {error} estimated {estimate}"
         );
-        let cure = "or solver.input_reconstruction = \"smooth\" would do";
+        let cure = "or set solver.input_reconstruction = \"smooth\"";
         assert_says(
             &hosted.warning.unwrap(),
             &["a path that jumps at each of them", cure],
