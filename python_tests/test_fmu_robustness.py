@@ -252,7 +252,7 @@ def test_a_host_that_samples_too_coarsely_is_warned_once(slave):
             one.expect(one.step(k * step, step))
         warnings = [text for _, _, text in one.messages if "solver.input_error" in text]
         warned[points, velocities] = (len(warnings), one.get("solver.input_error"))
-        assert all("communication steps a period" in text for text in warnings)
+        assert all("communication steps per period" in text for text in warnings)
     assert warned[12, False][0] == 1 and warned[12, False][1] > 0.02, warned
     assert warned[60, False][0] == 0 and warned[60, False][1] < 0.02, warned
 
