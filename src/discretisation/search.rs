@@ -2,7 +2,7 @@
 
 use super::history::History;
 use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial, elements_of, short_sections};
-use crate::dynamics::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
+use crate::dynamics::{IMPLICIT_COST, axial_implicit_cost};
 use crate::model::{Line, Model, Role};
 use crate::scene::{Integrator, MotionPath, Scene};
 use crate::simulation::{Error, Simulation};
@@ -35,6 +35,12 @@ const PHASES: f64 = 100.0;
 const SHIFT: f64 = 0.381_966;
 /// Elements below those of the level that are worth a trial, over them [-].
 const FEWER: f64 = 0.93;
+/// Trials between two levels [-].
+const BETWEEN: usize = 2;
+/// Ratio of an expected error to the one that is kept, above which a trial is spared [-].
+const CLEAR: f64 = 1.2;
+/// Least ratio of the elements of two meshes that are tried with the same step [-].
+const FINER_MESH: f64 = 1.08;
 
 /// State of the search.
 pub(super) struct Search<'a> {
@@ -179,9 +185,37 @@ impl Ladder {
         };
         self.found?;
         let order = (before.error / found.error).ln() / (found.elements as f64 / before.elements as f64).ln();
-        let wanted = before.elements as f64 * (before.error / aim).powf(1.0 / order);
-        let elements = wanted.ceil() as usize;
-        (elements as f64 <= FEWER * found.elements as f64).then_some(elements)
+        worthwhile(
+            before.elements as f64 * (before.error / aim).powf(1.0 / order),
+            found.elements,
+        )
+    }
+
+    /// A mesh that was tried, and the levels between it and the finest, with their errors: as tried, or extrapolated at the first order.
+    fn above(&self, mesh: &Mesh) -> Vec<Trial> {
+        let least = FINER_MESH * mesh.elements as f64;
+        let finest = self.runs.last().map_or(0, |run| run.elements);
+        let own = Trial {
+            elements: mesh.elements,
+            error: mesh.error,
+        };
+        let mut levels = vec![own];
+        for elements in LADDER {
+            if (elements as f64) < least || elements >= finest {
+                continue;
+            }
+            let known = self.trials.iter().find(|trial| trial.elements == elements);
+            let coarser = levels[levels.len() - 1];
+            let error = coarser.error * coarser.elements as f64 / elements as f64;
+            levels.push(known.copied().unwrap_or(Trial { elements, error }));
+        }
+        levels
+    }
+
+    /// Elements half-way from a mesh that is too coarse to the one found, where they are worth a trial.
+    fn halfway(&self, coarse: usize) -> Option<usize> {
+        let found = self.found?;
+        worthwhile(((coarse * found) as f64).sqrt(), found)
     }
 
     /// Mesh that follows from the trials, with the error where it was tried between mesh levels; none before the
@@ -277,7 +311,7 @@ impl<'a> Search<'a> {
                 return self.with_step(elements, step);
             }
             let explicit = self.explicit_work(&scene);
-            if explicit.is_some_and(|explicit| explicit.axial_implicit_work(step) < explicit.work) {
+            if explicit.is_some_and(|explicit| explicit.axial_implicit_work(step) < WORTH * explicit.work) {
                 return self.with_step(elements, step);
             }
         }
@@ -393,7 +427,7 @@ impl<'a> Search<'a> {
             if errors.fold(0.0, f64::max) <= FINER * self.scene.solver.tolerance {
                 return Some(step);
             }
-            if finer.work > explicit.work {
+            if finer.work > WORTH * explicit.work {
                 return None;
             }
             (step, run) = (0.5 * step, finer);
@@ -466,29 +500,36 @@ impl<'a> Search<'a> {
         self.work - before
     }
 
-    /// Runs the scene once with elements between rungs where they are worth a trial; the trials that keep the error.
+    /// Runs the scene up to twice with elements between mesh levels where they are worth a trial; the trials that keep the error.
     fn between(&mut self, aim: f64) -> Vec<Option<Trial>> {
-        let wanted: Vec<Option<usize>> = self.ladders.iter().map(|ladder| ladder.between(aim)).collect();
-        if wanted.iter().all(Option::is_none) {
-            return vec![None; wanted.len()];
+        let mut wanted: Vec<Option<usize>> = self.ladders.iter().map(|ladder| ladder.between(aim)).collect();
+        let mut trials = vec![None; wanted.len()];
+        for _ in 0..BETWEEN {
+            if wanted.iter().all(Option::is_none) {
+                break;
+            }
+            let ladders = self.ladders.iter().zip(&wanted);
+            let elements = ladders.map(|(ladder, wanted)| wanted.unwrap_or_else(|| ladder.coarsest()));
+            let elements: Vec<usize> = elements.collect();
+            let Ok(Some(record)) = self.run(&self.at_level(&elements)) else {
+                break;
+            };
+            for ((ladder, wanted), kept) in self.ladders.iter().zip(&mut wanted).zip(&mut trials) {
+                let Some(elements) = wanted.take() else { continue };
+                let error = ladder.error(&ladder.part(elements, &record));
+                match error.filter(|error| *error <= aim) {
+                    Some(error) => *kept = Some(Trial { elements, error }),
+                    None => *wanted = ladder.halfway(elements),
+                }
+            }
         }
-        let ladders = self.ladders.iter().zip(&wanted);
-        let elements = ladders.map(|(ladder, wanted)| wanted.unwrap_or_else(|| ladder.coarsest()));
-        let elements: Vec<usize> = elements.collect();
-        let Ok(Some(record)) = self.run(&self.at_level(&elements)) else {
-            return vec![None; wanted.len()];
-        };
-        let trials = self.ladders.iter().zip(wanted).map(|(ladder, wanted)| {
-            let elements = wanted?;
-            let error = ladder.error(&ladder.part(elements, &record))?;
-            (error <= aim).then_some(Trial { elements, error })
-        });
-        trials.collect()
+        trials
     }
 
-    /// The scene with a number of elements in every network, and the cheapest integrator and step that keep the error with them, where these elements were
-    /// `tried`.
-    pub(super) fn settled(&mut self, elements: &[usize], tried: bool) -> Scene {
+    /// The scene with a mesh for every network, and the cheapest integrator and step that keep the error, where these meshes were `tried`; longer steps on finer
+    /// meshes may be cheaper, which then replace them.
+    pub(super) fn settled(&mut self, meshes: &mut [Mesh], tried: bool) -> Scene {
+        let elements = &elements_of(meshes)[..];
         let mut scene = self.with(elements);
         if scene.solver.integrator != Integrator::Auto {
             return scene;
@@ -500,35 +541,79 @@ impl<'a> Search<'a> {
         if !tried {
             return scene;
         }
-        if let Some(step) = self.axial_implicit_step(elements) {
-            scene.solver.integrator = Integrator::AxialImplicit;
-            scene.solver.time_step_max = step;
-        } else {
+        let Some((step, trials)) = self.axial_implicit(meshes) else {
             scene.solver.integrator = Integrator::Leapfrog;
+            return scene;
+        };
+        for (mesh, trial) in meshes.iter_mut().zip(trials) {
+            (mesh.elements, mesh.error) = (trial.elements, trial.error);
         }
+        scene = self.with(&elements_of(meshes));
+        scene.solver.integrator = Integrator::AxialImplicit;
+        scene.solver.time_step_max = step;
         scene
     }
 
-    /// The longest step of the axial-implicit leapfrog [s] that keeps the error, where that costs less than explicit steps.
-    fn axial_implicit_step(&mut self, elements: &[usize]) -> Option<f64> {
-        let explicit = self.explicit_work(&self.with(elements))?;
-        let aim = AIM * self.scene.solver.tolerance;
-        let mut step = self.longest_step;
-        for _ in 0..=HALVINGS {
-            if explicit.axial_implicit_work(step) > WORTH * explicit.work {
-                return None;
+    /// The cheapest axial-implicit steps [s] that keep the error, on these meshes or on finer ones, where they cost less than explicit ones, with the trials of the
+    /// meshes. Errors of meshes and steps add as squares: what a failed trial tells of its step spares others.
+    fn axial_implicit(&mut self, meshes: &[Mesh]) -> Option<(f64, Vec<Trial>)> {
+        let explicit = self.explicit_work(&self.with(&elements_of(meshes)))?;
+        let (most, aim) = (WORTH * explicit.work, AIM * self.scene.solver.tolerance);
+        let mut parts: Vec<(f64, Vec<f64>)> = Vec::new();
+        for (step, expected) in self.options(meshes, &explicit, most) {
+            let fails = |(mesh, part): (&Trial, &f64)| mesh.error.hypot(*part) > CLEAR * aim;
+            let fails = |(_, part): &(f64, Vec<f64>)| expected.iter().zip(part).any(fails);
+            if parts.iter().filter(|(tried, _)| *tried <= step).any(fails) {
+                continue;
             }
-            let record = self.run(&self.with_step(elements, step)).ok()??;
-            let kept = self.ladders.iter().zip(elements).all(|(ladder, &elements)| {
-                let error = ladder.error(&ladder.part(elements, &record));
-                error.is_some_and(|error| error <= aim)
-            });
-            if kept && record.work <= WORTH * explicit.work {
-                return Some(step);
+            let trials = self.trials_with(&expected, step, most)?;
+            if trials.iter().all(|trial| trial.error <= aim) {
+                return Some((step, trials));
             }
-            step *= 0.5;
+            let part = |(trial, mesh): (&Trial, &Trial)| {
+                let square = trial.error.powi(2) - mesh.error.powi(2);
+                square.max(0.0).sqrt()
+            };
+            parts.push((step, trials.iter().zip(&expected).map(part).collect()));
         }
         None
+    }
+
+    /// Axial-implicit steps [s] and meshes, with the errors of the meshes, in the order of their cost up to `most`: the meshes found, and those of the levels
+    /// between them and the finest.
+    fn options(&self, meshes: &[Mesh], explicit: &Explicit, most: f64) -> Vec<(f64, Vec<Trial>)> {
+        let of_ladder = |(ladder, mesh): (&Ladder, &Mesh)| ladder.above(mesh);
+        let levels: Vec<Vec<Trial>> = self.ladders.iter().zip(meshes).map(of_ladder).collect();
+        let segments: usize = meshes.iter().map(|mesh| mesh.elements).sum();
+        let mut options = Vec::new();
+        for k in 0..levels.iter().map(Vec::len).max().unwrap_or(0) {
+            let at = |levels: &Vec<Trial>| levels[k.min(levels.len() - 1)];
+            let trials: Vec<Trial> = levels.iter().map(at).collect();
+            let finer: usize = trials.iter().map(|trial| trial.elements).sum();
+            let ratio = finer as f64 / segments as f64;
+            for halving in 0..=HALVINGS {
+                let step = 0.5_f64.powi(halving as i32) * self.longest_step;
+                options.push((ratio * explicit.axial_implicit_work(step), step, trials.clone()));
+            }
+        }
+        options.retain(|(work, ..)| *work <= most);
+        options.sort_by(|a, b| a.0.total_cmp(&b.0));
+        options
+            .into_iter()
+            .map(|(_, step, trials)| (step, trials))
+            .collect()
+    }
+
+    /// Errors of meshes with axial-implicit steps [s], infinite where they cost more than `most` or are unknown; none where the run fails.
+    fn trials_with(&mut self, meshes: &[Trial], step: f64, most: f64) -> Option<Vec<Trial>> {
+        let elements: Vec<usize> = meshes.iter().map(|mesh| mesh.elements).collect();
+        let record = self.run(&self.with_step(&elements, step)).ok()??;
+        let trial = |(ladder, elements): (&Ladder, usize)| {
+            let error = ladder.error(&ladder.part(elements, &record));
+            let error = error.filter(|_| record.work <= most).unwrap_or(f64::INFINITY);
+            Trial { elements, error }
+        };
+        Some(self.ladders.iter().zip(elements).map(trial).collect())
     }
 
     /// Cost of explicit steps; none where the axial-implicit leapfrog is not applicable.
@@ -545,7 +630,7 @@ impl<'a> Search<'a> {
         let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();
         Some(Explicit {
             work: steps * segments as f64,
-            element_time: segments as f64 * output.duration,
+            axial_work: axial_implicit_cost(model.lines.iter()) * segments as f64 * output.duration,
         })
     }
 
@@ -557,7 +642,7 @@ impl<'a> Search<'a> {
         for choice in simulation.choices() {
             weight = weight.max(match choice.integrator {
                 Integrator::Leapfrog => 1.0,
-                Integrator::AxialImplicit => AXIAL_IMPLICIT_COST,
+                Integrator::AxialImplicit => axial_implicit_cost(simulation.model().lines.iter()),
                 Integrator::GeneralisedAlpha if self.implicit => IMPLICIT_COST,
                 _ => return Ok(None),
             });
@@ -594,18 +679,24 @@ impl<'a> Search<'a> {
     }
 }
 
+/// A number of elements, rounded up, where it is well below those of the mesh found.
+fn worthwhile(elements: f64, found: usize) -> Option<usize> {
+    let elements = elements.ceil() as usize;
+    (elements as f64 <= FEWER * found as f64).then_some(elements)
+}
+
 /// Cost of explicit steps of a scene.
 struct Explicit {
     /// Explicit steps of an element [-].
     work: f64,
-    /// Elements of all lines, times the duration [s].
-    element_time: f64,
+    /// Cost of axial-implicit steps times their length [s].
+    axial_work: f64,
 }
 
 impl Explicit {
     /// Cost of axial-implicit steps of a length [s], in explicit steps of an element [-].
     fn axial_implicit_work(&self, step: f64) -> f64 {
-        AXIAL_IMPLICIT_COST * self.element_time / step
+        self.axial_work / step
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Of the integrators that can handle a network, the one that costs least per second of motion is chosen. The
 //! explicit leapfrog costs least per step, and uses steps up to its axial limit. Its axial-implicit variant costs
-//! about three times as much. Its steps follow from accuracy: from the axial waves of single lines and the elastic
+//! two to three times as much. Its steps follow from accuracy: from the axial waves of single lines and the elastic
 //! oscillation of free points, or, where the scene selects it, the longest that transverse waves allow under the
 //! current tensions: on lindahl_slow 0.7 times as many steps as under three times the static tension throughout, with
 //! the same errors. Generalised-α costs about fifty times as much. It handles networks joined at free points, and single lines
@@ -64,8 +64,7 @@ impl Choice {
                     false => step,
                 };
                 format!(
-                    "axial-implicit, steps up to {steps}; explicit steps would cost {AXIAL_IMPLICIT_COST} times less but axial waves would limit \
-                     them to {explicit}"
+                    "axial-implicit, steps up to {steps}; explicit steps would cost less each but axial waves would limit them to {explicit}"
                 )
             }
             Integrator::GeneralisedAlpha if IMPLICIT_COST * self.explicit.step < self.step_max => {

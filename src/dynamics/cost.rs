@@ -4,7 +4,7 @@
 //! Times per node, as the bench `step` measures them on whole communication steps of short lines; choices need their
 //! ratios and orders of magnitude only.
 
-use crate::model::{Model, Network};
+use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 use crate::statics::catenary_network;
 
@@ -21,12 +21,23 @@ const EQUILIBRIUM: f64 = 1500.0;
 /// Time of a closed-form catenary at a node [ns].
 const CATENARY: f64 = 100.0;
 
-/// Cost of an axial-implicit step over that of an explicit one [-].
-pub const AXIAL_IMPLICIT_COST: f64 = AXIAL_IMPLICIT / EXPLICIT;
 /// Cost of a step of generalised-α over that of an explicit one [-].
 pub const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
+/// Cost of an axial-implicit step over that of an explicit one for choices without trials, which cannot judge the error of longer steps [-].
+pub(super) const AXIAL_IMPLICIT_COST: f64 = AXIAL_IMPLICIT / EXPLICIT;
+/// Cost of an axial-implicit step over that of an explicit one as measured, of lines over a seabed and of others [-].
+const AXIAL_IMPLICIT_COSTS: [f64; 2] = [2.4, 3.0];
 /// Time to sum a wave component at a node [ns].
 pub(super) const COMPONENT: f64 = 5.0;
+
+/// Cost of an axial-implicit step of lines over that of an explicit one as measured [-]. Contact with the seabed costs both about the same.
+pub fn axial_implicit_cost<'a>(mut lines: impl Iterator<Item = &'a Line>) -> f64 {
+    let [over_seabed, without] = AXIAL_IMPLICIT_COSTS;
+    match lines.any(|line| line.nodes.contact.is_some()) {
+        true => over_seabed,
+        false => without,
+    }
+}
 
 /// Time of a step at a node of a network [ns].
 pub fn node_time(model: &Model, network: &Network, integrator: Integrator) -> f64 {

@@ -18,7 +18,7 @@ mod viscoelastic;
 use crate::statics::StaticsError;
 
 pub use choice::Choice;
-pub use cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST, node_time};
+pub use cost::{IMPLICIT_COST, axial_implicit_cost, node_time};
 pub use threads::{Aside, as_worker, is_worker, make_threads_aside};
 
 /// Failed step, with its place. The state is unchanged.

@@ -18,10 +18,10 @@ const FINER: usize = 4;
 const TOLERANCES: [f64; 3] = [0.05, 0.02, 0.005];
 const MOVERS: [Mover; 3] = [Mover::Scene, Mover::Velocities, Mover::Displacements];
 
-/// Errors above the tolerance without a note: scene, mover, tolerance, and the bound that holds instead [-]. The mesh keeps the tolerance over all times, but the
-/// host reads few of the snaps.
+/// Errors above the tolerance without a note: scene, mover, tolerance, and the bound that holds instead [-]. `oc4_chain`: the mesh keeps the tolerance over all
+/// times, but the host reads few of the snaps. `lindahl_fast`: displacements alone shift the instants of snaps by 1.9 %, of which 1.0 % are estimated.
 const SILENT: [(&str, Mover, f64, f64); 2] = [
-    ("oc4_chain, periods × 1.4", Mover::Velocities, 0.005, 0.0055),
+    ("lindahl_fast, periods × 0.7", Mover::Displacements, 0.02, 0.024),
     ("oc4_chain, amplitudes × 1.5", Mover::Velocities, 0.05, 0.052),
 ];
 
