@@ -35,12 +35,12 @@ const PHASES: f64 = 100.0;
 const SHIFT: f64 = 0.381_966;
 /// Elements below those of the level that are worth a trial, over them [-].
 const FEWER: f64 = 0.93;
-/// Trials between two levels [-].
-const BETWEEN: usize = 2;
-/// Ratio of an expected error to the one that is kept, above which a trial is spared [-].
-const CLEAR: f64 = 1.2;
-/// Least ratio of the elements of two meshes that are tried with the same step [-].
-const FINER_MESH: f64 = 1.08;
+/// Greatest number of trials of meshes between two levels [-].
+const TRIALS_BETWEEN: usize = 2;
+/// Ratio of the expected error to the one allowed, above which an option is not tried [-].
+const EXPECTED_MAX: f64 = 1.2;
+/// Least ratio of the elements of a finer option to those of the mesh found [-].
+const FINER_RATIO: f64 = 1.08;
 
 /// State of the search.
 pub(super) struct Search<'a> {
@@ -193,7 +193,7 @@ impl Ladder {
 
     /// A mesh that was tried, and the levels between it and the finest, with their errors: as tried, or extrapolated at the first order.
     fn above(&self, mesh: &Mesh) -> Vec<Trial> {
-        let least = FINER_MESH * mesh.elements as f64;
+        let least = FINER_RATIO * mesh.elements as f64;
         let finest = self.runs.last().map_or(0, |run| run.elements);
         let own = Trial {
             elements: mesh.elements,
@@ -504,7 +504,7 @@ impl<'a> Search<'a> {
     fn between(&mut self, aim: f64) -> Vec<Option<Trial>> {
         let mut wanted: Vec<Option<usize>> = self.ladders.iter().map(|ladder| ladder.between(aim)).collect();
         let mut trials = vec![None; wanted.len()];
-        for _ in 0..BETWEEN {
+        for _ in 0..TRIALS_BETWEEN {
             if wanted.iter().all(Option::is_none) {
                 break;
             }
@@ -555,13 +555,14 @@ impl<'a> Search<'a> {
     }
 
     /// The cheapest axial-implicit steps [s] that keep the error, on these meshes or on finer ones, where they cost less than explicit ones, with the trials of the
-    /// meshes. Errors of meshes and steps add as squares: what a failed trial tells of its step spares others.
+    /// meshes. Errors of meshes and steps add as squares, so that a failed trial gives the error of its step; options that are expected to fail by it
+    /// are left out.
     fn axial_implicit(&mut self, meshes: &[Mesh]) -> Option<(f64, Vec<Trial>)> {
         let explicit = self.explicit_work(&self.with(&elements_of(meshes)))?;
         let (most, aim) = (WORTH * explicit.work, AIM * self.scene.solver.tolerance);
         let mut parts: Vec<(f64, Vec<f64>)> = Vec::new();
         for (step, expected) in self.options(meshes, &explicit, most) {
-            let fails = |(mesh, part): (&Trial, &f64)| mesh.error.hypot(*part) > CLEAR * aim;
+            let fails = |(mesh, part): (&Trial, &f64)| mesh.error.hypot(*part) > EXPECTED_MAX * aim;
             let fails = |(_, part): &(f64, Vec<f64>)| expected.iter().zip(part).any(fails);
             if parts.iter().filter(|(tried, _)| *tried <= step).any(fails) {
                 continue;
