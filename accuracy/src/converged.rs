@@ -11,7 +11,7 @@ use moorline::scene::Scene;
 use crate::errors::{Errors, Histories, Judge, Metric};
 use crate::ladder::{self, Setting};
 use crate::timed::{Timed, Trial};
-use crate::{StudyError, judge, shortest_period};
+use crate::{StudyError, judge};
 
 /// The converged solution.
 #[derive(Debug, Clone)]
@@ -35,7 +35,7 @@ impl Converged {
     pub(crate) fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
         let name = || name.to_string();
         let mut reason = String::new();
-        for family in ladder::converged(scene, shortest_period(scene)) {
+        for family in ladder::converged(scene, scene.shortest_period()) {
             match followed(scene, family) {
                 Ok(Some(best)) => return Ok(best),
                 Ok(None) => return Err(StudyError::AtRest { name: name() }),
@@ -92,7 +92,7 @@ impl Sequence {
         };
         let (fine, _) = Trial::exact(scene, &setting)?.recorded()?;
         if let Some(coarse) = self.before.replace(fine.clone()) {
-            let judge = judge(scene, shortest_period(scene), &fine.histories);
+            let judge = judge(scene, &fine.histories);
             let one = Converged {
                 setting,
                 uncertainty: judge.uncertainty(&coarse.histories, &fine.histories),

@@ -25,7 +25,7 @@ pub mod tables;
 mod timed;
 mod verdict;
 
-use moorline::scene::{ContactLaw, Integrator, MotionPath, Scene};
+use moorline::scene::{ContactLaw, Integrator, Scene};
 
 use converged::Converged;
 pub use errors::{Errors, Histories, Judge, Metric};
@@ -45,10 +45,6 @@ pub const INTEGRATORS: [Integrator; 4] = [
     Integrator::GeneralisedAlpha,
     Integrator::QuasiStatic,
 ];
-/// Cut-off of the low-passed tension over the frequency of the fastest motion [-].
-const CUT_OFF: f64 = 5.0;
-/// Shortest period taken where the scene's motion is a table, or nothing moves [s].
-const PERIOD: f64 = 10.0;
 
 /// Code that computed a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -221,10 +217,9 @@ pub fn study(
         Some(Err(reason)) => (None, Some(reason)),
         None => (None, None),
     };
-    let mut case = Case {
-        settings: ladder::ladder(&scene, shortest_period(&scene)),
+    let case = Case {
+        settings: ladder::ladder(&scene, scene.shortest_period()),
         package: means.package.filter(|_| !ladder::is_quasi_static(&scene)),
-        by_default: Vec::new(),
         scene,
     };
     let counts = case.places().map(|place| {
@@ -238,10 +233,6 @@ pub fn study(
     let total = before + counts.iter().map(|(_, runs)| with_rounds(*runs)).sum::<usize>();
     progress(0, total);
     let converged = Converged::find(name, &case.scene)?;
-    if case.package.is_some() {
-        let scenes = TOLERANCES.map(|tolerance| Setting::by_default(tolerance).apply(&case.scene));
-        case.by_default = scenes.into();
-    }
     let mut studies = Vec::new();
     for (place, runs) in counts {
         let mut study = Study::new((name, place), &case.scene, &converged);
@@ -265,8 +256,6 @@ struct Case<'a> {
     /// The ladder offline.
     settings: Vec<Setting>,
     package: Option<&'a Package<'a>>,
-    /// The scene with default settings for every tolerance.
-    by_default: Vec<Scene>,
 }
 
 impl Case<'_> {
@@ -274,6 +263,17 @@ impl Case<'_> {
     fn places(&self) -> impl Iterator<Item = Option<f64>> + use<'_> {
         let hosts = HOST_STEPS.into_iter().filter(|_| self.package.is_some());
         std::iter::once(None).chain(hosts.map(Some))
+    }
+
+    /// The scene with default settings for every tolerance, in a host whose communication step [s] it states as its interval.
+    fn by_default(&self, step: f64) -> [Scene; TOLERANCES.len()] {
+        let mut stated = self.scene.clone();
+        stated.output.interval = step;
+        TOLERANCES.map(|tolerance| {
+            let mut chosen = Setting::by_default(tolerance).apply(&stated);
+            chosen.output.interval = self.scene.output.interval; // that of the samples
+            chosen
+        })
     }
 
     /// Number of moorline's runs.
@@ -322,7 +322,7 @@ impl Study {
         let mut hosted = Vec::new();
         match (self.host_step, case.package) {
             (Some(step), Some(package)) => {
-                hosted = self.run_in_host((&case.by_default, step), package, converged, done);
+                hosted = self.run_in_host((&case.by_default(step), step), package, converged, done);
             }
             _ => self.climb(&case.scene, &case.settings, converged, done),
         }
@@ -479,29 +479,13 @@ fn seconds(time: f64) -> String {
     }
 }
 
-fn judge(scene: &Scene, period: f64, converged: &Histories) -> Judge {
+fn judge(scene: &Scene, converged: &Histories) -> Judge {
     let samples = converged.tension.first().map_or(0, Vec::len);
     Judge {
         interval: scene.output.interval,
         from: samples / 2,
-        cut_off: CUT_OFF / period,
+        cut_off: scene.cut_off(),
     }
-}
-
-/// The shortest period [s] with which anything moves.
-fn shortest_period(scene: &Scene) -> f64 {
-    let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
-    let paths = scene.motion.values().chain(own);
-    let periods = paths.filter_map(|path| match path {
-        MotionPath::Harmonic(motion) => Some(motion),
-        _ => None,
-    });
-    let shortest = periods
-        .flat_map(|motion| motion.axes().map(|(_, sines)| sines.clone()))
-        .flatten()
-        .map(|sine| sine[1])
-        .fold(f64::INFINITY, f64::min);
-    if shortest.is_finite() { shortest } else { PERIOD }
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 use moorline::scene::{Integrator, MotionPath, Scene};
 
 use crate::errors::{Errors, Histories, Judge, Metric};
+use crate::judge;
 use crate::ladder::Setting;
 use crate::timed::Trial;
-use crate::{judge, shortest_period};
 
 /// Factors on all periods, tried until the quasi-static mode is good [-].
 const FACTORS: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
@@ -44,7 +44,7 @@ pub(crate) fn slow(scene: &Scene) -> Vec<Slow> {
 }
 
 fn compared(scene: &Scene, factor: f64) -> Option<Slow> {
-    let period = shortest_period(scene);
+    let period = scene.shortest_period();
     let step = Some(period / STEPS_PER_PERIOD);
     let with = |integrator| {
         let setting = Setting::new(ELEMENTS, integrator, step).on_seabed_as_given();
@@ -52,7 +52,7 @@ fn compared(scene: &Scene, factor: f64) -> Option<Slow> {
     };
     let dynamic = with(Integrator::AxialImplicit).or_else(|| with(Integrator::Auto))?;
     let quasi_static = with(Integrator::QuasiStatic)?;
-    let judge: Judge = judge(scene, period, &dynamic);
+    let judge: Judge = judge(scene, &dynamic);
     Some(Slow {
         factor,
         period,

@@ -1,7 +1,8 @@
-//! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, or the positions of three of its points.
+//! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, low-passed or not, or the positions of three of its points.
 
 use super::search::driven;
 use crate::math::hermite::Hermite;
+use crate::math::low_pass::low_pass;
 use crate::math::shape_preserving::{End, smooth_slopes};
 use crate::model::Model;
 use crate::scene::{Scene, ToleranceOf};
@@ -25,22 +26,35 @@ pub(super) struct History {
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     /// Tension at an end, 0 for A.
-    Tension { end: usize },
+    Tension { end: usize, filter: Option<Filter> },
     /// Positions on a line of a length [m].
     Positions { length: f64 },
+}
+
+/// Filter of a history.
+#[derive(Debug, Clone, Copy)]
+struct Filter {
+    /// Interval of the samples [s].
+    interval: f64,
+    /// [Hz]
+    cut_off: f64,
 }
 
 impl History {
     /// An empty history of a line.
     pub(super) fn of(scene: &Scene, model: &Model, line: usize) -> History {
         let sections = scene.lines[line].sections.iter();
+        let filter = Filter {
+            interval: scene.output.interval,
+            cut_off: scene.cut_off(),
+        };
+        let of_tension = |filter| Kind::Tension {
+            end: driven(model, line),
+            filter,
+        };
         let (kind, count) = match scene.solver.tolerance_of {
-            ToleranceOf::Tension => (
-                Kind::Tension {
-                    end: driven(model, line),
-                },
-                1,
-            ),
+            ToleranceOf::Tension => (of_tension(None), 1),
+            ToleranceOf::LowPassedTension => (of_tension(Some(filter)), 1),
             ToleranceOf::Position => {
                 let length = sections.map(|section| section.length).sum();
                 (Kind::Positions { length }, 3 * PLACES.len())
@@ -55,7 +69,7 @@ impl History {
     /// Adds the present state of the line.
     pub(super) fn add(&mut self, simulation: &Simulation, line: usize) {
         match self.kind {
-            Kind::Tension { end: 0 } => self.series[0].push(simulation.tension_a(line)),
+            Kind::Tension { end: 0, .. } => self.series[0].push(simulation.tension_a(line)),
             Kind::Tension { .. } => self.series[0].push(simulation.tension_b(line)),
             Kind::Positions { .. } => {
                 let series = self.series.iter_mut();
@@ -63,6 +77,17 @@ impl History {
                     .zip(positions(simulation, line))
                     .for_each(|(series, x)| series.push(x));
             }
+        }
+    }
+
+    /// Filters the complete history where its kind requires it.
+    pub(super) fn complete(&mut self) {
+        if let Kind::Tension {
+            filter: Some(Filter { interval, cut_off }),
+            ..
+        } = self.kind
+        {
+            self.series[0] = low_pass(&self.series[0], interval, cut_off);
         }
     }
 

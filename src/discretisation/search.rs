@@ -4,7 +4,7 @@ use super::history::History;
 use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial, elements_of, short_sections};
 use crate::dynamics::{IMPLICIT_COST, axial_implicit_cost};
 use crate::model::{Line, Model, Role};
-use crate::scene::{Integrator, MotionPath, Scene};
+use crate::scene::{Integrator, MotionPath, Scene, ToleranceOf};
 use crate::simulation::{Error, Simulation};
 
 /// Elements of a line alone that are tried [-].
@@ -29,6 +29,8 @@ const PERIODS: f64 = 20.0;
 const DURATION: f64 = 200.0;
 /// Samples in a period of the fastest sine, at least [-].
 const SAMPLES: f64 = 25.0;
+/// The same for a low-passed tension [-]: the filter is to see the frequencies that it removes.
+const SAMPLES_TO_FILTER: f64 = 100.0;
 /// Samples in a period that are dense enough for a snap at any phase [-]. Fewer samples have other phases in every period.
 const PHASES: f64 = 100.0;
 /// Fraction of the interval by which the samples move from one period to the next [-]: 1 − 1/golden ratio, which spreads them evenly.
@@ -259,7 +261,11 @@ impl<'a> Search<'a> {
         let output = &scene.output;
         let mut scene = scene.clone();
         scene.output.duration = output.duration.min(times.duration);
-        let interval = output.interval.min(times.shortest / SAMPLES);
+        let samples = match scene.solver.tolerance_of {
+            ToleranceOf::LowPassedTension => SAMPLES_TO_FILTER,
+            ToleranceOf::Tension | ToleranceOf::Position => SAMPLES,
+        };
+        let interval = output.interval.min(times.shortest / samples);
         scene.output.interval = spread(interval, times.shortest);
         let start = (0.5 * scene.output.duration).max(times.ramp.min(0.75 * scene.output.duration));
         Some(Search {
@@ -675,6 +681,7 @@ impl<'a> Search<'a> {
             let histories = record.histories.iter_mut().enumerate();
             histories.for_each(|(line, history)| history.add(&simulation, line));
         }
+        record.histories.iter_mut().for_each(History::complete);
         self.work += record.work;
         Ok(Some(record))
     }
@@ -714,27 +721,21 @@ struct MotionTimes {
 impl MotionTimes {
     /// None for a scene that gives no motion.
     fn of(scene: &Scene) -> Option<MotionTimes> {
-        let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
-        let paths: Vec<&MotionPath> = scene.motion.values().chain(own).collect();
-        let (mut shortest, mut longest, mut ramp) = (f64::INFINITY, 0.0_f64, 0.0_f64);
-        let mut tables = scene.water.as_ref().is_some_and(|water| water.waves.is_some());
-        for path in &paths {
-            let MotionPath::Harmonic(motion) = path else {
-                tables = true;
-                continue;
-            };
-            ramp = ramp.max(motion.ramp.unwrap_or(0.0));
-            for sine in motion.axes().iter().flat_map(|(_, sines)| sines.iter()) {
-                (shortest, longest) = (shortest.min(sine[1]), longest.max(sine[1]));
-            }
-        }
-        let duration = if tables || longest == 0.0 {
-            DURATION
-        } else {
-            PERIODS * longest
+        scene.motions().next()?;
+        let in_waves = scene.water.as_ref().is_some_and(|water| water.waves.is_some());
+        let ramps = scene.motions().map(|path| match path {
+            MotionPath::Harmonic(motion) => Some(motion.ramp.unwrap_or(0.0)),
+            MotionPath::File(_) | MotionPath::Table(_) => None,
+        });
+        let ramps: Vec<Option<f64>> = ramps.collect();
+        let ramp = ramps.iter().flatten().copied().fold(0.0, f64::max);
+        let slowest = scene.periods().reduce(f64::max);
+        let duration = match slowest {
+            Some(period) if !in_waves && ramps.iter().all(Option::is_some) => PERIODS * period,
+            _ => DURATION,
         };
-        (!paths.is_empty()).then_some(MotionTimes {
-            shortest,
+        Some(MotionTimes {
+            shortest: scene.periods().fold(f64::INFINITY, f64::min),
             ramp,
             duration: ramp + duration,
         })

@@ -64,6 +64,7 @@ pub mod nearest;
 mod notes;
 pub mod page;
 pub mod path;
+mod periods;
 mod places;
 pub mod plausibility;
 mod point;

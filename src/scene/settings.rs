@@ -44,6 +44,8 @@ choice! {
     pub enum ToleranceOf {
         /// Tension at the driven end of every line.
         Tension = "tension",
+        /// The same tension, low-passed: below five times the frequency of the fastest sine of the motion, or 0.5 Hz where it has none.
+        LowPassedTension = "low_passed_tension",
         /// Positions of the points at a quarter, a half and three quarters of every line's length.
         Position = "position",
     }
@@ -54,6 +56,7 @@ impl ToleranceOf {
     pub(super) fn in_words(self) -> &'static str {
         match self {
             ToleranceOf::Tension => "fairlead tension",
+            ToleranceOf::LowPassedTension => "low-passed fairlead tension",
             ToleranceOf::Position => "positions along lines",
         }
     }

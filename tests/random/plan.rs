@@ -141,10 +141,12 @@ impl Plan {
                 true => Threads::Number(2),
                 false => Threads::Auto,
             },
-            tolerance_of: match dice.chance(0.3) {
-                true => ToleranceOf::Position,
-                false => ToleranceOf::Tension,
-            },
+            tolerance_of: dice.pick(&[
+                ToleranceOf::Tension,
+                ToleranceOf::Tension,
+                ToleranceOf::LowPassedTension,
+                ToleranceOf::Position,
+            ]),
         }
     }
 }

@@ -14,22 +14,12 @@ mod survey;
 use crate::common::*;
 use moorline::discretisation::{self, Discretisation, discretised};
 use moorline::model::{End, Line, Model, Role};
-use moorline::scene::{Integrator, MotionPath, Scene};
+use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use scenes::*;
 
 /// Elements of the converged solution, and its steps to the shortest period [-].
 const CONVERGED: (usize, f64) = (640, 4000.0);
-
-/// The shortest period of a scene's motion [s].
-fn shortest_period(scene: &Scene) -> f64 {
-    let paths = scene.motion.values();
-    let sines = paths.flat_map(|path| match path {
-        MotionPath::Harmonic(motion) => motion.axes().map(|(_, sines)| sines.clone()).concat(),
-        _ => Vec::new(),
-    });
-    sines.map(|sine| sine[1]).fold(f64::INFINITY, f64::min)
-}
 
 /// Fraction of the interval by which a period is longer than a whole number of readings [-]. Readings have other phases in every period, so that no snap is
 /// missed every time.
@@ -37,7 +27,7 @@ const FRACTION: f64 = 0.381_966;
 
 /// Interval of readings [s], somewhat shorter than that of the scene's output.
 fn reading_interval(scene: &Scene) -> f64 {
-    let period = shortest_period(scene);
+    let period = scene.shortest_period();
     period / ((period / scene.output.interval).round() + FRACTION)
 }
 
@@ -54,7 +44,7 @@ fn recorded(scene: &Scene) -> (History, Simulation) {
 fn converged(scene: &Scene) -> Scene {
     let (elements, steps) = CONVERGED;
     let fine = with_elements(scene.clone(), elements);
-    with_integrator(fine, Integrator::AxialImplicit, shortest_period(scene) / steps)
+    with_integrator(fine, Integrator::AxialImplicit, scene.shortest_period() / steps)
 }
 
 /// Source of the motion of the ends of lines.

@@ -1,7 +1,7 @@
 //! Selection of meshes by trials: short sections, meshes that cannot be tried, copies of a line, packaged scenes, positions.
 
 use super::scenes::{crowfoot, deep_polyester, moved};
-use super::{CONVERGED, errors_between, recorded, settled, shortest_period, tensions};
+use super::{CONVERGED, errors_between, recorded, settled, tensions};
 use crate::common::*;
 use moorline::discretisation::{self, discretised};
 use moorline::scene::{Integrator, Scene, ToleranceOf};
@@ -83,7 +83,7 @@ fn few_samples_in_a_period_give_the_errors_of_trials_that_many_give() {
     for amplitude in [1.0, 1.5] {
         let few = moved("lindahl_fast", [amplitude, 1.0]);
         let mut many = few.clone();
-        many.output.interval = shortest_period(&few) / 200.0;
+        many.output.interval = few.shortest_period() / 200.0;
         let [few, many] = [few, many].map(|scene| settled(&scene, 0.05).meshes[0].trials.clone());
         // on finer meshes some snaps are shorter than the time between few samples
         let coarse = few.iter().zip(&many).filter(|(few, _)| few.elements <= 56);
@@ -226,7 +226,7 @@ fn the_trials_are_described_in_words() {
 /// RMS difference of tension, and of the middle's position, of runs with twice the elements each time.
 fn refined(name: &str, elements: &[usize]) -> Vec<[f64; 2]> {
     let scene = shipped(name);
-    let step = shortest_period(&scene) / CONVERGED.1;
+    let step = scene.shortest_period() / CONVERGED.1;
     let fine = |n: &usize| {
         let fine = with_elements(scene.clone(), *n);
         recorded(&with_integrator(fine, Integrator::AxialImplicit, step)).0

@@ -50,7 +50,7 @@ fn results(case: &Case, tolerances: &[f64], converged: &Scene) -> [Vec<Kept>; 3]
     let (name, scene) = case;
     let verbose = std::env::var("SCENES").is_ok();
     let settled: Vec<Discretisation> = tolerances.iter().map(|&part| settled(scene, part)).collect();
-    let step = shortest_period(scene) / POINTS;
+    let step = scene.shortest_period() / POINTS;
     let count = 2 * (0.5 * scene.output.duration / step) as usize;
     let own_motion = |scene: &Scene| run_by(Mover::Scene, scene, step / FINER as f64, FINER * count);
     let exact = own_motion(converged).tensions;

@@ -1,0 +1,36 @@
+//! Periods of the motion of a scene, and the frequency above which its tension does not count if it is low-passed.
+
+use super::{MotionPath, Scene};
+
+/// Cut-off of the low-passed tension over the frequency of the fastest sine of the motion [-].
+const CUT_OFF: f64 = 5.0;
+/// Period that is assumed where no sine moves anything [s]: that of common waves.
+const PERIOD: f64 = 10.0;
+
+impl Scene {
+    /// Motions of vessels and points.
+    pub fn motions(&self) -> impl Iterator<Item = &MotionPath> {
+        let own = self.points.iter().filter_map(|point| point.motion.as_ref());
+        self.motion.values().chain(own)
+    }
+
+    /// Periods [s] of all sines of the motions.
+    pub fn periods(&self) -> impl Iterator<Item = f64> {
+        let harmonic = self.motions().filter_map(|path| match path {
+            MotionPath::Harmonic(motion) => Some(motion),
+            MotionPath::File(_) | MotionPath::Table(_) => None,
+        });
+        let axes = harmonic.flat_map(|motion| motion.axes().map(|(_, sines)| sines));
+        axes.flatten().map(|sine| sine[1])
+    }
+
+    /// Shortest period of the motions [s]; 10 s where they have no sines.
+    pub fn shortest_period(&self) -> f64 {
+        self.periods().reduce(f64::min).unwrap_or(PERIOD)
+    }
+
+    /// Cut-off of the low-passed tension [Hz]: five times the frequency of the fastest sine of the motions, or 0.5 Hz where they have none.
+    pub fn cut_off(&self) -> f64 {
+        CUT_OFF / self.shortest_period()
+    }
+}
