@@ -3,11 +3,11 @@
 //! A scene is discretised, its static equilibrium is solved, and [`Simulation::advance`] then steps from one communication point to the next. Coupled
 //! points follow the displacements of [`Simulation::set_displacement`], or the scene's motion after [`Simulation::follow_scene`].
 
+mod axial_response;
 mod coupling;
 mod flow;
 mod input_error;
 mod inputs;
-mod light_end;
 mod paths;
 mod prescribed;
 mod results;
@@ -28,11 +28,11 @@ use crate::model::{Line, LineState, Model, State, WaveSpans};
 use crate::scene::{InitialShape, Scene, SceneError, few};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
+use axial_response::MovedLine;
 use coupling::StepStart;
 use flow::Course;
 use input_error::InputRecord;
 use inputs::Inputs;
-use light_end::LightEnd;
 use paths::Paths;
 use prescribed::{MotionSource, PrescribedMotion};
 use results::Reactions;
@@ -97,7 +97,9 @@ pub struct Simulation {
     prescribed: PrescribedMotion,
     reactions: Reactions,
     scale: Scale,
-    light_end: Option<LightEnd>,
+    /// Record of inputs with the sample of the present step.
+    next_record: InputRecord,
+    moved_lines: Vec<MovedLine>,
     catenaries: Vec<Option<Catenary>>,
 }
 
@@ -139,7 +141,8 @@ impl Simulation {
             prescribed: PrescribedMotion::new(&model, false, work.choices()),
             reactions: Reactions::new(&model),
             scale: Scale::new(&model),
-            light_end: LightEnd::new(&model, &snapshot.state),
+            next_record: InputRecord::default(),
+            moved_lines: MovedLine::all(&model, &snapshot.state),
             snapshot,
             work,
             model,
@@ -292,7 +295,7 @@ impl Simulation {
     /// Integrates along the paths laid out for a step [s].
     fn integrate(&mut self, step: f64) -> Result<(), StepError> {
         let before = self.release_lines();
-        let record = self.record_inputs();
+        self.record_inputs();
         self.swap_flow();
         let model = &*self.model;
         let follows_scene = self.snapshot.follows_scene;
@@ -310,7 +313,7 @@ impl Simulation {
         }
         let done = advanced?;
         self.snapshot.counters = done.counters;
-        self.snapshot.input_record = record;
+        std::mem::swap(&mut self.snapshot.input_record, &mut self.next_record);
         self.snapshot.ahead = 0.0;
         self.snapshot.last_step = step;
         self.keep_flow();

@@ -11,9 +11,9 @@
 //!
 //! √((2.5 e)² + (A Z ⟨|J|⟩h/12 / σ)²).
 //!
-//! with the amplification A by axial modes at the frequency of the communication points ([`super::light_end`]). The second part is evaluated for
-//! the line with the greatest ratio of impedance to tension at rest, while this line is tight. It dominates where the
-//! tension is small and follows the acceleration of the end, as on cables and risers. ⟨|J|⟩ is used in place of √⟨J²⟩, so that one jump in the
+//! with the amplification A by axial modes at the frequency of the communication points ([`super::axial_response`]). The second part is that of the line
+//! where it is greatest; it is recorded for every line while that is tight, over σ or a hundredth of the mean tension if that is more, and is the sum over both ends
+//! where a host moves both. It dominates where the tension is small and follows the acceleration of the end, as on cables and risers. ⟨|J|⟩ is used in place of √⟨J²⟩, so that one jump in the
 //! acceleration of the motion itself does not count for ten periods. A path that is interpolated passes through the samples, m = 0; its velocities,
 //! where the host gives none, have errors δ too, and δ = J h/12 takes the place of m/h. A path that jumps has jumps m.
 //!
@@ -31,7 +31,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-use super::light_end::LightEnd;
+use super::axial_response::MovedLine;
 use super::paths::Paths;
 use crate::dynamics::motion::AxesPath;
 use crate::model::{Model, State};
@@ -49,16 +49,24 @@ const PERIODS_MIN: f64 = 3.0;
 const SAMPLES_MIN: usize = 8;
 /// Share of the scene's size below which an error has no effect [-].
 const NEGLIGIBLE: f64 = 1e-7;
-/// Standard deviation of tension over its mean, below which the tension counts as constant [-].
-const CONSTANT: f64 = 1e-6;
+/// Least standard deviation of a tension to which its errors are related, over its mean [-], as in the trials of meshes.
+const STILL: f64 = 0.01;
 /// Part of the tolerance that the inputs may take [-]: the mesh takes 0.8, and squares of the errors add.
 const PART: f64 = 0.6;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;
 
 /// Mean squares of the motion given and of the error of its path.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct InputRecord {
+    motion: MotionRecord,
+    /// Of the lines that a host moves.
+    lines: Vec<LineRecord>,
+}
+
+/// Record of the motion given.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct MotionRecord {
     /// Samples so far, up to the number not counted [-].
     samples: usize,
     /// Time in the sums [s].
@@ -69,20 +77,25 @@ pub(super) struct InputRecord {
     speed: f64,
     /// Σ a² h [m²/s³].
     bend: f64,
-    /// Σ A |δ| h of the light end, amplified by the axial modes of its line [m].
-    drift: f64,
-    /// Σ T h [N s] and Σ T² h [N² s] of its tension.
-    tension: [f64; 2],
     /// Periods since the start [-].
     periods: f64,
     /// The last communication step [s].
     step: f64,
 }
 
+/// Record of a line.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct LineRecord {
+    /// Σ A Z |δ| h [N s].
+    shaken: f64,
+    /// Σ T h [N s] and Σ T² h [N² s] of its tension.
+    tension: [f64; 2],
+}
+
 /// Squares of one sample, summed over all bodies: those of m, v and a.
 type Squares = [f64; 3];
 
-impl InputRecord {
+impl MotionRecord {
     /// Counts a sample; returns whether it is recorded.
     fn counts(&mut self) -> bool {
         let recorded = self.samples >= SAMPLES_MIN;
@@ -90,9 +103,16 @@ impl InputRecord {
         recorded
     }
 
-    /// Records the newest sample of the paths `after`, which continue those `before`, at the end of the first of two `gaps` between samples [s].
+    /// Records the newest sample of the paths `after`, which continue those `before`, at the end of the first of two `gaps` between samples [s]. Returns the part
+    /// of the earlier sums that is kept.
     #[inline(never)]
-    fn take(&mut self, levers: &[f64], [before, after]: [&Paths; 2], gaps: [f64; 2], interpolates: bool) {
+    fn take(
+        &mut self,
+        levers: &[f64],
+        [before, after]: [&Paths; 2],
+        gaps: [f64; 2],
+        interpolates: bool,
+    ) -> f64 {
         let mut squares = [0.0; 3];
         let mut add = |before: &AxesPath, after: &AxesPath, lever: f64| {
             let missed = match interpolates {
@@ -112,30 +132,20 @@ impl InputRecord {
             add(&before.0[0], &after.0[0], 1.0);
             add(&before.0[1], &after.0[1], lever);
         }
-        self.add(squares, gaps[0]);
+        self.add(squares, gaps[0])
     }
 
-    /// Records the light end with its tension in a state, from the paths before and after it.
-    fn watch(&mut self, end: &mut LightEnd, model: &Model, state: &State, paths: [&Paths; 2], step: f64) {
-        let tension = end.tension(model, state);
-        if tension > 0.0 {
-            self.drift += step * step / JUMP * end.jump(paths) * end.amplification(step);
-        }
-        self.tension[0] += step * tension;
-        self.tension[1] += step * tension * tension;
-    }
-
-    fn add(&mut self, [missed, speed, bend]: Squares, step: f64) {
+    /// Adds the squares of a sample after a step [s]; returns the part of the earlier sums that is kept.
+    fn add(&mut self, [missed, speed, bend]: Squares, step: f64) -> f64 {
         let turned = step * self.frequency() / TAU;
         let kept = (1.0 - turned / PERIODS).max(0.5);
         self.time = kept * self.time + step;
         self.missed = kept * self.missed + missed / step;
         self.speed = kept * self.speed + step * speed;
         self.bend = kept * self.bend + step * bend;
-        self.drift *= kept;
-        self.tension = self.tension.map(|sum| kept * sum);
         self.periods += turned;
         self.step = step;
+        kept
     }
 
     /// Frequency of the motion [rad/s].
@@ -146,21 +156,63 @@ impl InputRecord {
         }
     }
 
-    /// Estimated error of tension over its variation [-]; 0 where the error is negligible compared with a size [m].
-    fn error(&self, size: f64, light: Option<&LightEnd>) -> f64 {
+    /// Estimated relative error of the motion [-]; 0 where the error is negligible compared with a size [m].
+    fn error(&self, size: f64) -> f64 {
         let negligible = NEGLIGIBLE * size / self.step;
-        if self.speed <= 0.0 || self.missed <= negligible * negligible * self.time {
-            return 0.0;
+        match self.speed <= 0.0 || self.missed <= negligible * negligible * self.time {
+            true => 0.0,
+            false => (self.missed / self.speed).sqrt(),
         }
-        let [mean, square] = self.tension.map(|sum| sum / self.time);
-        let variance = square - mean * mean;
-        let of_waves = match light {
-            Some(end) if variance > (CONSTANT * mean).powi(2) => {
-                end.impedance * self.drift / self.time / variance.sqrt()
-            }
-            _ => 0.0,
+    }
+}
+
+impl LineRecord {
+    /// Records a line with its tension in a state, from the paths before and after it; `kept` is the part of the earlier sums that is kept.
+    fn take(
+        &mut self,
+        line: &mut MovedLine,
+        (model, state): (&Model, &State),
+        paths: [&Paths; 2],
+        (step, kept): (f64, f64),
+    ) {
+        let tension = line.tension(model, state);
+        let shake = match tension > 0.0 {
+            true => line.shake(paths, step),
+            false => 0.0,
         };
-        (GAIN * (self.missed / self.speed).sqrt()).hypot(of_waves)
+        self.shaken = kept * self.shaken + step * step / JUMP * shake;
+        self.tension[0] = kept * self.tension[0] + step * tension;
+        self.tension[1] = kept * self.tension[1] + step * tension * tension;
+    }
+
+    /// Estimated error of tension by axial waves over its variation [-], after a `time` in the sums [s].
+    fn error(&self, time: f64) -> f64 {
+        let [mean, square] = self.tension.map(|sum| sum / time);
+        let deviation = (square - mean * mean).max(0.0).sqrt();
+        let scale = deviation.max(STILL * mean.abs());
+        match scale > 0.0 {
+            true => self.shaken / time / scale,
+            false => 0.0,
+        }
+    }
+}
+
+impl InputRecord {
+    /// Copies another record, without allocation where there is room.
+    fn follow(&mut self, other: &InputRecord) {
+        self.motion = other.motion;
+        self.lines.clone_from(&other.lines);
+    }
+
+    /// Estimated error of tension over its variation [-]; 0 where the error of the motion is negligible compared with a size [m].
+    fn error(&self, size: f64) -> f64 {
+        match self.motion.error(size) {
+            0.0 => 0.0,
+            of_motion => {
+                let of_lines = self.lines.iter().map(|line| line.error(self.motion.time));
+                (GAIN * of_motion).hypot(of_lines.fold(0.0, f64::max))
+            }
+        }
     }
 }
 
@@ -172,35 +224,36 @@ fn rates([newest, last, second]: [Vector3<f64>; 3], gaps: [f64; 2]) -> [Vector3<
 }
 
 impl Simulation {
-    /// Record including the sample of the next step, whose paths are laid out.
-    pub(super) fn record_inputs(&mut self) -> InputRecord {
+    /// Writes the record that includes the sample of the next step, whose paths are laid out.
+    pub(super) fn record_inputs(&mut self) {
         let (snapshot, paths) = (&self.snapshot, [&*self.snapshot.paths, &*self.paths]);
-        let mut record = snapshot.input_record;
+        let record = &mut self.next_record;
+        record.follow(&snapshot.input_record);
         if snapshot.follows_scene {
-            return record;
+            return;
         }
         if let Some(gaps) = paths[1].gaps()
-            && record.counts()
+            && record.motion.counts()
         {
             let interpolates = self.model.solver.input_reconstruction == Reconstruction::Interpolate;
-            record.take(&self.scale.levers, paths, gaps, interpolates);
-            if let Some(end) = &mut self.light_end {
-                record.watch(end, &self.model, &snapshot.state, paths, gaps[0]);
+            let kept = record.motion.take(&self.scale.levers, paths, gaps, interpolates);
+            let at = (&*self.model, &snapshot.state);
+            record.lines.resize(self.moved_lines.len(), LineRecord::default());
+            for (record, line) in record.lines.iter_mut().zip(&mut self.moved_lines) {
+                record.take(line, at, paths, (gaps[0], kept));
             }
         }
-        record
     }
 
     /// Estimated error of tension, RMS over its standard deviation, from the path between the host's samples over
     /// the last ten periods of the motion [-].
     pub fn input_error(&self) -> f64 {
-        let light = self.light_end.as_ref();
-        self.snapshot.input_record.error(self.scale.size, light)
+        self.snapshot.input_record.error(self.scale.size)
     }
 
     /// Warning on a host's inputs if the error of the path between them exceeds what the tolerance allows.
     pub fn input_warning(&self) -> Option<String> {
-        let record = &self.snapshot.input_record;
+        let record = &self.snapshot.input_record.motion;
         let (error, allowed) = (self.input_error(), PART * self.model.solver.tolerance);
         if error <= allowed || record.periods < PERIODS_MIN {
             return None;

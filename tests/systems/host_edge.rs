@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::common::{assert_says, set_motion, shipped, start};
+use crate::common::{assert_says, scene, set_motion, shipped, start};
 use moorline::model::Body;
 use moorline::scene::Reconstruction;
 use moorline::simulation::{Error, Simulation};
@@ -158,6 +158,43 @@ fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
             }
         }
     }
+}
+
+/// A light hose beside the riser of `lazy_wave`, from its hang-off to another floater at rest.
+const HOSE: &str = "
+    [line_types.hose]
+    mass = 60.0
+    diameter = 0.25
+    axial_stiffness = 1.0e8
+    damping_ratio = 0.05
+    drag_normal = 1.1
+    [[points]]
+    name = 'tanker'
+    position = [-120.0, 0.0, -20.0]
+    kind = 'fixed'
+    [[lines]]
+    name = 'hose'
+    from = 'tanker'
+    to = 'hang_off'
+    sections = [{ type = 'hose', length = 150.0, elements = 10 }]";
+
+#[test]
+fn the_resonance_of_a_line_is_estimated_beside_a_lighter_one_too() {
+    let text = include_str!("../../scenes/lazy_wave.toml");
+    let both = text.replace("[motion]", &format!("{HOSE}\n[motion]"));
+    let [alone, both] = [text, &both[..]].map(|text| hosted(&start(&scene(text)), 9.0, 21.0, false));
+    assert!(
+        both.error > 1.0 && both.estimate > 0.9 * both.error,
+        "{} estimated {}",
+        both.error,
+        both.estimate
+    );
+    assert!(
+        (both.estimate / alone.estimate - 1.0).abs() < 0.05,
+        "{} beside, {} alone",
+        both.estimate,
+        alone.estimate
+    );
 }
 
 #[test]

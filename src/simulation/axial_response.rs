@@ -1,4 +1,4 @@
-//! The end whose tension is most sensitive to errors of a host's motion, and its impedance at the frequency of the communication points.
+//! Ends of lines that a host moves, and their impedance at the frequency of the communication points.
 //!
 //! The acceleration of the path jumps at communication points and changes linearly between them. Its velocity errors are periodic with the communication step
 //! h, with amplitudes as 1/k² at the frequencies 2πk/h. With the impedance Z(ω) of the line and that of a long line, Z₀ = √(EA m_t), the
@@ -16,7 +16,7 @@ use nalgebra::{Complex, Vector3};
 
 use super::paths::Paths;
 use crate::dynamics::reaction;
-use crate::model::{End, Line, Model, Role, State};
+use crate::model::{End, Line, Model, Point, Role, State};
 use crate::physics::axial_wave::{self, TensionRow};
 use crate::physics::slender::Slender;
 use crate::scene::Integrator;
@@ -28,14 +28,21 @@ const HARMONICS: i32 = 4;
 /// Trailing bits of a communication step that its amplification does not depend on: steps within 1.6 % of each other share one.
 const BITS: u32 = f64::MANTISSA_DIGITS - 1 - 6;
 
-/// End with the greatest ratio of impedance to tension at rest among the ends that a host moves.
+/// A line of which a host moves an end, or both.
 #[derive(Debug, Clone)]
-pub(super) struct LightEnd {
+pub(super) struct MovedLine {
     line: usize,
+    /// Its moved ends, that at B first.
+    ends: Vec<MovedEnd>,
+}
+
+/// An end that a host moves.
+#[derive(Debug, Clone)]
+struct MovedEnd {
     end: End,
-    /// Impedance of axial waves, √(EA m_t) [N s/m].
-    pub impedance: f64,
     mover: Mover,
+    /// Impedance of axial waves, √(EA m_t) [N s/m].
+    impedance: f64,
     /// Equations of the tensions, from the other end to this one.
     rows: Vec<TensionRow>,
     /// Mass of the half node [kg].
@@ -55,49 +62,58 @@ enum Mover {
     Vessel(usize, f64),
 }
 
-impl LightEnd {
-    /// Returns the light end of a model at rest; `None` if a host moves no line with axial waves.
-    pub(super) fn new(model: &Model, at_rest: &State) -> Option<LightEnd> {
+impl MovedLine {
+    /// Lines of a model at rest with axial waves that a host moves.
+    pub(super) fn all(model: &Model, at_rest: &State) -> Vec<MovedLine> {
         if model.solver.integrator == Integrator::QuasiStatic {
-            return None;
+            return Vec::new();
         }
-        let (mut coupled, mut ends) = (0, Vec::new());
-        for point in &model.points {
-            let mover = match &point.role {
-                Role::Coupled { .. } => Mover::Point(coupled),
-                Role::Carried { vessel, arm } => Mover::Vessel(*vessel, arm.norm()),
-                _ => continue,
-            };
-            coupled += usize::from(matches!(mover, Mover::Point(_)));
-            let attached = point.attached.iter();
-            let attached = attached.filter(|(line, _)| model.lines[*line].beam.is_none());
-            ends.extend(attached.map(|&(line, end)| (line, end, mover)));
-        }
-        let ratio = |&(line, end, _): &(usize, End, Mover)| {
-            impedance(&model.lines[line], end) / tension(model, at_rest, line, end).max(f64::MIN_POSITIVE)
-        };
-        let (line, end, mover) = ends.into_iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
-        let (rows, mass) = rows(model, at_rest, line, end);
-        Some(LightEnd {
+        let movers = movers(model);
+        let lines = model.lines.iter().enumerate();
+        let lines = lines.filter(|(_, line)| line.beam.is_none());
+        let lines = lines.map(|(line, data)| MovedLine {
             line,
-            end,
-            impedance: impedance(&model.lines[line], end),
-            mover,
-            rows,
-            mass,
-            beyond: beyond(model, line, end),
-            latest: (0, 1.0),
-        })
+            ends: [End::B, End::A]
+                .into_iter()
+                .filter_map(|end| {
+                    let mover = movers[data.ends[end as usize]]?;
+                    Some(MovedEnd::new(model, at_rest, (line, end), mover))
+                })
+                .collect(),
+        });
+        lines.filter(|line| !line.ends.is_empty()).collect()
     }
 
-    /// Tension of its segment [N].
+    /// Tension of the segment at its moved end [N].
     pub(super) fn tension(&self, model: &Model, state: &State) -> f64 {
-        tension(model, state, self.line, self.end)
+        let (line, state) = (&model.lines[self.line], &state.lines[self.line]);
+        let segment = at(line, self.ends[0].end).1;
+        reaction::tension(line, state, segment, model.solver.negative_tension)
     }
 
-    /// Jump of its acceleration between two paths [m/s²].
-    pub(super) fn jump(&self, [before, after]: [&Paths; 2]) -> f64 {
-        match self.mover {
+    /// Sum of A Z |J| over its moved ends [N/s] between two paths, with communication steps of a length [s].
+    pub(super) fn shake(&mut self, paths: [&Paths; 2], step: f64) -> f64 {
+        let ends = self.ends.iter_mut();
+        ends.map(|end| end.impedance * end.mover.jump(paths) * end.amplification(step))
+            .sum()
+    }
+}
+
+/// Sources of the motion of the points that a host moves.
+fn movers(model: &Model) -> Vec<Option<Mover>> {
+    let mut coupled = 0..;
+    let mover = |point: &Point| match &point.role {
+        Role::Coupled { .. } => coupled.next().map(Mover::Point),
+        Role::Carried { vessel, arm } => Some(Mover::Vessel(*vessel, arm.norm())),
+        _ => None,
+    };
+    model.points.iter().map(mover).collect()
+}
+
+impl Mover {
+    /// Jump of the acceleration between two paths [m/s²].
+    fn jump(self, [before, after]: [&Paths; 2]) -> f64 {
+        match self {
             Mover::Point(index) => before.points[index].0.jump(&after.points[index].0),
             Mover::Vessel(index, lever) => {
                 let [before, after] = [before, after].map(|paths| &paths.vessels[index].0);
@@ -106,9 +122,24 @@ impl LightEnd {
             }
         }
     }
+}
+
+impl MovedEnd {
+    fn new(model: &Model, at_rest: &State, (line, end): (usize, End), mover: Mover) -> MovedEnd {
+        let (rows, mass) = rows(model, at_rest, line, end);
+        MovedEnd {
+            end,
+            mover,
+            impedance: impedance(&model.lines[line], end),
+            rows,
+            mass,
+            beyond: beyond(model, line, end),
+            latest: (0, 1.0),
+        }
+    }
 
     /// Amplification of the tension error by the axial modes of the line with communication steps of a length [s], at least 1 [-].
-    pub(super) fn amplification(&mut self, step: f64) -> f64 {
+    fn amplification(&mut self, step: f64) -> f64 {
         let leading = step.to_bits() >> BITS;
         if self.latest.0 != leading {
             let middle = f64::from_bits((2 * leading + 1) << (BITS - 1));
@@ -148,11 +179,6 @@ impl LightEnd {
 fn at(line: &Line, end: End) -> (usize, usize) {
     let node = line.end_node(end);
     (node, node.min(line.segment_count() - 1))
-}
-
-fn tension(model: &Model, state: &State, index: usize, end: End) -> f64 {
-    let (line, state) = (&model.lines[index], &state.lines[index]);
-    reaction::tension(line, state, at(line, end).1, model.solver.negative_tension)
 }
 
 /// Impedance of axial waves at the end of a line, √(EA m_t) [N s/m].
