@@ -45,7 +45,7 @@ use std::borrow::Cow;
 
 use crate::model::mesh::line_elements;
 use crate::model::{Model, line_shares};
-use crate::scene::{Integrator, Line, Scene, few, percent};
+use crate::scene::{Integrator, Line, Scene, ToleranceOf, few, percent};
 use crate::simulation::{self, Simulation};
 use kinds::Kinds;
 use search::Search;
@@ -166,9 +166,13 @@ impl Discretisation {
         let tolerance = self.scene.solver.tolerance;
         let of_mesh = |mesh: &Mesh| {
             let coarse = (!mesh.tried && mesh.error > tolerance).then(|| {
+                let cure = match self.scene.solver.tolerance_of {
+                    ToleranceOf::Tension => ", or solver.tolerance_of = \"low_passed_tension\" if slaps of single nodes do not matter",
+                    ToleranceOf::LowPassedTension | ToleranceOf::Position => "",
+                };
                 format!(
                     "an error of up to about {:.2} % is expected with {} elements, above solver.tolerance = {tolerance}; set `elements` for a finer \
-                     mesh",
+                     mesh{cure}",
                     100.0 * mesh.error,
                     mesh.elements
                 )
