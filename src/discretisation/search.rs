@@ -335,12 +335,13 @@ impl<'a> Search<'a> {
             if excess <= 1.0 {
                 break;
             }
-            if self.work + 2.0 * spent > self.work_max() {
+            let shorter = 0.5_f64.powf((0.5 * excess.log2()).ceil()); // of second order at best
+            if self.work + spent / shorter > self.work_max() {
                 let part = 1.0 / excess.min(EXCESS_MAX);
                 self.step = Some(part * step); // nodes that land leave the first order
                 break;
             }
-            self.step = Some(0.5 * step);
+            self.step = Some(shorter * step);
             self.ladders = ladders(self.networks, self.implicit);
             spent = self.climb(AIM * tolerance);
         }
