@@ -91,8 +91,8 @@ impl MovedLine {
         reaction::tension(line, state, segment, model.solver.negative_tension)
     }
 
-    /// Sum of A Z |J| over its moved ends [N/s] between two paths, with communication steps of a length [s].
-    pub(super) fn shake(&mut self, paths: [&Paths; 2], step: f64) -> f64 {
+    /// Excitation of axial waves at its moved ends, Σ A Z |J| between two paths [N/s], with communication steps of a length [s].
+    pub(super) fn excitation(&mut self, paths: [&Paths; 2], step: f64) -> f64 {
         let ends = self.ends.iter_mut();
         ends.map(|end| end.impedance * end.mover.jump(paths) * end.amplification(step))
             .sum()

@@ -11,11 +11,12 @@
 //!
 //! √((2.5 e)² + (A Z ⟨|J|⟩h/12 / σ)²).
 //!
-//! with the amplification A by axial modes at the frequency of the communication points ([`super::axial_response`]). The second part is that of the line
-//! where it is greatest; it is recorded for every line while that is tight, over σ or a hundredth of the mean tension if that is more, and is the sum over both ends
-//! where a host moves both. It dominates where the tension is small and follows the acceleration of the end, as on cables and risers. ⟨|J|⟩ is used in place of √⟨J²⟩, so that one jump in the
-//! acceleration of the motion itself does not count for ten periods. A path that is interpolated passes through the samples, m = 0; its velocities,
-//! where the host gives none, have errors δ too, and δ = J h/12 takes the place of m/h. A path that jumps has jumps m.
+//! with the amplification A by axial modes at the frequency of the communication points ([`super::axial_response`]). The second part is that of the
+//! line where it is greatest; it is recorded for every line while that is tight, over σ or a hundredth of the mean tension if that is more, and is
+//! the sum over both ends where a host moves both. It dominates where the tension is small and follows the acceleration of the end, as on cables and
+//! risers. ⟨|J|⟩ is used in place of √⟨J²⟩, so that one jump in the acceleration of the motion itself does not count for ten periods. A path that is
+//! interpolated passes through the samples, m = 0; its velocities, where the host gives none, have errors δ too, and δ = J h/12 takes the place of
+//! m/h. A path that jumps has jumps m.
 //!
 //! With displacements only and 12 to 40 steps per period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and `taut_polyester`,
 //! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities, up to 26 times, where both are small. Interpolated displacements: 2.5
@@ -87,7 +88,7 @@ struct MotionRecord {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct LineRecord {
     /// Σ A Z |δ| h [N s].
-    shaken: f64,
+    excitation: f64,
     /// Σ T h [N s] and Σ T² h [N² s] of its tension.
     tension: [f64; 2],
 }
@@ -176,11 +177,11 @@ impl LineRecord {
         (step, kept): (f64, f64),
     ) {
         let tension = line.tension(model, state);
-        let shake = match tension > 0.0 {
-            true => line.shake(paths, step),
+        let excitation = match tension > 0.0 {
+            true => line.excitation(paths, step),
             false => 0.0,
         };
-        self.shaken = kept * self.shaken + step * step / JUMP * shake;
+        self.excitation = kept * self.excitation + step * step / JUMP * excitation;
         self.tension[0] = kept * self.tension[0] + step * tension;
         self.tension[1] = kept * self.tension[1] + step * tension * tension;
     }
@@ -191,7 +192,7 @@ impl LineRecord {
         let deviation = (square - mean * mean).max(0.0).sqrt();
         let scale = deviation.max(STILL * mean.abs());
         match scale > 0.0 {
-            true => self.shaken / time / scale,
+            true => self.excitation / time / scale,
             false => 0.0,
         }
     }
