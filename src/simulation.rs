@@ -132,6 +132,8 @@ impl Simulation {
             (snapshot, work) = begin(&model)?;
         }
         let model = Arc::new(model);
+        let moved_lines = MovedLine::all(&model, &snapshot.state);
+        snapshot.input_record = InputRecord::of(&moved_lines);
         let lines = model.lines.iter();
         Ok(Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
@@ -141,8 +143,8 @@ impl Simulation {
             prescribed: PrescribedMotion::new(&model, false, work.choices()),
             reactions: Reactions::new(&model),
             scale: Scale::new(&model),
-            next_record: InputRecord::default(),
-            moved_lines: MovedLine::all(&model, &snapshot.state),
+            next_record: InputRecord::of(&moved_lines),
+            moved_lines,
             snapshot,
             work,
             model,
@@ -190,6 +192,7 @@ impl Simulation {
         let mut model = self.model.clone();
         winches::lay_out(&mut model, &inputs.length_changes, follows_scene.then_some(time))?;
         (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene, shapes)?;
+        self.snapshot.input_record = InputRecord::of(&self.moved_lines);
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
         self.prescribed = PrescribedMotion::new(&self.model, follows_scene, self.work.choices());

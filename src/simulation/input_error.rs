@@ -199,7 +199,15 @@ impl LineRecord {
 }
 
 impl InputRecord {
-    /// Copies another record, without allocation where there is room.
+    /// Empty record of lines.
+    pub(super) fn of(lines: &[MovedLine]) -> InputRecord {
+        InputRecord {
+            motion: MotionRecord::default(),
+            lines: vec![LineRecord::default(); lines.len()],
+        }
+    }
+
+    /// Copies another record of the same lines.
     fn follow(&mut self, other: &InputRecord) {
         self.motion = other.motion;
         self.lines.clone_from(&other.lines);
@@ -239,7 +247,6 @@ impl Simulation {
             let interpolates = self.model.solver.input_reconstruction == Reconstruction::Interpolate;
             let kept = record.motion.take(&self.scale.levers, paths, gaps, interpolates);
             let at = (&*self.model, &snapshot.state);
-            record.lines.resize(self.moved_lines.len(), LineRecord::default());
             for (record, line) in record.lines.iter_mut().zip(&mut self.moved_lines) {
                 record.take(line, at, paths, (gaps[0], kept));
             }
