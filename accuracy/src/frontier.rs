@@ -25,18 +25,21 @@ pub fn figure(study: &Study) -> String {
     grid(charts.into())
 }
 
-/// RMS tension and position of several studies offline.
+/// Tension and position of several studies offline.
 pub fn overview(studies: &[Study]) -> String {
     let offline = studies.iter().filter(|study| study.host_step.is_none());
-    let charts =
-        offline.flat_map(|study| [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false)));
+    let charts = offline.flat_map(|study| {
+        [study.tension_metric(), Metric::Position].map(|metric| chart(study, metric, false))
+    });
     grid(charts.collect())
 }
 
-/// RMS tension of several studies in hosts; `None` where there is none.
+/// Tension of several studies in hosts; `None` where there is none.
 pub fn in_host(studies: &[Study]) -> Option<String> {
     let hosted = studies.iter().filter(|study| study.host_step.is_some());
-    let charts: Vec<_> = hosted.map(|study| chart(study, Metric::Rms, false)).collect();
+    let charts: Vec<_> = hosted
+        .map(|study| chart(study, study.tension_metric(), false))
+        .collect();
     (!charts.is_empty()).then(|| grid(charts))
 }
 

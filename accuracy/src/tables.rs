@@ -216,7 +216,7 @@ pub fn summary(studies: &[Study]) -> String {
     let head: Vec<String> = tolerances.into_iter().chain(decks).collect();
     let _ = writeln!(
         text,
-        "\n| default settings in a host: cost, RMS error | {} |",
+        "\n| default settings in a host: cost, error of tension | {} |",
         head.join(" | ")
     );
     let _ = writeln!(text, "|---|{}", "---|".repeat(head.len()));
@@ -239,29 +239,40 @@ fn levels<'a>(head: &str, studies: impl Iterator<Item = &'a Study>) -> String {
     text
 }
 
-/// Cost and RMS error of moorline by default for each tolerance, and of the peers as decks set them.
+/// Cost and error of tension of moorline by default for each tolerance, and of the peers as decks set them.
 fn defaults(study: &Study) -> String {
     let found = |is: &dyn Fn(&Run) -> bool| study.runs.iter().find(|run| is(run));
     let own = TOLERANCES.map(|tolerance| found(&|run| run.tolerance == Some(tolerance)));
     let decks =
         DECKS.map(|(peer, elements)| found(&|run| run.code.name() == peer && run.deck == Some(elements)));
-    let limit = study.uncertainty.of(Metric::Rms);
-    let error = |run: &Run| match run.errors.of(Metric::Rms) {
+    let metric = study.tension_metric();
+    let limit = study.uncertainty.of(metric);
+    let error = |run: &Run| match run.errors.of(metric) {
         error if error < limit => format!("{:.1e}, within {}", run.cost, percent(limit)),
         error => format!("{:.1e}, {}", run.cost, percent(error)),
     };
     let cell = |run: Option<&Run>| run.map_or("—".to_string(), error);
     let cells: Vec<String> = own.into_iter().chain(decks).map(cell).collect();
-    format!("| {} | {} |\n", study.place(), cells.join(" | "))
+    format!(
+        "| {}, {} | {} |\n",
+        study.place(),
+        quantity(metric),
+        cells.join(" | ")
+    )
 }
 
-fn row(study: &Study, verdict: &Verdict<'_>) -> String {
-    let metric = match verdict.metric {
+/// The quantity of an error.
+fn quantity(metric: Metric) -> &'static str {
+    match metric {
         Metric::Rms => "RMS tension",
         Metric::LowPassed => "low-passed tension",
         Metric::Position => "mid position",
         Metric::Peak => "greatest tension",
-    };
+    }
+}
+
+fn row(study: &Study, verdict: &Verdict<'_>) -> String {
+    let metric = quantity(verdict.metric);
     let place = format!("{}, {metric} {}", study.place(), percent(verdict.level));
     if !verdict.certain {
         return format!("| {place} | — | — | — | — | {UNCERTAIN} |\n");

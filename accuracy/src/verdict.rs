@@ -5,6 +5,8 @@ use crate::{Code, Run, Study, TOLERANCES};
 
 /// Error levels that are judged [-].
 pub const LEVELS: [f64; 5] = [0.05, 0.03, 0.02, 0.01, 0.005];
+/// Level that moorline is held to offline on a seabed [-].
+const LEVEL: f64 = 0.03;
 /// Runs beyond this error [-] show nothing.
 const ERROR_MAX: f64 = 1.0;
 
@@ -73,6 +75,15 @@ impl Study {
         Metric::ALL.into_iter().flat_map(of_metric).collect()
     }
 
+    /// The error of tension that counts: of the raw tension, or of the low-passed one where only that is certain at 3 %.
+    pub fn tension_metric(&self) -> Metric {
+        let is_certain = |metric: Metric| LEVEL >= self.uncertainty.of(metric);
+        match is_certain(Metric::LowPassed) && !is_certain(Metric::Rms) {
+            true => Metric::LowPassed,
+            false => Metric::Rms,
+        }
+    }
+
     /// The verdict at a level [-].
     pub fn verdict(&self, metric: Metric, level: f64) -> Verdict<'_> {
         let of_peer = |name| {
@@ -83,7 +94,7 @@ impl Study {
         let low_passed = is_certain(Metric::LowPassed) && !is_certain(Metric::Rms);
         let holds_tension = match self.host_step {
             Some(_) => TOLERANCES.contains(&level),
-            None => level == 0.03 || (level == 0.01 && !self.on_seabed),
+            None => level == LEVEL || (level == 0.01 && !self.on_seabed),
         };
         Verdict {
             metric,
