@@ -40,6 +40,7 @@ use scale::Scale;
 
 pub use coupling::{EndMotion, Impedance};
 pub use flow::{FLOW_COMPONENTS, NO_FLOW, WaterFlow};
+pub(crate) use input_error::STILL_TENSION;
 pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
 pub use watch::Watch;

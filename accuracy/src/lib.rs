@@ -265,7 +265,7 @@ impl Case<'_> {
         std::iter::once(None).chain(hosts.map(Some))
     }
 
-    /// The scene with default settings for every tolerance, in a host whose communication step [s] it states as its interval.
+    /// The scene with default settings for every tolerance, chosen with the communication step of the host [s] as its interval.
     fn by_default(&self, step: f64) -> [Scene; TOLERANCES.len()] {
         let mut stated = self.scene.clone();
         stated.output.interval = step;

@@ -75,7 +75,7 @@ impl Study {
         Metric::ALL.into_iter().flat_map(of_metric).collect()
     }
 
-    /// The error of tension that counts: of the raw tension, or of the low-passed one where only that is certain at 3 %.
+    /// Metric of the tension: RMS of the raw tension, or of the low-passed one where only that is certain at 3 %.
     pub fn tension_metric(&self) -> Metric {
         let is_certain = |metric: Metric| LEVEL >= self.uncertainty.of(metric);
         match is_certain(Metric::LowPassed) && !is_certain(Metric::Rms) {

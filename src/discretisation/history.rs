@@ -1,4 +1,5 @@
-//! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, low-passed or not, or the positions of three of its points.
+//! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, raw or low-passed, or the positions of three
+//! of its points.
 
 use super::search::driven;
 use crate::math::hermite::Hermite;
@@ -6,10 +7,8 @@ use crate::math::low_pass::low_pass;
 use crate::math::shape_preserving::{End, smooth_slopes};
 use crate::model::Model;
 use crate::scene::{Scene, ToleranceOf};
-use crate::simulation::Simulation;
+use crate::simulation::{STILL_TENSION, Simulation};
 
-/// Least standard deviation of a tension to which its errors are related, over its mean [-].
-const STILL_TENSION: f64 = 0.01;
 /// Least deviation of positions to which their errors are related, over the length of the line [-].
 const STILL_POSITION: f64 = 1e-3;
 /// Points of a line whose positions are compared, by unstretched length from end A over that of the line [-].
@@ -36,7 +35,7 @@ enum Kind {
 struct Filter {
     /// Interval of the samples [s].
     interval: f64,
-    /// [Hz]
+    /// Cut-off frequency [Hz].
     cut_off: f64,
 }
 

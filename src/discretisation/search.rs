@@ -29,7 +29,7 @@ const PERIODS: f64 = 20.0;
 const DURATION: f64 = 200.0;
 /// Samples in a period of the fastest sine, at least [-].
 const SAMPLES: f64 = 25.0;
-/// The same for a low-passed tension [-]: the filter is to see the frequencies that it removes.
+/// The same for a low-passed tension [-]. With fewer samples, slaps would be aliased to frequencies that pass the filter.
 const SAMPLES_TO_FILTER: f64 = 100.0;
 /// Samples in a period that are dense enough for a snap at any phase [-]. Fewer samples have other phases in every period.
 const PHASES: f64 = 100.0;

@@ -50,8 +50,8 @@ const PERIODS_MIN: f64 = 3.0;
 const SAMPLES_MIN: usize = 8;
 /// Share of the scene's size below which an error has no effect [-].
 const NEGLIGIBLE: f64 = 1e-7;
-/// Least standard deviation of a tension to which its errors are related, over its mean [-], as in the trials of meshes.
-const STILL: f64 = 0.01;
+/// Least standard deviation of a tension to which its errors are related, over its mean [-].
+pub(crate) const STILL_TENSION: f64 = 0.01;
 /// Part of the tolerance that the inputs may take [-]: the mesh takes 0.8, and squares of the errors add.
 const PART: f64 = 0.6;
 /// Order at which the error falls with the communication step [-].
@@ -190,7 +190,7 @@ impl LineRecord {
     fn error(&self, time: f64) -> f64 {
         let [mean, square] = self.tension.map(|sum| sum / time);
         let deviation = (square - mean * mean).max(0.0).sqrt();
-        let scale = deviation.max(STILL * mean.abs());
+        let scale = deviation.max(STILL_TENSION * mean.abs());
         match scale > 0.0 {
             true => self.excitation / time / scale,
             false => 0.0,

@@ -124,7 +124,7 @@ fn the_low_passed_error_is_kept_at_less_cost_where_the_tolerance_is_of_it() {
         "oc4_chain",
     ] {
         let mut scene = moved(name, [1.0, 1.0]);
-        // the filter is to see the frequencies that it removes
+        // with fewer samples, slaps would be aliased to frequencies that pass the filter
         scene.output.interval = scene.output.interval.min(scene.shortest_period() / 100.0);
         let (reference, _) = recorded(&converged(&scene));
         for tolerance in [0.05, 0.02, 0.01] {
