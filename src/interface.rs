@@ -11,6 +11,7 @@ mod coupling;
 mod dependencies;
 mod derivatives;
 mod flow;
+mod inputs;
 mod parameters;
 mod profile;
 mod results;
@@ -20,7 +21,7 @@ use std::collections::BTreeSet;
 
 use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
-use crate::simulation::{Simulation, WaterFlow, reference_catenary};
+use crate::simulation::{Inputs, Simulation, reference_catenary};
 
 pub use parameters::{Parameter, Place};
 pub use results::{LineResult, SolverResult};
@@ -322,7 +323,7 @@ impl Variable {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interface {
     variables: Vec<Variable>,
-    still_water: WaterFlow,
+    inputs: Inputs,
 }
 
 impl Interface {
@@ -370,13 +371,13 @@ impl Interface {
         dependencies::fill(&mut variables, scene, model);
         Ok(Interface {
             variables,
-            still_water: WaterFlow::still(model),
+            inputs: Inputs::new(model),
         })
     }
 
-    /// The flow of the water before the host gives one.
-    pub fn still_water(&self) -> &WaterFlow {
-        &self.still_water
+    /// The inputs before a host sets any.
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
     }
 
     /// Refuses a model whose numbers of nodes differ from those of the table, which parameters may cause.
@@ -393,7 +394,7 @@ impl Interface {
                 }
                 Binding::Flow { line, .. } => {
                     let count = model.lines[line].flow_count(model);
-                    (line, count, count == self.still_water.node_count(line))
+                    (line, count, count == self.inputs.flow.node_count(line))
                 }
                 _ => continue,
             };
@@ -432,7 +433,7 @@ impl Interface {
             .filter(|variable| variable.causality == Causality::Output)
     }
 
-    /// Writes the values of an output or calculated parameter; `values` has the variable's size.
+    /// Writes the values of a variable that is no parameter; `values` has its size.
     ///
     /// # Errors
     /// A line whose closed-form catenary does not exist.
@@ -456,18 +457,14 @@ impl Interface {
                 };
                 values[0] = result.read(simulation, line).ok_or_else(missing)?;
             }
-            Binding::Release { line } => values[0] = f64::from(u8::from(simulation.release(line))),
-            Binding::LengthChange { line } => values[0] = simulation.length_change(line),
             Binding::FlowPlace { line, axis, node } => flow::read_place(simulation, line, axis, node, values),
             Binding::Solver(result) => values[0] = result.read(simulation, 0).ok_or(NO_BALANCE)?,
             Binding::Profile { line, quantity, node } => {
                 profile::read(simulation, line, quantity, node, values)
             }
-            Binding::Displacement { .. }
-            | Binding::Velocity { .. }
-            | Binding::Flow { .. }
-            | Binding::Parameter(_) => {
-                unreachable!("inputs and parameters are kept by the caller")
+            _ => {
+                let is_input = variable.read_input(simulation.inputs(), values);
+                assert!(is_input, "a simulation has no parameters");
             }
         }
         Ok(())

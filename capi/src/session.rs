@@ -8,7 +8,7 @@ use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json};
 use moorline::scene::{LoadError, Note, Scene};
-use moorline::simulation::{self, NO_FLOW, Simulation, Snapshot, Watch, WaterFlow};
+use moorline::simulation::{self, Inputs, NO_FLOW, Simulation, Snapshot, Watch};
 use moorline_decks::load;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -39,26 +39,6 @@ impl Failure {
 }
 
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
-
-/// Last input of the host for a point or a vessel; points use the first three axes.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct BodyInput {
-    /// Displacement [m] and angles [rad].
-    displacement: [f64; 6],
-    /// Velocity [m/s] and angular velocity [rad/s], where the host gives them.
-    velocity: [Option<f64>; 6],
-}
-
-/// Inputs of a host.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Inputs {
-    /// Of every point of the scene, then of every vessel.
-    bodies: Vec<BodyInput>,
-    releases: Vec<bool>,
-    /// Length changes of the winches, by line [m].
-    length_changes: Vec<f64>,
-    flow: WaterFlow,
-}
 
 /// All that changes.
 #[derive(Debug, Serialize, Deserialize)]
@@ -113,12 +93,7 @@ impl Session {
     fn new(scene: Scene) -> Outcome<Session> {
         let model = Model::new(&scene).map_err(scene_error)?;
         let interface = Interface::new(&scene, &model, Layout::Scalars).map_err(scene_error)?;
-        let inputs = Inputs {
-            bodies: vec![BodyInput::default(); scene.points.len() + scene.vessels.len()],
-            releases: vec![false; scene.lines.len()],
-            length_changes: vec![0.0; scene.lines.len()],
-            flow: interface.still_water().clone(),
-        };
+        let inputs = interface.inputs().clone();
         Ok(Session {
             moved: moved(&scene, &model),
             origin: inputs.clone(),
@@ -210,7 +185,7 @@ impl Session {
         }
         self.simulation()?;
         if let Some(simulation) = &mut self.simulation {
-            hand_over(&self.inputs, simulation);
+            simulation.set_inputs(&self.inputs);
             let advanced = simulation.advance(step);
             advanced.map_err(|error| Failure::new(MOORLINE_STEP_ERROR, error.to_string()))?;
         }
@@ -272,26 +247,13 @@ impl Session {
     }
 
     fn value(&self, variable: &Variable) -> Outcome<f64> {
+        let mut value = [0.0];
         match &variable.binding {
-            Binding::Displacement { body, axis } => {
-                Ok(self.inputs.bodies[self.slot(*body)].displacement[*axis])
-            }
-            Binding::Velocity { body, axis } => {
-                let velocity = self.inputs.bodies[self.slot(*body)].velocity[*axis];
-                Ok(velocity.unwrap_or(0.0))
-            }
-            Binding::Release { line } => Ok(f64::from(u8::from(self.inputs.releases[*line]))),
-            Binding::LengthChange { line } => Ok(self.inputs.length_changes[*line]),
-            Binding::Flow {
-                line,
-                component,
-                node,
-            } => Ok(self.inputs.flow.component(*line, *component)[node.unwrap_or(0)]),
+            _ if variable.read_input(&self.inputs, &mut value) => Ok(value[0]),
             Binding::Parameter(parameter) => parameter.value(&self.scene).ok_or_else(|| {
                 Failure::new(MOORLINE_NOT_AVAILABLE, format!("{} has no value", variable.name))
             }),
             _ => {
-                let mut value = [0.0];
                 let read = Interface::read(variable, self.simulation()?, &mut value);
                 read.map_err(|problem| Failure::new(MOORLINE_NOT_AVAILABLE, problem))?;
                 match value[0].is_finite() {
@@ -318,25 +280,13 @@ impl Session {
                 )));
             }
             match &variable.binding {
-                Binding::Displacement { body, axis } => {
-                    inputs.bodies[self.slot(*body)].displacement[*axis] = value
-                }
-                Binding::Velocity { body, axis } => {
-                    inputs.bodies[self.slot(*body)].velocity[*axis] = Some(value)
-                }
-                Binding::Release { line } => inputs.releases[*line] = value != 0.0,
-                Binding::LengthChange { line } => inputs.length_changes[*line] = value,
-                Binding::Flow {
-                    line,
-                    component,
-                    node,
-                } => inputs.flow.component_mut(*line, *component)[node.unwrap_or(0)] = value,
                 Binding::Parameter(parameter) => {
                     self.expect_not_started("a parameter")?;
                     let scene = scene.get_or_insert_with(|| self.scene.clone());
                     let set = parameter.set(scene, value);
                     set.map_err(|problem| Failure::argument(format!("{}: {problem}", variable.name)))?;
                 }
+                _ if variable.set_input(&mut inputs, &[value]) => {}
                 _ => {
                     return Err(Failure::argument(format!(
                         "{} is a result and not to be set",
@@ -354,14 +304,6 @@ impl Session {
         Ok(())
     }
 
-    /// Place of a body among the inputs: all points, then all vessels.
-    fn slot(&self, body: Body) -> usize {
-        match body {
-            Body::Point(point) => point,
-            Body::Vessel(vessel) => self.scene.points.len() + vessel,
-        }
-    }
-
     pub(crate) fn moved(&self) -> &[Moved] {
         &self.moved
     }
@@ -377,8 +319,7 @@ impl Session {
         let body = self.body(index)?.clone();
         check_lengths(body.size, place.len())?;
         check_numbers(&body.name, place.iter().chain(velocity.unwrap_or(&[])))?;
-        let slot = self.slot(body.body);
-        let input = &mut self.inputs.bodies[slot];
+        let input = self.inputs.body_mut(body.body);
         input.displacement[..body.size].copy_from_slice(place);
         input.velocity = std::array::from_fn(|axis| velocity?.get(axis).copied());
         Ok(())
@@ -387,10 +328,7 @@ impl Session {
     /// Force on a body [N], and moment on a vessel [N m].
     pub(crate) fn force(&self, index: usize) -> Outcome<Vec<f64>> {
         let (body, simulation) = (self.body(index)?, self.simulation()?);
-        Ok(match body.body {
-            Body::Point(point) => simulation.end_force(point).to_vec(),
-            Body::Vessel(vessel) => simulation.vessel_force(vessel).to_vec(),
-        })
+        Ok(simulation.host_force(body.body)[..body.size].to_vec())
     }
 
     /// Stiffness of the mooring on a vessel by rows of force [N/m, N, N m].
@@ -465,7 +403,7 @@ impl Session {
     /// Number of nodes of a line at which the host gives the flow.
     fn flow_count(&self, index: usize) -> Outcome<usize> {
         let line = self.line(index)?;
-        match self.interface.still_water().node_count(index) {
+        match self.interface.inputs().flow.node_count(index) {
             0 => Err(Failure::new(MOORLINE_NOT_AVAILABLE, format!("{line}: {NO_FLOW}"))),
             count => Ok(count),
         }
@@ -651,29 +589,7 @@ fn in_words(error: &LoadError) -> String {
 
 fn equilibrium(scene: &Scene, time: f64, inputs: &Inputs) -> Outcome<Simulation> {
     let mut simulation = Simulation::new(scene).map_err(building_error)?;
-    let bodies: Vec<Body> = simulation.model().bodies().collect();
-    for (body, input) in bodies.into_iter().zip(&inputs.bodies) {
-        simulation.set_body(body, input.displacement, [None; 6]);
-    }
-    for (line, &change) in inputs.length_changes.iter().enumerate() {
-        simulation.set_length_change(line, change);
-    }
-    simulation.set_flow(&inputs.flow);
+    simulation.set_inputs(inputs);
     simulation.restart(time).map_err(building_error)?;
     Ok(simulation)
-}
-
-/// Passes the inputs to the simulation.
-fn hand_over(inputs: &Inputs, simulation: &mut Simulation) {
-    for (index, input) in inputs.bodies.iter().enumerate() {
-        let body = simulation.model().body(index);
-        simulation.set_body(body, input.displacement, input.velocity);
-    }
-    for (line, &release) in inputs.releases.iter().enumerate() {
-        simulation.set_release(line, release);
-    }
-    for (line, &change) in inputs.length_changes.iter().enumerate() {
-        simulation.set_length_change(line, change);
-    }
-    simulation.set_flow(&inputs.flow);
 }

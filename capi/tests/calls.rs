@@ -202,6 +202,30 @@ fn forces_and_nodes_are_those_of_the_library_in_rust() {
 }
 
 #[test]
+fn the_force_on_a_body_excludes_the_inertia_of_the_ends_where_the_scene_asks_for_that() {
+    let forces = [SCENE, &format!("output.force = \"without_inertia\"\n{SCENE}")].map(|scene| {
+        let simulation = read(scene);
+        let (mut force, mut variables) = ([0.0; 3], [0.0; 3]);
+        // SAFETY: arrays of three values.
+        unsafe {
+            assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK, "{}", message());
+            sway(simulation, 0, 5);
+            let references = ["fx", "fy", "fz"].map(|axis| find(simulation, &format!("buoy.{axis}")));
+            let values = variables.as_mut_ptr();
+            assert_eq!(
+                moorline_get(simulation, references.as_ptr(), values, 3),
+                MOORLINE_OK
+            );
+            assert_eq!(moorline_force(simulation, 0, force.as_mut_ptr(), 3), MOORLINE_OK);
+            moorline_close(simulation);
+        }
+        assert_eq!(force, variables);
+        force
+    });
+    assert_ne!(forces[0], forces[1]);
+}
+
+#[test]
 fn derivatives_and_rates_are_those_of_the_library_in_rust() {
     let text = format!("{SCENE}\n[output]\nderivatives = true\n");
     let scene = Scene::from_toml(&text).unwrap();
@@ -323,7 +347,7 @@ fn the_flow_of_the_water_acts_as_in_the_library_in_rust_and_is_that_of_its_input
                 assert_eq!(places[node], <[f64; 3]>::from(mooring.flow_place(0, node)));
                 flow.set(0, node, velocities[node], accelerations[node]);
             }
-            mooring.set_flow(&flow);
+            mooring.inputs_mut().flow.clone_from(&flow);
             mooring.advance(0.1).unwrap();
             assert_eq!(moorline_step(simulation, 0.1), MOORLINE_OK, "{}", message());
         }
@@ -342,7 +366,7 @@ fn the_flow_of_the_water_acts_as_in_the_library_in_rust_and_is_that_of_its_input
             MOORLINE_OK
         );
         flow.component_mut(0, 5)[3] = slower;
-        mooring.set_flow(&flow);
+        mooring.inputs_mut().flow.clone_from(&flow);
         mooring.advance(0.1).unwrap();
         assert_eq!(moorline_step(simulation, 0.1), MOORLINE_OK, "{}", message());
         assert_eq!(moorline_force(simulation, 0, force.as_mut_ptr(), 3), MOORLINE_OK);

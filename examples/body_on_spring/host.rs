@@ -121,7 +121,7 @@ pub fn run(scene: &Scene, point: &str, master: Master, case: Case) -> Option<Run
 }
 
 fn force(simulation: &Simulation, point: usize) -> Vector3<f64> {
-    let [x, y, z, ..] = simulation.host_force(Body::Point(point));
+    let &[x, y, z, ..] = simulation.host_force(Body::Point(point));
     Vector3::new(x, y, z)
 }
 

@@ -237,6 +237,9 @@ impl Handle {
     }
 
     fn send_log(&mut self) {
+        if self.instance.log.is_empty() {
+            return;
+        }
         for (topic, message) in self.instance.log.take() {
             self.sink.send(topic, &message);
         }

@@ -9,17 +9,17 @@ mod derivatives;
 mod parts;
 
 use moorline::interface::{Binding, Interface};
-use moorline::model::Body;
 use moorline::output::description::{Description, VERSION, time_reference};
 use moorline::scene::{Note, Scene};
-use moorline::simulation::{Simulation, Watch, WaterFlow};
+use moorline::simulation::{Inputs, Simulation, Watch};
 use moorline_host::{FmiVersion, Status};
 
 pub(crate) use parts::Parts;
 
+use crate::inputs::HostInputs;
 use crate::log::{Log, Topic};
 use crate::resources;
-use crate::saved::{BodyInput, Phase, Snapshot};
+use crate::saved::{Phase, Snapshot};
 
 /// Reason why a call was refused or failed, in words for the host's log.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -58,16 +58,9 @@ pub(crate) struct Instance {
     start_time: f64,
     stop_time: Option<f64>,
     time: f64,
-    inputs: Vec<BodyInput>,
-    /// Release command of each line.
-    releases: Vec<bool>,
-    /// Length changes of the winches, by line [m].
-    length_changes: Vec<f64>,
-    flow: WaterFlow,
-    /// Displacements at which the statics were solved last [m].
-    start_displacements: Vec<[f64; 6]>,
-    /// Length changes of the winches at that time, by line [m].
-    start_length_changes: Vec<f64>,
+    inputs: HostInputs,
+    /// Inputs at which the statics were solved last.
+    start: Inputs,
     /// Statics with the present parameters and inputs, or the end of the last step; `None` until they are solved.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
@@ -100,13 +93,9 @@ impl Instance {
             )));
         }
         let mut instance = Instance {
-            inputs: vec![BodyInput::default(); scene.points.len() + scene.vessels.len()],
-            start_displacements: vec![[0.0; 6]; scene.points.len() + scene.vessels.len()],
+            inputs: HostInputs::new(description.interface.inputs()),
+            start: description.interface.inputs().clone(),
             time_reference: (version == FmiVersion::Three).then(|| time_reference(&description.interface)),
-            releases: vec![false; scene.lines.len()],
-            length_changes: vec![0.0; scene.lines.len()],
-            start_length_changes: vec![0.0; scene.lines.len()],
-            flow: description.interface.still_water().clone(),
             packaged: scene.clone(),
             scene,
             interface: description.interface,
@@ -235,10 +224,7 @@ impl Instance {
     pub(crate) fn reset(&mut self) -> Outcome {
         self.expect_no_update()?;
         self.scene.clone_from(&self.packaged);
-        self.inputs.fill(BodyInput::default());
-        self.releases.fill(false);
-        self.length_changes.fill(0.0);
-        self.flow.calm();
+        self.inputs = HostInputs::new(self.interface.inputs());
         self.phase = Phase::Instantiated;
         self.start_time = 0.0;
         self.stop_time = None;
@@ -254,18 +240,10 @@ impl Instance {
     /// from the same first guess, so that it does not depend on earlier inputs.
     fn solve_statics(&mut self) -> Result<&mut Simulation, Refusal> {
         if self.simulation.is_none() {
-            let places = self.inputs.iter().map(|input| input.displacement);
-            self.start_displacements = places.collect();
-            self.start_length_changes.clone_from(&self.length_changes);
+            self.start.clone_from(self.inputs.given());
             #[cfg(test)]
             tests::count_statics();
-            let simulation = statics(
-                (&self.scene, &self.interface),
-                self.start_time,
-                &self.start_displacements,
-                &self.start_length_changes,
-                &self.flow,
-            )?;
+            let simulation = statics(&self.scene, &self.interface, self.start_time, &self.start)?;
             self.simulation = Some(simulation);
         }
         Ok(self.simulation.as_mut().expect("was there or was just solved"))
@@ -331,14 +309,7 @@ impl Instance {
             .simulation
             .as_mut()
             .expect("solved at the end of initialization");
-        hand_over(&self.inputs, simulation);
-        for (line, &release) in self.releases.iter().enumerate() {
-            simulation.set_release(line, release);
-        }
-        for (line, &change) in self.length_changes.iter().enumerate() {
-            simulation.set_length_change(line, change);
-        }
-        simulation.set_flow(&self.flow);
+        simulation.set_inputs(self.inputs.given());
         simulation.advance(step).map_err(|e| e.to_string())?;
         self.time = at + step; // the host's clock, so that rounding does not add up
         self.log_watch();
@@ -359,11 +330,7 @@ impl Instance {
             time: self.time,
             parameters: self.parameters(&self.scene),
             inputs: self.inputs.clone(),
-            releases: self.releases.clone(),
-            length_changes: self.length_changes.clone(),
-            flow: self.flow.clone(),
-            start_displacements: self.start_displacements.clone(),
-            start_length_changes: self.start_length_changes.clone(),
+            start: self.start.clone(),
             solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
         }
     }
@@ -386,11 +353,7 @@ impl Instance {
         let same_scene = same_bits(&own, new);
         let same_start = same_scene
             && self.start_time.to_bits() == snapshot.start_time.to_bits()
-            && same_bits(
-                self.start_displacements.as_flattened(),
-                snapshot.start_displacements.as_flattened(),
-            )
-            && same_bits(&self.start_length_changes, &snapshot.start_length_changes);
+            && self.start == snapshot.start;
         let mut scene = self.scene.clone();
         if !same_scene {
             let rows = self.interface.variables().iter();
@@ -403,13 +366,10 @@ impl Instance {
             }
         }
         let rebuilt = match &snapshot.solver {
-            Some(_) if !same_start || self.simulation.is_none() => Some(statics(
-                (&scene, &self.interface),
-                snapshot.start_time,
-                &snapshot.start_displacements,
-                &snapshot.start_length_changes,
-                self.interface.still_water(), // no choice depends on the flow at the start
-            )?),
+            Some(_) if !same_start || self.simulation.is_none() => {
+                let (time, start) = (snapshot.start_time, &snapshot.start);
+                Some(statics(&scene, &self.interface, time, start)?)
+            }
             _ => None,
         };
         // From here on nothing can fail.
@@ -425,18 +385,13 @@ impl Instance {
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             watch.resume(simulation);
         }
-        self.start_displacements.clone_from(&snapshot.start_displacements);
-        self.start_length_changes
-            .clone_from(&snapshot.start_length_changes);
+        self.start.clone_from(&snapshot.start);
         self.scene = scene;
         self.phase = snapshot.phase;
         self.start_time = snapshot.start_time;
         self.stop_time = snapshot.stop_time;
         self.time = snapshot.time;
         self.inputs.clone_from(&snapshot.inputs);
-        self.releases.clone_from(&snapshot.releases);
-        self.length_changes.clone_from(&snapshot.length_changes);
-        self.flow.clone_from(&snapshot.flow);
         Ok(())
     }
 
@@ -449,41 +404,20 @@ impl Instance {
     }
 }
 
-/// Static equilibrium at the given displacements of the bodies [m, rad], always from the same first guess, from which the flow of the water
-/// begins to act. The nodes must be those of the interface.
-fn statics(
-    (scene, interface): (&Scene, &Interface),
-    start: f64,
-    displacements: &[[f64; 6]],
-    length_changes: &[f64],
-    flow: &WaterFlow,
-) -> Result<Simulation, Refusal> {
+/// Static equilibrium at a time [s] and the given inputs, always from the same first guess, from which the flow of the water begins to act. The nodes
+/// must be those of the interface.
+fn statics(scene: &Scene, interface: &Interface, time: f64, inputs: &Inputs) -> Result<Simulation, Refusal> {
     // choices that the package leaves open are not tried again: the interface has the mesh of the rules
     let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
     interface.check_nodes(simulation.model())?;
-    let bodies: Vec<Body> = simulation.model().bodies().collect();
-    for (body, displacement) in bodies.into_iter().zip(displacements) {
-        simulation.set_body(body, *displacement, [None; 6]);
-    }
-    for (line, &change) in length_changes.iter().enumerate() {
-        simulation.set_length_change(line, change);
-    }
-    simulation.set_flow(flow);
-    simulation.restart(start).map_err(|e| e.to_string())?;
+    simulation.set_inputs(inputs);
+    simulation.restart(time).map_err(|e| e.to_string())?;
     Ok(simulation)
 }
 
 fn same_bits(these: &[f64], those: &[f64]) -> bool {
     let bits = |value: &f64| value.to_bits();
     these.iter().map(bits).eq(those.iter().map(bits))
-}
-
-/// Passes the host's last inputs to the simulation.
-fn hand_over(inputs: &[BodyInput], simulation: &mut Simulation) {
-    for (index, input) in inputs.iter().enumerate() {
-        let body = simulation.model().body(index);
-        simulation.set_body(body, input.displacement, input.given());
-    }
 }
 
 #[cfg(test)]

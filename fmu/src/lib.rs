@@ -4,6 +4,7 @@
 mod ffi;
 mod fmi2;
 mod fmi3;
+mod inputs;
 mod instance;
 mod log;
 mod resources;

@@ -82,6 +82,11 @@ impl Log {
         }
     }
 
+    /// Returns whether there is nothing to pass on.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.messages.is_empty()
+    }
+
     /// Passes the messages on.
     pub(crate) fn take(&mut self) -> Vec<(Topic, String)> {
         std::mem::take(&mut self.messages)

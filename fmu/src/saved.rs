@@ -3,9 +3,11 @@
 //! Bytes: mark, token of the FMU, length and SHA-256 of what follows, then the state in postcard. Bytes of another FMU or version, truncated or changed
 //! ones are refused before any part is used.
 
-use moorline::simulation::{self, WaterFlow};
+use moorline::simulation::{self, Inputs};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+
+use crate::inputs::HostInputs;
 
 /// Phase of an instance's life cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,33 +24,6 @@ pub(crate) enum Phase {
     Intermediate,
 }
 
-/// Last input of the host for a point or a vessel; points use the first three axes.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct BodyInput {
-    /// Displacement [m] and angles [rad].
-    pub(crate) displacement: [f64; 6],
-    /// Velocity [m/s] and angular velocity [rad/s].
-    pub(crate) velocity: [f64; 6],
-    /// True if the host gives the velocity.
-    pub(crate) has_velocity: [bool; 6],
-    /// True if it has moved since the start, along and about the axes.
-    pub(crate) has_moved: [bool; 2],
-    /// True if any velocity was ever non-zero, along and about the axes.
-    pub(crate) has_speed: [bool; 2],
-}
-
-impl BodyInput {
-    /// Velocities given by the host; none along or about all axes where it gives only 0 for a body that has moved.
-    /// Hosts that write all inputs at every communication point write 0 to unconnected ones.
-    pub(crate) fn given(&self) -> [Option<f64>; 6] {
-        std::array::from_fn(|axis| {
-            let kind = axis / 3;
-            let gives = self.has_speed[kind] || !self.has_moved[kind];
-            (gives && self.has_velocity[axis]).then_some(self.velocity[axis])
-        })
-    }
-}
-
 /// All that changes in an instance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Snapshot {
@@ -61,19 +36,9 @@ pub(crate) struct Snapshot {
     pub(crate) time: f64,
     /// Parameters in the order of the interface.
     pub(crate) parameters: Vec<f64>,
-    /// Inputs of every point of the scene, then of every vessel.
-    pub(crate) inputs: Vec<BodyInput>,
-    /// Release command of each line.
-    pub(crate) releases: Vec<bool>,
-    /// Length changes of the winches, by line [m].
-    pub(crate) length_changes: Vec<f64>,
-    /// Flow of the water.
-    pub(crate) flow: WaterFlow,
-    /// Displacements of every body at which the statics were solved [m, rad]: the solver's choices there, such as its
-    /// step limits, are not in its state and are made again from them.
-    pub(crate) start_displacements: Vec<[f64; 6]>,
-    /// Length changes of the winches at that time, by line [m].
-    pub(crate) start_length_changes: Vec<f64>,
+    pub(crate) inputs: HostInputs,
+    /// Inputs at which the statics were solved: the solver's choices there, such as its step limits, are not in its state and are made again from them.
+    pub(crate) start: Inputs,
     /// The solver's state, once there is one.
     pub(crate) solver: Option<simulation::Snapshot>,
 }
@@ -126,12 +91,8 @@ mod tests {
             stop_time: None,
             time: 1.0 / 3.0,
             parameters: vec![9.80665, -0.0],
-            inputs: vec![BodyInput::default()],
-            releases: vec![true, false],
-            length_changes: vec![0.0, 2.5],
-            flow: WaterFlow::default(),
-            start_displacements: vec![[0.0; 6]],
-            start_length_changes: vec![0.0; 2],
+            inputs: HostInputs::default(),
+            start: Inputs::default(),
             solver: None,
         }
     }
@@ -158,21 +119,6 @@ mod tests {
         }
         let longer = [bytes.as_slice(), b"x"].concat();
         assert!(Snapshot::from_bytes(&longer, "token").is_err());
-    }
-
-    #[test]
-    fn zero_is_a_velocity_only_of_what_rests_or_was_ever_faster() {
-        let mut input = BodyInput {
-            has_velocity: [true, true, true, true, false, true],
-            ..BodyInput::default()
-        };
-        assert_eq!(input.given()[..4], [Some(0.0); 4]);
-        assert_eq!(input.given()[4], None);
-        input.has_moved = [true, false];
-        assert_eq!(input.given()[..3], [None; 3]);
-        assert_eq!(input.given()[3], Some(0.0));
-        input.has_speed = [true, false];
-        assert_eq!(input.given()[..4], [Some(0.0); 4]);
     }
 
     #[test]

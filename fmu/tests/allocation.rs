@@ -59,7 +59,7 @@ fn allocations_of_a_host(scene: &Scene) -> usize {
             for node in 0..flow.node_count(0) {
                 flow.set(0, node, [time.sin(), 0.0, 0.0], [time.cos(), 0.0, 0.0]);
             }
-            simulation.set_flow(&flow);
+            simulation.inputs_mut().flow.clone_from(&flow);
             simulation.advance(0.05).unwrap();
         }
     };

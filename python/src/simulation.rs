@@ -5,9 +5,9 @@ use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
-use moorline::model::{Body, End, Model};
+use moorline::model::{End, Model};
 use moorline::scene::LoadedScene;
-use moorline::simulation::{self, NO_FLOW, Simulation as Mooring, Watch, WaterFlow};
+use moorline::simulation::{self, Inputs, NO_FLOW, Simulation as Mooring, Watch};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyUserWarning;
@@ -21,55 +21,18 @@ use crate::errors::Failure;
 use crate::parameters;
 use crate::scene::Scene;
 
-/// Inputs of a host as last given.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Given {
-    /// Displacement and velocity of every point and then every vessel [m, rad, m/s, rad/s]; velocities that are not given are derived.
-    bodies: Vec<([f64; 6], [Option<f64>; 6])>,
-    /// Release command of each line.
-    releases: Vec<bool>,
-    /// Length changes of the winches, by line [m].
-    length_changes: Vec<f64>,
-    flow: WaterFlow,
-}
-
-impl Given {
-    fn new(model: &Model) -> Given {
-        Given {
-            bodies: vec![([0.0; 6], [None; 6]); model.bodies().count()],
-            releases: vec![false; model.lines.len()],
-            length_changes: vec![0.0; model.lines.len()],
-            flow: WaterFlow::still(model),
-        }
-    }
-
-    fn hand_over(&self, mooring: &mut Mooring) {
-        for (index, (pose, velocity)) in self.bodies.iter().enumerate() {
-            let body = mooring.model().body(index);
-            mooring.set_body(body, *pose, *velocity);
-        }
-        for (line, &release) in self.releases.iter().enumerate() {
-            mooring.set_release(line, release);
-        }
-        for (line, &change) in self.length_changes.iter().enumerate() {
-            mooring.set_length_change(line, change);
-        }
-        mooring.set_flow(&self.flow);
-    }
-}
-
 /// Time [s] and inputs at which the statics were solved: choices that are made there, such as step limits, are not part of a snapshot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Start {
     time: f64,
-    given: Given,
+    given: Inputs,
 }
 
 /// Static equilibrium at a start, always from the same first guess.
 fn begin(loaded: &LoadedScene, start: &Start) -> Result<Mooring, Failure> {
     let fail = |error: simulation::Error| Failure::of_simulation(error, loaded);
     let mut mooring = Mooring::new(&loaded.scene).map_err(fail)?;
-    start.given.hand_over(&mut mooring);
+    mooring.set_inputs(&start.given);
     mooring.restart(start.time).map_err(fail)?;
     Ok(mooring)
 }
@@ -83,7 +46,7 @@ struct Saved {
     /// SHA-256 of the scene.
     scene: [u8; SUM],
     start: Start,
-    given: Given,
+    given: Inputs,
     snapshot: simulation::Snapshot,
 }
 
@@ -205,44 +168,26 @@ impl Table {
         names.iter().map(|name| self.named(name)).collect()
     }
 
-    fn slot(&self, body: Body) -> usize {
-        match body {
-            Body::Point(point) => point,
-            Body::Vessel(vessel) => self.loaded.scene.points.len() + vessel,
-        }
-    }
-
     /// Sets an input; a velocity of `None` is derived.
-    fn set(&self, given: &mut Given, variable: &Variable, value: Option<f64>) -> Result<(), Failure> {
+    fn set(&self, given: &mut Inputs, variable: &Variable, value: Option<f64>) -> Result<(), Failure> {
         if let Some(value) = value {
             check(variable, value)?;
         }
         match (&variable.binding, value) {
-            (Binding::Velocity { body, axis }, _) => given.bodies[self.slot(*body)].1[*axis] = value,
+            (Binding::Velocity { body, axis }, None) => given.body_mut(*body).velocity[*axis] = None,
             (_, None) => {
                 let problem = "None is no value: only velocities can be left to be derived".to_string();
                 return Err(Failure::Input(variable.name.clone(), problem));
             }
-            (Binding::Displacement { body, axis }, Some(value)) => {
-                given.bodies[self.slot(*body)].0[*axis] = value
+            (_, Some(value)) => {
+                variable.set_input(given, &[value]);
             }
-            (Binding::Release { line }, Some(value)) => given.releases[*line] = value != 0.0,
-            (Binding::LengthChange { line }, Some(value)) => given.length_changes[*line] = value,
-            (
-                Binding::Flow {
-                    line,
-                    component,
-                    node,
-                },
-                Some(value),
-            ) => given.flow.component_mut(*line, *component)[node.unwrap_or(0)] = value,
-            _ => unreachable!("inputs have no other binding"),
         }
         Ok(())
     }
 
     /// Sets the inputs of Python: nothing, an array in the order of the inputs, or a dict.
-    fn set_all(&self, given: &mut Given, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_all(&self, given: &mut Inputs, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
         if inputs.is_none() {
             return Ok(());
         }
@@ -268,7 +213,7 @@ impl Table {
         Ok(self.set_array(given, &values)?)
     }
 
-    fn set_array(&self, given: &mut Given, values: &[f64]) -> Result<(), Failure> {
+    fn set_array(&self, given: &mut Inputs, values: &[f64]) -> Result<(), Failure> {
         if values.len() != self.inputs.len() {
             let problem = format!(
                 "{} numbers, but the simulation has {} inputs: {}",
@@ -356,7 +301,7 @@ impl Clone for Held {
 pub(crate) struct Simulation {
     table: Arc<Table>,
     start: Arc<Start>,
-    given: Given,
+    given: Inputs,
     mooring: Held,
     watch: Watch,
 }
@@ -426,7 +371,7 @@ impl Simulation {
         let made = aside(py, None, move |_| {
             let loaded = scene.discretise();
             let model = Model::new(&loaded.scene).map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
-            Ok::<_, Failure>((Given::new(&model), Table::new(loaded, &model, velocities)?))
+            Ok::<_, Failure>((Inputs::new(&model), Table::new(loaded, &model, velocities)?))
         });
         let (mut given, table) = made??;
         if let Some(inputs) = inputs {
@@ -500,7 +445,7 @@ impl Simulation {
         let Simulation { given, mooring, .. } = self;
         let mooring = mooring.change();
         let advanced = py.detach(|| {
-            given.hand_over(mooring);
+            mooring.set_inputs(given);
             mooring.advance(h)
         });
         advanced.map_err(Failure::Step)?;
@@ -510,18 +455,12 @@ impl Simulation {
     /// An input, output or parameter by name.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let variable = self.table.named(name)?;
+        let mut given = [0.0];
         let value = match &variable.binding {
-            Binding::Displacement { body, axis } => self.given.bodies[self.table.slot(*body)].0[*axis],
             Binding::Velocity { body, axis } => {
-                return Ok(self.given.bodies[self.table.slot(*body)].1[*axis].into_pyobject(py)?);
+                return Ok(self.given.body(*body).velocity[*axis].into_pyobject(py)?);
             }
-            Binding::Release { line } => f64::from(u8::from(self.given.releases[*line])),
-            Binding::LengthChange { line } => self.given.length_changes[*line],
-            Binding::Flow {
-                line,
-                component,
-                node,
-            } => self.given.flow.component(*line, *component)[node.unwrap_or(0)],
+            _ if variable.read_input(&self.given, &mut given) => given[0],
             Binding::Parameter(parameter) => {
                 let value = parameter.value(&self.table.loaded.scene);
                 value.expect("the table has only parameters of the scene")

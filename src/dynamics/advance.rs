@@ -312,6 +312,9 @@ impl Integrators {
         let [own, others @ ..] = &mut self.scratch[..threads] else {
             return;
         };
+        if others.is_empty() {
+            return;
+        }
         let size = self.networks.len().div_ceil(threads).max(1);
         for (other, networks) in others.iter_mut().zip(model.networks.chunks(size).skip(1)) {
             for network in networks {

@@ -84,12 +84,8 @@ impl InputSample {
     /// Sample of N axes, the last of which also fills the missing ones.
     #[inline(always)]
     pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> InputSample {
-        InputSample::rated(position, rates(velocity))
-    }
-
-    /// [`InputSample::new`] from the velocities as [`rates`] returns them.
-    #[inline(always)]
-    pub fn rated<const N: usize>(position: [f64; N], [velocity, rated]: [[f64; N]; 2]) -> InputSample {
+        let rated = velocity.map(|rate| f64::from(u8::from(rate.is_some())));
+        let velocity = velocity.map(|rate| rate.unwrap_or(0.0));
         let last = |lane: usize| lane.min(N - 1);
         InputSample {
             position: Lanes::new(from_fn(|lane| position[last(lane)])),
@@ -98,15 +94,6 @@ impl InputSample {
             ease: EASE,
         }
     }
-}
-
-/// Velocities from the host, 0 where it gives none [m/s, rad/s]; and 1 where it gives one, else 0 [-].
-#[inline(always)]
-pub fn rates<const N: usize>(given: [Option<f64>; N]) -> [[f64; N]; 2] {
-    [
-        given.map(|rate| rate.unwrap_or(0.0)),
-        given.map(|rate| f64::from(u8::from(rate.is_some()))),
-    ]
 }
 
 /// C1 path along four axes side by side, with the samples of its prediction.

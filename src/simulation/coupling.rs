@@ -108,11 +108,12 @@ impl Simulation {
 
     /// Force [N] and moment [N m] of the mooring on a body as the scene requests it: with the inertia of the ends or without. A point has no
     /// moment.
-    pub fn host_force(&self, body: Body) -> [f64; 6] {
-        match self.model.force {
+    pub fn host_force(&self, body: Body) -> &[f64; 6] {
+        let force = &self.reactions.bodies[self.snapshot.inputs.place(body)];
+        force.get_or_init(|| match self.model.force {
             ForceOutput::Total => self.total_force(body),
             ForceOutput::WithoutInertia => self.force_without_inertia(body).into(),
-        }
+        })
     }
 
     fn total_force(&self, body: Body) -> [f64; 6] {
@@ -145,7 +146,7 @@ impl Simulation {
     /// Mass of the mooring's ends on a body: −∂F/∂a at the present positions and velocities, of force [kg, kg m] and moment [kg m, kg m²] by
     /// acceleration and angular acceleration; added mass and the bodies of points are included. Zero in quasi-static runs.
     pub fn end_mass(&self, body: Body) -> Matrix6<f64> {
-        let mass = &self.interface_values().masses[place(&self.model, body)];
+        let mass = &self.interface_values().masses[self.snapshot.inputs.place(body)];
         *mass.get_or_init(|| self.evaluate_end_mass(body))
     }
 
@@ -200,7 +201,7 @@ impl Simulation {
     /// Force of the mooring on a body over the coming step, whose length is taken as that of the last one, or as the scene's interval for the first. `None`
     /// where the step fails, or where the attitude of a vessel has no unique rates.
     pub fn impedance(&self, body: Body) -> Option<&Impedance> {
-        let impedance = &self.interface_values().impedances[place(&self.model, body)];
+        let impedance = &self.interface_values().impedances[self.snapshot.inputs.place(body)];
         impedance.get_or_init(|| self.evaluate_impedance(body)).as_ref()
     }
 
@@ -272,14 +273,6 @@ impl Simulation {
         Ok(values
             .map(|(a, (b, c))| (3.0 * a - 4.0 * b + c) / (2.0 * part))
             .collect())
-    }
-}
-
-/// Index of a body in the list of all points followed by all vessels.
-fn place(model: &Model, body: Body) -> usize {
-    match body {
-        Body::Point(point) => point,
-        Body::Vessel(vessel) => model.points.len() + vessel,
     }
 }
 

@@ -268,17 +268,6 @@ pub(super) fn begin(model: &Model, state: &State, flow: &WaterFlow) -> Option<Wa
 }
 
 impl Simulation {
-    /// Sets the flow of the water that a host gives, with the shape of [`WaterFlow::still`]: at the end of the coming step if the scene has
-    /// `input_reconstruction = "interpolate"`, else now.
-    pub fn set_flow(&mut self, flow: &WaterFlow) {
-        self.snapshot.inputs.flow.clone_from(flow);
-    }
-
-    /// The flow of the water as set.
-    pub fn flow(&self) -> &WaterFlow {
-        &self.snapshot.inputs.flow
-    }
-
     /// Position at which a host is to give the next flow for a node of a line [m]: the present position of the node or, if the flow is for the end of the
     /// coming step, its position then at constant velocity. That step is taken as long as the last one, the first as long as the scene's interval.
     pub fn flow_place(&self, line: usize, node: usize) -> Vector3<f64> {

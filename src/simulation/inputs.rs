@@ -1,62 +1,101 @@
-//! Inputs of a host to a simulation: positions of points and vessels, releases of lines, length changes of winches.
+//! Inputs of a host to a simulation: positions of points and vessels, releases of lines, length changes of winches, flow of the water.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::{Simulation, WaterFlow};
-use crate::dynamics::motion::rates;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, Model};
 
-/// Inputs of a host for points and vessels.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Inputs {
-    pub points: Vec<PointInput>,
-    pub vessels: Vec<VesselInput>,
-    /// Release command of each line.
+/// Inputs of a host.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Inputs {
+    /// Number of points [-].
+    points: usize,
+    /// Inputs of all points, then of all vessels.
+    bodies: Vec<BodyInput>,
+    /// Release command of each line: detaches it, permanently, from the point that its scene names.
     pub releases: Vec<bool>,
-    /// Length changes of the winches, by line [m].
+    /// Target lengths that the winches have paid out beyond those of the scene, negative for length hauled in, by line [m].
     pub length_changes: Vec<f64>,
+    /// Flow of the water: at the end of the coming step if the scene has `input_reconstruction = "interpolate"`, else now.
     pub flow: WaterFlow,
 }
 
 impl Inputs {
     /// Inputs before any of them is set.
-    pub(super) fn new(model: &Model) -> Inputs {
+    pub fn new(model: &Model) -> Inputs {
         Inputs {
-            points: vec![PointInput::default(); model.points.len()],
-            vessels: vec![VesselInput::default(); model.vessels.len()],
+            points: model.points.len(),
+            bodies: vec![BodyInput::default(); model.bodies().count()],
             releases: vec![false; model.lines.len()],
             length_changes: vec![0.0; model.lines.len()],
             flow: WaterFlow::still(model),
         }
     }
+
+    /// Place of a body in lists of all points, then all vessels.
+    #[inline]
+    pub fn place(&self, body: Body) -> usize {
+        match body {
+            Body::Point(point) => point,
+            Body::Vessel(vessel) => self.points + vessel,
+        }
+    }
+
+    /// Inputs of all points, then of all vessels.
+    pub fn bodies(&self) -> &[BodyInput] {
+        &self.bodies
+    }
+
+    /// Input for a body.
+    #[inline]
+    pub fn body(&self, body: Body) -> &BodyInput {
+        &self.bodies[self.place(body)]
+    }
+
+    /// Input for a body, to be set.
+    #[inline]
+    pub fn body_mut(&mut self, body: Body) -> &mut BodyInput {
+        let place = self.place(body);
+        &mut self.bodies[place]
+    }
+
+    /// Inputs of the points.
+    #[inline]
+    pub(super) fn of_points(&self) -> &[BodyInput] {
+        &self.bodies[..self.points]
+    }
+
+    /// Inputs of the vessels.
+    #[inline]
+    pub(super) fn of_vessels(&self) -> &[BodyInput] {
+        &self.bodies[self.points..]
+    }
 }
 
-/// Inputs of a host for a point.
+/// Input of a host for a point, which has the first three axes, or for a vessel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct PointInput {
-    /// Displacement from the reference position [m].
-    pub displacement: [f64; 3],
-    /// Velocity [m/s], and the axes along which it is given rather than derived from the displacements, as returned
-    /// by [`rates`].
-    pub rates: [[f64; 3]; 2],
-}
-
-/// Inputs of a host for a vessel.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct VesselInput {
-    /// Displacement from the reference position [m]; roll, pitch and yaw from the reference attitude [rad].
-    pub pose: [f64; 6],
-    /// Velocity [m/s] and angular velocity in global axes [rad/s]; derived from the poses where absent.
+pub struct BodyInput {
+    /// Displacement from the reference position [m]; roll, pitch and yaw, added to those of the reference attitude [rad].
+    pub displacement: [f64; 6],
+    /// Velocity of the origin [m/s] and angular velocity [rad/s], both in global axes. Absent components are derived from the displacements; the
+    /// rotation needs all three components.
     pub velocity: [Option<f64>; 6],
 }
 
-impl VesselInput {
-    /// Rates of the pose [m/s, rad/s]. Those of the angles need the whole angular velocity.
+impl BodyInput {
+    /// Displacement of a point and its velocity.
+    #[inline(always)]
+    pub(super) fn of_point(&self) -> (Vector3<f64>, [Option<f64>; 3]) {
+        let ([x, y, z, ..], [vx, vy, vz, ..]) = (self.displacement, self.velocity);
+        (Vector3::new(x, y, z), [vx, vy, vz])
+    }
+
+    /// Rates of the displacement and the angles of a vessel [m/s, rad/s]. Those of the angles need the whole angular velocity.
     pub(super) fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
         let [vx, vy, vz, wx, wy, wz] = self.velocity;
-        let [_, _, _, roll, pitch, yaw] = self.pose;
+        let [_, _, _, roll, pitch, yaw] = self.displacement;
         let turning = match (wx, wy, wz) {
             (Some(x), Some(y), Some(z)) => {
                 angle_rates(attitude + Vector3::new(roll, pitch, yaw), Vector3::new(x, y, z))
@@ -69,68 +108,53 @@ impl VesselInput {
 }
 
 impl Simulation {
-    /// Sets the present displacement of a coupled point from its reference position [m].
-    pub fn set_displacement(&mut self, point: usize, displacement: [f64; 3]) {
-        self.snapshot.inputs.points[point].displacement = displacement;
+    /// The inputs as set.
+    pub fn inputs(&self) -> &Inputs {
+        &self.snapshot.inputs
     }
 
-    /// Displacement of a coupled point as set [m].
-    pub fn displacement(&self, point: usize) -> [f64; 3] {
-        self.snapshot.inputs.points[point].displacement
+    /// The inputs, to be set.
+    pub fn inputs_mut(&mut self) -> &mut Inputs {
+        &mut self.snapshot.inputs
+    }
+
+    /// Sets all inputs, which must be those of this model.
+    pub fn set_inputs(&mut self, inputs: &Inputs) {
+        let own = &mut self.snapshot.inputs;
+        own.bodies.copy_from_slice(&inputs.bodies);
+        own.releases.copy_from_slice(&inputs.releases);
+        own.length_changes.copy_from_slice(&inputs.length_changes);
+        own.flow.clone_from(&inputs.flow);
+    }
+
+    /// Sets the present displacement of a coupled point from its reference position [m].
+    pub fn set_displacement(&mut self, point: usize, displacement: [f64; 3]) {
+        self.snapshot.inputs.bodies[point].displacement[..3].copy_from_slice(&displacement);
     }
 
     /// Sets the present velocity of a coupled point [m/s]; axes without a velocity are derived from the
     /// displacements.
     pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
-        self.snapshot.inputs.points[point].rates = rates(velocity);
-    }
-
-    /// Velocity of a coupled point as set [m/s].
-    pub fn velocity(&self, point: usize) -> [Option<f64>; 3] {
-        let [velocity, given] = self.snapshot.inputs.points[point].rates;
-        std::array::from_fn(|axis| (given[axis] > 0.0).then_some(velocity[axis]))
+        self.snapshot.inputs.bodies[point].velocity[..3].copy_from_slice(&velocity);
     }
 
     /// Sets the present pose of a vessel: displacement from its reference position [m]; roll, pitch and yaw added to those of its reference attitude [rad].
     pub fn set_pose(&mut self, vessel: usize, pose: [f64; 6]) {
-        self.snapshot.inputs.vessels[vessel].pose = pose;
-    }
-
-    /// Pose of a vessel as set [m, rad].
-    pub fn pose(&self, vessel: usize) -> [f64; 6] {
-        self.snapshot.inputs.vessels[vessel].pose
+        self.snapshot.inputs.body_mut(Body::Vessel(vessel)).displacement = pose;
     }
 
     /// Sets the present pose and velocity of a body, along its first three axes or all six.
-    pub fn set_body(&mut self, body: Body, pose: [f64; 6], velocity: [Option<f64>; 6]) {
-        match body {
-            Body::Point(point) => {
-                let ([x, y, z, ..], [vx, vy, vz, ..]) = (pose, velocity);
-                self.set_displacement(point, [x, y, z]);
-                self.set_velocity(point, [vx, vy, vz]);
-            }
-            Body::Vessel(vessel) => {
-                self.set_pose(vessel, pose);
-                self.set_vessel_velocity(vessel, velocity);
-            }
-        }
-    }
-
-    /// Sets the present motion of a vessel: velocity of its origin [m/s] and angular velocity [rad/s], both in global
-    /// axes. Absent components are derived from the poses; the rotation needs all three components.
-    pub fn set_vessel_velocity(&mut self, vessel: usize, velocity: [Option<f64>; 6]) {
-        self.snapshot.inputs.vessels[vessel].velocity = velocity;
+    pub fn set_body(&mut self, body: Body, displacement: [f64; 6], velocity: [Option<f64>; 6]) {
+        *self.snapshot.inputs.body_mut(body) = BodyInput {
+            displacement,
+            velocity,
+        };
     }
 
     /// Sets the release command of a line, which detaches it from the point that its scene names; it is permanent
     /// from the next step on.
     pub fn set_release(&mut self, line: usize, release: bool) {
         self.snapshot.inputs.releases[line] = release;
-    }
-
-    /// Returns the release command of a line.
-    pub fn release(&self, line: usize) -> bool {
-        self.snapshot.inputs.releases[line]
     }
 
     /// Returns whether ends A and B of a line are released from their points.
@@ -141,10 +165,5 @@ impl Simulation {
     /// Sets the present target length paid out by the winch of a line beyond that of the scene [m], negative for length hauled in.
     pub fn set_length_change(&mut self, line: usize, change: f64) {
         self.snapshot.inputs.length_changes[line] = change;
-    }
-
-    /// Target length paid out by the winch of a line, as set [m].
-    pub fn length_change(&self, line: usize) -> f64 {
-        self.snapshot.inputs.length_changes[line]
     }
 }

@@ -1,10 +1,9 @@
 //! The paths that points, vessels and winches follow between communication points.
 
-use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 use serde::{Deserialize, Serialize};
 
-use super::inputs::{Inputs, PointInput};
+use super::inputs::{BodyInput, Inputs};
 use super::prescribed::HostEnds;
 use super::winches::{self, WinchPath};
 use super::{Simulation, Snapshot};
@@ -56,16 +55,17 @@ pub(super) fn is_coupled(point: &Point) -> bool {
 impl Paths {
     /// Paths at rest at a time [s] at the places of the inputs.
     pub(super) fn at_rest(model: &Model, time: f64, inputs: &Inputs, follows_scene: bool) -> Paths {
-        let points = model.points.iter().zip(&inputs.points);
+        let points = model.points.iter().zip(inputs.of_points());
         let coupled = points.filter(|(point, _)| is_coupled(point));
-        let place = |(point, input): (&Point, &PointInput)| {
-            HostPath::at_rest(point.reference + Vector3::from(input.displacement))
-        };
-        let vessels = inputs.vessels.iter();
+        let place =
+            |(point, input): (&Point, &BodyInput)| HostPath::at_rest(point.reference + input.of_point().0);
+        let vessels = inputs.of_vessels().iter();
         let mut paths = Paths {
             clock: Clock::new(time),
             points: coupled.map(place).collect(),
-            vessels: vessels.map(|input| VesselPath::at_rest(input.pose)).collect(),
+            vessels: vessels
+                .map(|input| VesselPath::at_rest(input.displacement))
+                .collect(),
             winch_paths: winches::paths(model, &inputs.length_changes, time, follows_scene),
             filters: Vec::new(),
         };
@@ -161,22 +161,22 @@ impl NullaryFnOnce for Extend<'_> {
         // loops, not closures, which would not be compiled for the vector unit
         let paths = self.paths.points.iter_mut().zip(&self.before.points);
         let mut paths = paths.zip(self.ends);
-        for (point, input) in self.model.points.iter().zip(&self.inputs.points) {
+        for (point, input) in self.model.points.iter().zip(self.inputs.of_points()) {
             if !is_coupled(point) {
                 continue;
             }
             let Some(((path, before), ends)) = paths.next() else {
                 break;
             };
-            let place: [f64; 3] = (point.reference + Vector3::from(input.displacement)).into();
-            let sample = InputSample::rated(place, input.rates);
+            let (displacement, velocity) = input.of_point();
+            let sample = InputSample::new((point.reference + displacement).into(), velocity);
             *ends = path.0.extend(&before.0, self.extrapolation, &sample);
         }
         let paths = self.paths.vessels.iter_mut().zip(&self.before.vessels);
-        let vessels = self.model.vessels.iter().zip(&self.inputs.vessels);
+        let vessels = self.model.vessels.iter().zip(self.inputs.of_vessels());
         for ((path, before), (vessel, input)) in paths.zip(vessels) {
             let rates = input.rates(vessel.attitude);
-            path.extend(before, self.extrapolation, input.pose, rates);
+            path.extend(before, self.extrapolation, input.displacement, rates);
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::dynamics::energy_balance::{Energy, EnergyBalance};
 use crate::dynamics::reaction;
 use crate::elements;
 use crate::math::attitude::angle_rates;
-use crate::model::{ClosedForm, End, Line, LineState, Model, PointState, WaterAlong, joint};
+use crate::model::{Body, ClosedForm, End, Line, LineState, Model, PointState, WaterAlong, joint};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
@@ -54,8 +54,8 @@ pub struct NodeBending {
 pub(super) struct Reactions {
     /// Stored energy.
     energy: OnceCell<Energy>,
-    /// Force [N] and moment [N m] on every vessel.
-    vessels: Vec<OnceCell<[f64; 6]>>,
+    /// Force [N] and moment [N m] that a host reads on every body.
+    pub(super) bodies: Vec<OnceCell<[f64; 6]>>,
     lines: Vec<LineReactions>,
     /// Mass, impedance and stiffness of the bodies.
     pub(super) interface: OnceCell<InterfaceValues>,
@@ -76,7 +76,7 @@ impl Reactions {
     pub(super) fn new(model: &Model) -> Reactions {
         Reactions {
             energy: OnceCell::new(),
-            vessels: vec![OnceCell::new(); model.vessels.len()],
+            bodies: vec![OnceCell::new(); model.bodies().count()],
             lines: vec![LineReactions::default(); model.lines.len()],
             interface: OnceCell::new(),
         }
@@ -85,7 +85,7 @@ impl Reactions {
     /// Drops all values, for another state.
     pub(super) fn clear(&mut self) {
         self.energy.take();
-        for force in &mut self.vessels {
+        for force in &mut self.bodies {
             force.take();
         }
         for line in &mut self.lines {
@@ -100,8 +100,7 @@ impl Reactions {
 impl Simulation {
     /// Force [N] and moment [N m] of the mooring on a vessel, about its origin, in global axes.
     pub fn vessel_force(&self, vessel: usize) -> [f64; 6] {
-        let force = &self.reactions.vessels[vessel];
-        *force.get_or_init(|| self.sum_of_forces(vessel, |point| self.end_force(point)))
+        self.sum_of_forces(vessel, |point| self.end_force(point))
     }
 
     /// [`Simulation::nodal_force`] of all points on a vessel [N], and its moment [N m] about the vessel's origin, in global axes.
@@ -188,7 +187,7 @@ impl Simulation {
     /// The mooring in equilibrium with a vessel moved along, or turned about, a global axis from the pose that is set [m, rad].
     fn at_rest_aside(&self, vessel: usize, axis: usize, way: f64) -> Option<Simulation> {
         let mut aside = self.clone();
-        let mut pose = self.pose(vessel);
+        let mut pose = self.snapshot.inputs.body(Body::Vessel(vessel)).displacement;
         if axis < 3 {
             pose[axis] += way;
         } else {

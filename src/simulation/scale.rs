@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use super::inputs::Inputs;
+use super::inputs::{BodyInput, Inputs};
 use crate::dynamics::{StepError, StepFailure};
 use crate::model::{Body, End, Model, Role};
 use crate::scene::SceneError;
@@ -57,21 +57,17 @@ impl Scale {
     /// the fault.
     fn check(&self, model: &Model, inputs: &Inputs, length: f64) -> Result<(), (Body, String)> {
         let reach = REACH * self.size;
+        let check = |name: &str, body: Body| {
+            let input = inputs.body(body);
+            check_axes(name, input, body.axes(), length, reach).map_err(|problem| (body, problem))
+        };
         for (index, point) in model.points.iter().enumerate() {
             if let Role::Coupled { .. } = point.role {
-                let input = &inputs.points[index];
-                let body = Body::Point(index);
-                check_axes(&point.name, &input.displacement, &input.rates[0], length, reach)
-                    .map_err(|problem| (body, problem))?;
+                check(&point.name, Body::Point(index))?;
             }
         }
-        for (index, vessel) in model.vessels.iter().enumerate() {
-            let input = &inputs.vessels[index];
-            let rates = input.velocity.map(|rate| rate.unwrap_or(0.0));
-            check_axes(&vessel.name, &input.pose, &rates, length, reach)
-                .map_err(|problem| (Body::Vessel(index), problem))?;
-        }
-        Ok(())
+        let mut vessels = model.vessels.iter().enumerate();
+        vessels.try_for_each(|(index, vessel)| check(&vessel.name, Body::Vessel(index)))
     }
 
     /// Refuses the inputs of a start.
@@ -103,10 +99,12 @@ impl Scale {
     }
 }
 
-/// Refuses displacements [m, rad] beyond `reach` [m], and velocities [m/s, rad/s] that lead beyond it in a step of `length` [s].
+/// Refuses displacements along some axes [m, rad] beyond `reach` [m], and velocities [m/s, rad/s] that lead beyond it in a step of `length` [s].
 #[inline]
-fn check_axes(name: &str, place: &[f64], rates: &[f64], length: f64, reach: f64) -> Result<(), String> {
-    for (axis, (&value, &rate)) in place.iter().zip(rates).enumerate() {
+fn check_axes(name: &str, input: &BodyInput, axes: usize, length: f64, reach: f64) -> Result<(), String> {
+    let motion = input.displacement.iter().zip(&input.velocity);
+    for (axis, (&value, rate)) in motion.take(axes).enumerate() {
+        let rate = rate.unwrap_or(0.0);
         let limit = if axis < 3 { reach } else { TURNS_MAX };
         // NaN is not within any limit
         let (is_near, is_slow) = (value.abs() <= limit, (rate * length).abs() <= limit);

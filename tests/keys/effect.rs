@@ -190,7 +190,7 @@ fn drive(simulation: &mut Simulation, t: f64) {
             flow.set(line, node, [2.0 * t, 0.4, 0.1], [2.0, 0.0, 0.3]);
         }
     }
-    simulation.set_flow(&flow);
+    simulation.inputs_mut().flow.clone_from(&flow);
     let pose = [0.3 * t, 0.1 * t * t, 0.5 * t * t, 0.1 * t, 0.02 * t, 0.2 * t];
     for body in model.bodies() {
         let moved = match body {

@@ -72,7 +72,7 @@ impl Host {
                     .set(line, node, orbit.velocity.into(), orbit.acceleration.into());
             }
         }
-        simulation.set_flow(&self.flow);
+        simulation.inputs_mut().flow.clone_from(&self.flow);
     }
 }
 
@@ -227,7 +227,7 @@ fn a_step_repeated_from_a_saved_state_is_made_in_the_flow_that_is_given_then() {
             host.give(simulation, end)
         });
         let saved = simulation.snapshot().clone();
-        simulation.set_flow(&WaterFlow::still(simulation.model()));
+        simulation.inputs_mut().flow.calm();
         simulation.advance(0.1).unwrap();
         let calm = results(&simulation);
         simulation.restore(saved.clone());
@@ -304,7 +304,7 @@ fn a_steady_uniform_flow_is_a_current_of_its_velocity_and_adds_to_one() {
                 flow.set(line, node, velocity, [0.0; 3]);
             }
         }
-        simulation.set_flow(&flow);
+        simulation.inputs_mut().flow.clone_from(&flow);
         simulation.restart(0.0).unwrap();
         history(&mut simulation, 0.1, 100, |_, _| {})
     };
@@ -333,7 +333,7 @@ fn a_flow_that_is_no_number_or_faster_than_any_water_is_refused_with_its_name() 
     ] {
         let mut flow = host.flow.clone();
         flow.component_mut(1, component)[2] = value;
-        simulation.set_flow(&flow);
+        simulation.inputs_mut().flow.clone_from(&flow);
         let before = postcard::to_stdvec(simulation.snapshot()).unwrap();
         let error = simulation.advance(0.1).unwrap_err();
         assert!(
@@ -372,7 +372,7 @@ fn the_end_of_a_released_line_leaves_the_sinker_in_the_flow_of_the_other() {
         simulation.advance(0.1).unwrap();
         let mut flow = WaterFlow::still(simulation.model());
         flow.component_mut(0, 0)[2] = lower;
-        simulation.set_flow(&flow);
+        simulation.inputs_mut().flow.clone_from(&flow);
         run(&mut simulation, 0.1, 10);
         place(&simulation, "sinker")
     };
@@ -396,10 +396,10 @@ fn derivatives_and_the_impedance_of_a_step_are_those_of_steps_in_the_flow() {
     let predicted = simulation.impedance(body).unwrap().clone();
     let (before, end) = (simulation.snapshot().clone(), simulation.time() + 0.1);
     host.give(&mut simulation, end);
-    let flow = simulation.flow().clone();
+    let flow = simulation.inputs().flow.clone();
     let mut step = |by: f64| {
         simulation.restore(before.clone());
-        simulation.set_flow(&flow);
+        simulation.inputs_mut().flow.clone_from(&flow);
         let [x, y, z] = fairlead(end);
         simulation.set_displacement(point, [x + by, y, z]);
         let h = 1e-4;
@@ -423,11 +423,9 @@ fn derivatives_and_the_impedance_of_a_step_are_those_of_steps_in_the_flow() {
         (Vector3::from_row_slice(&found) - by_hand).norm() < 1e-4 * by_hand.norm(),
         "{found:?} {by_hand}"
     );
-    let ends = [
-        stepped.displacement(point),
-        stepped.velocity(point).map(Option::unwrap),
-    ];
-    let [x, v] = ends.map(|[x, y, z]| nalgebra::Vector6::new(x, y, z, 0.0, 0.0, 0.0));
+    let input = stepped.inputs().body(body);
+    let velocity = input.velocity.map(|velocity| velocity.unwrap_or(0.0));
+    let [x, v] = [input.displacement, velocity].map(nalgebra::Vector6::from);
     let linear = predicted.free - predicted.damping * v - predicted.stiffness * x;
     let inertialess = stepped.force_without_inertia(body);
     let error = (linear - inertialess).norm();

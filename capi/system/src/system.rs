@@ -331,13 +331,12 @@ impl System {
                 }
                 Body::Vessel(vessel) => {
                     let (origin, attitude) = (model.vessels[vessel].position, model.vessels[vessel].attitude);
-                    let present = simulation.pose(vessel);
-                    let near = attitude + Vector3::from_row_slice(&present[3..]);
+                    let [.., roll, pitch, yaw] = simulation.inputs().body(body).displacement;
+                    let near = attitude + Vector3::new(roll, pitch, yaw);
                     let turned = host_angles(&[at(3), at(4), at(5)], near) - attitude;
                     let moved = [0, 1, 2].map(|axis| at(axis) - origin[axis]);
                     let pose = [moved[0], moved[1], moved[2], turned.x, turned.y, turned.z];
-                    simulation.set_pose(vessel, pose);
-                    simulation.set_vessel_velocity(vessel, [0, 1, 2, 3, 4, 5].map(rate));
+                    simulation.set_body(body, pose, [0, 1, 2, 3, 4, 5].map(rate));
                 }
             }
         }

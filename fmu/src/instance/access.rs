@@ -1,8 +1,6 @@
 //! Access to the variables of an instance: the host reads results, and sets inputs and parameters.
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
-use moorline::model::Body;
-use moorline::scene::Scene;
 
 use super::{Instance, Outcome, Refusal};
 use crate::saved::Phase;
@@ -56,23 +54,13 @@ impl Instance {
 
     /// Reads a variable; `values` has its size.
     fn read(&self, variable: &Variable, values: &mut [f64]) -> Outcome {
-        values[0] = match &variable.binding {
-            Binding::Displacement { body, axis } => self.inputs[slot(&self.scene, *body)].displacement[*axis],
-            Binding::Velocity { body, axis } => self.inputs[slot(&self.scene, *body)].velocity[*axis],
-            Binding::Release { line } => f64::from(u8::from(self.releases[*line])),
-            Binding::LengthChange { line } => self.length_changes[*line],
-            Binding::Flow {
-                line,
-                component,
-                node,
-            } => {
-                let given = self.flow.component(*line, *component);
-                values.copy_from_slice(node.map_or(given, |node| &given[node..=node]));
-                return Ok(());
-            }
-            Binding::Parameter(parameter) => {
+        match (&variable.binding, variable.causality) {
+            (Binding::Parameter(parameter), _) => {
                 let value = parameter.value(&self.scene);
-                value.expect("the table has only parameters of the scene")
+                values[0] = value.expect("the table has only parameters of the scene");
+            }
+            (_, Causality::Input) => {
+                self.inputs.read(variable, values);
             }
             _ => {
                 let simulation = self.simulation.as_ref().ok_or_else(|| {
@@ -82,9 +70,9 @@ impl Instance {
                     ))
                 })?;
                 Interface::read(variable, simulation, values)?;
-                return check_result(variable, values, self.time);
+                check_result(variable, values, self.time)?;
             }
-        };
+        }
         Ok(())
     }
 
@@ -191,45 +179,15 @@ impl Instance {
 
     /// Sets the inputs among some variables; the statics are solved again where they are given during initialization.
     fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Outcome {
+        let steps = matches!(self.phase, Phase::Step | Phase::Intermediate);
         for (variable, own) in with_values(&self.interface, references, values) {
-            match variable.binding {
-                Binding::Displacement { body, axis } => {
-                    let input = &mut self.inputs[slot(&self.scene, body)];
-                    let before = std::mem::replace(&mut input.displacement[axis], own[0]);
-                    match self.phase {
-                        Phase::Step | Phase::Intermediate => input.has_moved[axis / 3] |= own[0] != before,
-                        Phase::Initialization => self.simulation = None,
-                        _ => {}
-                    }
-                }
-                Binding::Velocity { body, axis } => {
-                    let input = &mut self.inputs[slot(&self.scene, body)];
-                    input.velocity[axis] = own[0];
-                    // Hosts write the start value 0 of every input: that is not yet a velocity.
-                    let steps = matches!(self.phase, Phase::Step | Phase::Intermediate);
-                    input.has_velocity[axis] |= steps || own[0] != 0.0;
-                    input.has_speed[axis / 3] |= own[0] != 0.0;
-                }
-                Binding::Release { line } => self.releases[line] = own[0] != 0.0,
-                Binding::LengthChange { line } => {
-                    self.length_changes[line] = own[0];
-                    if self.phase == Phase::Initialization {
-                        self.simulation = None;
-                    }
-                }
-                Binding::Flow {
-                    line,
-                    component,
-                    node,
-                } => {
-                    let given = self.flow.component_mut(line, component);
-                    let first = node.unwrap_or(0);
-                    given[first..first + own.len()].copy_from_slice(own);
-                    if self.phase == Phase::Initialization {
-                        self.simulation = None;
-                    }
-                }
-                _ => {}
+            self.inputs.write(variable, own, steps);
+            let acts_at_start = matches!(
+                variable.binding,
+                Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Flow { .. }
+            );
+            if acts_at_start && self.phase == Phase::Initialization {
+                self.simulation = None;
             }
         }
         Ok(())
@@ -297,17 +255,12 @@ impl Instance {
             self.check_settable(variable, value)?;
             match variable.binding {
                 // The rates of roll, pitch and yaw are no angular velocity: the path through the poses has its own.
-                Binding::Displacement { body, axis } if axis < 3 => {
-                    targets.push((slot(&self.scene, body), axis, value));
-                }
+                Binding::Displacement { body, axis } if axis < 3 => targets.push((body, axis, value)),
                 _ => {}
             }
         }
         for (body, axis, value) in targets {
-            let input = &mut self.inputs[body];
-            input.velocity[axis] = value;
-            input.has_velocity[axis] = true;
-            input.has_speed[axis / 3] |= value != 0.0;
+            self.inputs.write_velocity(body, axis, value, true);
         }
         Ok(())
     }
@@ -326,14 +279,6 @@ fn with_values<'a>(
         rest = others;
         (variable, own)
     })
-}
-
-/// Place of a body among the inputs: all points, then all vessels.
-fn slot(scene: &Scene, body: Body) -> usize {
-    match body {
-        Body::Point(point) => point,
-        Body::Vessel(vessel) => scene.points.len() + vessel,
-    }
 }
 
 /// An output that is not finite is no result.

@@ -183,18 +183,7 @@ pub(super) fn both_sides_of_statics<T>(
     let by = distance(simulation, motion);
     let side = |by: f64| {
         let mut moved = simulation.clone();
-        match motion.body {
-            Body::Point(point) => {
-                let mut displacement = moved.displacement(point);
-                displacement[motion.axis] += by;
-                moved.set_displacement(point, displacement);
-            }
-            Body::Vessel(vessel) => {
-                let mut pose = moved.pose(vessel);
-                pose[motion.axis] += by;
-                moved.set_pose(vessel, pose);
-            }
-        }
+        moved.inputs_mut().body_mut(motion.body).displacement[motion.axis] += by;
         moved.restart(simulation.time()).map_err(|e| e.to_string())?;
         Ok::<T, String>(read(&moved))
     };
