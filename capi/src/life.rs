@@ -133,7 +133,7 @@ pub unsafe extern "C" fn moorline_save(
     needed: *mut usize,
 ) -> c_int {
     edge::call(simulation, "moorline_save", |session| {
-        let saved = session.save()?;
+        let saved = session.save();
         // SAFETY: room for bytes, and one number.
         unsafe { edge::give_bytes(&saved, bytes, room, needed) }
     })

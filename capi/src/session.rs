@@ -6,12 +6,11 @@ use std::path::Path;
 use moorline::discretisation::discretised;
 use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model};
-use moorline::output::{collect, json};
+use moorline::output::{collect, json, sealed};
 use moorline::scene::{LoadError, Note, Scene};
 use moorline::simulation::{self, Inputs, NO_FLOW, Simulation, Snapshot, Watch};
 use moorline_decks::load;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use crate::codes::*;
 
@@ -40,10 +39,12 @@ impl Failure {
 
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
+/// Beginning of a saved state.
+const MARK: &[u8] = concat!("moorline c 1 ", env!("CARGO_PKG_VERSION"), "\n").as_bytes();
+
 /// All that changes.
 #[derive(Debug, Serialize, Deserialize)]
 struct Saved {
-    version: String,
     scene: String,
     origin: Inputs,
     start_time: f64,
@@ -427,10 +428,9 @@ impl Session {
         self.scene.to_toml()
     }
 
-    /// All that changes, as bytes: SHA-256, then the state in postcard.
-    pub(crate) fn save(&self) -> Outcome<Vec<u8>> {
+    /// All that changes, as bytes.
+    pub(crate) fn save(&self) -> Vec<u8> {
         let saved = Saved {
-            version: env!("CARGO_PKG_VERSION").to_string(),
             scene: self.scene.to_toml(),
             origin: self.origin.clone(),
             start_time: self.start_time,
@@ -440,30 +440,13 @@ impl Session {
                 .as_ref()
                 .map(|simulation| simulation.snapshot().clone()),
         };
-        let body = postcard::to_stdvec(&saved).map_err(|error| {
-            Failure::new(
-                MOORLINE_INTERNAL_ERROR,
-                format!("the state cannot be written: {error}"),
-            )
-        })?;
-        let mut bytes = Sha256::digest(&body).to_vec();
-        bytes.extend(body);
-        Ok(bytes)
+        sealed::seal(MARK, &saved)
     }
 
     /// Goes back to a saved state, of this scene with any parameters.
     pub(crate) fn restore(&mut self, bytes: &[u8]) -> Outcome {
         let damaged = || Failure::argument("the bytes are no state of this version of moorline, or damaged");
-        let (sum, body) = bytes
-            .split_at_checked(Sha256::output_size())
-            .ok_or_else(damaged)?;
-        if Sha256::digest(body).as_slice() != sum {
-            return Err(damaged());
-        }
-        let saved: Saved = postcard::from_bytes(body).map_err(|_| damaged())?;
-        if saved.version != env!("CARGO_PKG_VERSION") {
-            return Err(damaged());
-        }
+        let saved: Saved = sealed::open(MARK, bytes).map_err(|_| damaged())?;
         let same_start = self.simulation.is_some()
             && saved.scene == self.scene.to_toml()
             && saved.origin == self.origin

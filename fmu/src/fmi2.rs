@@ -355,7 +355,7 @@ unsafe extern "C" fn fmi2SerializedFMUstateSize(
     // SAFETY: the host's handle, state and result.
     unsafe {
         ffi::call(c, VERSION, "fmi2SerializedFMUstateSize", |instance| {
-            ffi::write(size, instance.serialize(ffi::state(FMUstate)?)?.len())
+            ffi::write(size, instance.serialize(ffi::state(FMUstate)?).len())
         })
     }
 }
@@ -370,7 +370,7 @@ unsafe extern "C" fn fmi2SerializeFMUstate(
     // SAFETY: the host's handle, state and array.
     unsafe {
         ffi::call(c, VERSION, "fmi2SerializeFMUstate", |instance| {
-            let bytes = instance.serialize(ffi::state(FMUstate)?)?;
+            let bytes = instance.serialize(ffi::state(FMUstate)?);
             ffi::copy_state(&bytes, ffi::slice_mut(serializedState.cast::<u8>(), size)?)
         })
     }

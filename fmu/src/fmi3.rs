@@ -509,7 +509,7 @@ unsafe extern "C" fn fmi3SerializedFMUStateSize(
     // SAFETY: the host's handle, state and result.
     unsafe {
         ffi::call(instance, VERSION, "fmi3SerializedFMUStateSize", |instance| {
-            ffi::write(size, instance.serialize(ffi::state(FMUState)?)?.len())
+            ffi::write(size, instance.serialize(ffi::state(FMUState)?).len())
         })
     }
 }
@@ -524,7 +524,7 @@ unsafe extern "C" fn fmi3SerializeFMUState(
     // SAFETY: the host's handle, state and array.
     unsafe {
         ffi::call(instance, VERSION, "fmi3SerializeFMUState", |instance| {
-            let bytes = instance.serialize(ffi::state(FMUState)?)?;
+            let bytes = instance.serialize(ffi::state(FMUState)?);
             ffi::copy_state(&bytes, ffi::slice_mut(serializedState, size)?)
         })
     }

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{End, Model};
+use moorline::output::sealed::{self, Unreadable};
 use moorline::scene::LoadedScene;
 use moorline::simulation::{self, Inputs, NO_FLOW, Simulation as Mooring, Watch};
 use nalgebra::Vector3;
@@ -37,7 +38,7 @@ fn begin(loaded: &LoadedScene, start: &Start) -> Result<Mooring, Failure> {
     Ok(mooring)
 }
 
-const MARK: &[u8] = concat!("moorline python 1 ", env!("CARGO_PKG_VERSION"), "\n").as_bytes();
+const MARK: &[u8] = concat!("moorline python 2 ", env!("CARGO_PKG_VERSION"), "\n").as_bytes();
 /// Bytes of a check sum.
 const SUM: usize = 32;
 
@@ -59,22 +60,19 @@ pub(crate) struct State(Arc<Saved>);
 impl State {
     /// The state as bytes, which this version of moorline reads.
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let body = postcard::to_stdvec(&*self.0).expect("every state can be written");
-        PyBytes::new(py, &[MARK, Sha256::digest(&body).as_slice(), &body].concat())
+        PyBytes::new(py, &sealed::seal(MARK, &*self.0))
     }
 
     /// Reads the bytes of `to_bytes`.
     #[staticmethod]
     fn from_bytes(data: &[u8]) -> PyResult<State> {
-        let refuse = |problem: &str| Failure::of_argument("data", problem);
-        let rest = data.strip_prefix(MARK);
-        let rest = rest.ok_or_else(|| refuse("no state that this version of moorline has saved"))?;
-        let damaged = || refuse("the saved state is cut short or changed");
-        let (sum, body) = rest.split_at_checked(SUM).ok_or_else(damaged)?;
-        if sum != Sha256::digest(body).as_slice() {
-            return Err(damaged().into());
-        }
-        let saved = postcard::from_bytes(body).map_err(|_| damaged())?;
+        let saved = sealed::open(MARK, data).map_err(|reason| {
+            let problem = match reason {
+                Unreadable::Mark => "no state that this version of moorline has saved",
+                Unreadable::Damaged => "the saved state is cut short or changed",
+            };
+            Failure::of_argument("data", problem)
+        })?;
         Ok(State(Arc::new(saved)))
     }
 

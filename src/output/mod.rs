@@ -21,6 +21,7 @@ mod parquet;
 pub mod record;
 pub mod recorder;
 pub mod report;
+pub mod sealed;
 pub mod state;
 pub mod table;
 pub mod times;

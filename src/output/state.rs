@@ -1,24 +1,20 @@
 //! The saved state of a run that is to be continued.
-//!
-//! Bytes: mark with the version, SHA-256 of what follows, then the state in postcard. Bytes of another version, truncated or changed ones are refused.
 
 use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::files::Marks;
 use super::record::Course;
+use super::sealed::{self, Unreadable};
 use super::{OutputError, write_file};
 use crate::simulation::Snapshot;
 
 /// Name of the file in the folder of the run.
 pub const FILE: &str = "run.state";
 
-const MARK: &str = concat!("moorline run 2 ", env!("CARGO_PKG_VERSION"), "\n");
-/// Bytes of the check sum.
-const SUM: usize = 32;
+const MARK: &str = concat!("moorline run 3 ", env!("CARGO_PKG_VERSION"), "\n");
 
 /// State of a run between two rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -43,12 +39,8 @@ impl RunState {
     /// # Errors
     /// The operating system refuses.
     pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
-        let body = postcard::to_stdvec(self).expect("every state can be written");
-        write_file(&folder.join(FILE), |w| {
-            w.write_all(MARK.as_bytes())?;
-            w.write_all(&Sha256::digest(&body))?;
-            w.write_all(&body)
-        })
+        let bytes = sealed::seal(MARK.as_bytes(), self);
+        write_file(&folder.join(FILE), |w| w.write_all(&bytes))
     }
 
     /// Reads the state from the folder of a run.
@@ -67,15 +59,12 @@ impl RunState {
             }
             _ => refuse(&error.to_string()),
         })?;
-        let rest = bytes.strip_prefix(MARK.as_bytes());
-        let rest = rest
-            .ok_or_else(|| refuse("not a state of this version of moorline: run the scene from the start"))?;
-        let damaged = || refuse("damaged: run the scene from the start");
-        let (sum, body) = rest.split_at_checked(SUM).ok_or_else(damaged)?;
-        if sum != Sha256::digest(body).as_slice() {
-            return Err(damaged());
-        }
-        postcard::from_bytes(body).map_err(|_| damaged())
+        sealed::open(MARK.as_bytes(), &bytes).map_err(|reason| match reason {
+            Unreadable::Mark => {
+                refuse("not a state of this version of moorline: run the scene from the start")
+            }
+            Unreadable::Damaged => refuse("damaged: run the scene from the start"),
+        })
     }
 
     /// Removes the state from the folder of a run that is complete.

@@ -102,9 +102,8 @@ impl Scale {
 /// Refuses displacements along some axes [m, rad] beyond `reach` [m], and velocities [m/s, rad/s] that lead beyond it in a step of `length` [s].
 #[inline]
 fn check_axes(name: &str, input: &BodyInput, axes: usize, length: f64, reach: f64) -> Result<(), String> {
-    let motion = input.displacement.iter().zip(&input.velocity);
-    for (axis, (&value, rate)) in motion.take(axes).enumerate() {
-        let rate = rate.unwrap_or(0.0);
+    for axis in 0..axes {
+        let (value, rate) = (input.displacement[axis], input.velocity[axis].unwrap_or(0.0));
         let limit = if axis < 3 { reach } else { TURNS_MAX };
         // NaN is not within any limit
         let (is_near, is_slow) = (value.abs() <= limit, (rate * length).abs() <= limit);

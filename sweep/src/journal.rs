@@ -1,6 +1,6 @@
 //! Rows of a sweep as they come, so that it can be killed at any moment.
 //!
-//! Bytes: a mark with the version, then records, each with its length, the SHA-256 of its body and the body in postcard. The first record identifies the
+//! Bytes: a mark with the version, then records, each with its length, sealed ([`moorline::output::sealed`]). The first record identifies the
 //! sweep. A record is appended in one write; one that is truncated or damaged, and all after it, is removed when the journal is opened, and its cases run
 //! again.
 
@@ -10,7 +10,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use moorline::output::OutputError;
+use moorline::output::{OutputError, sealed};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use sha2::{Digest, Sha256};
 
@@ -21,7 +21,7 @@ use crate::row::{Figures, Quantity, Results, Row};
 /// Name of the file in the folder of the sweep.
 pub const JOURNAL: &str = "sweep.journal";
 
-const MARK: &str = concat!("moorline sweep 1 ", env!("CARGO_PKG_VERSION"), "\n");
+const MARK: &str = concat!("moorline sweep 2 ", env!("CARGO_PKG_VERSION"), "\n");
 /// Bytes of the length of a record.
 const LENGTH: usize = 4;
 /// Bytes of a check sum.
@@ -220,18 +220,15 @@ impl Journal {
 
 /// A record with its length and check sum.
 fn framed(record: &impl Serialize) -> Vec<u8> {
-    let body = postcard::to_stdvec(record).expect("every record can be written");
-    let length = u32::try_from(body.len()).expect("a record is shorter than 4 GiB");
-    [&length.to_le_bytes()[..], &Sha256::digest(&body), &body].concat()
+    let sealed = sealed::seal(&[], record);
+    let length = u32::try_from(sealed.len()).expect("a record is shorter than 4 GiB");
+    [&length.to_le_bytes()[..], &sealed].concat()
 }
 
 /// The first record, and the bytes after it; `None` if it is not whole.
 fn first<T: DeserializeOwned>(bytes: &[u8]) -> Option<(T, &[u8])> {
     let (length, rest) = bytes.split_at_checked(LENGTH)?;
     let length = u32::from_le_bytes(length.try_into().ok()?) as usize;
-    let (sum, rest) = rest.split_at_checked(SUM)?;
-    let (body, rest) = rest.split_at_checked(length)?;
-    let is_whole = sum == Sha256::digest(body).as_slice();
-    let record = postcard::from_bytes(body).ok().filter(|_| is_whole)?;
-    Some((record, rest))
+    let (sealed, rest) = rest.split_at_checked(length)?;
+    Some((sealed::open(&[], sealed).ok()?, rest))
 }

@@ -15,8 +15,8 @@ use sha2::{Digest, Sha256};
 use crate::failure::{Code, Failure, Outcome};
 use crate::system::{Start, System};
 
-/// First word: `moorlin1` in bytes.
-const MARK: u64 = u64::from_le_bytes(*b"moorlin1");
+/// First word: `moorlin2` in bytes.
+const MARK: u64 = u64::from_le_bytes(*b"moorlin2");
 /// Words before the body.
 pub const HEAD: usize = 3;
 const WORD: usize = size_of::<u64>();
