@@ -3,7 +3,7 @@
 use std::ffi::c_int;
 use std::path::Path;
 
-use moorline::discretisation::discretised;
+use moorline::discretisation;
 use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json, sealed};
@@ -73,6 +73,8 @@ pub(crate) struct Session {
     start_time: f64,
     simulation: Option<Simulation>,
     watch: Option<Watch>,
+    /// Notes on the scene that were kept for the host.
+    noted: Vec<Note>,
     /// Warnings that the host has not read, a line each.
     pub(crate) warnings: String,
 }
@@ -96,6 +98,7 @@ impl Session {
         let interface = Interface::new(&scene, &model, Layout::Scalars).map_err(scene_error)?;
         let inputs = interface.inputs().clone();
         Ok(Session {
+            noted: scene.notes(),
             moved: moved(&scene, &model),
             origin: inputs.clone(),
             inputs,
@@ -111,12 +114,15 @@ impl Session {
     /// Selects by trials what the scene leaves open: elements, integrator and step.
     pub(crate) fn select(&mut self) -> Outcome {
         self.expect_not_started("select")?;
-        let scene = discretised(&self.scene).into_owned();
-        *self = Session {
-            inputs: self.inputs.clone(),
-            warnings: std::mem::take(&mut self.warnings),
-            ..Session::new(scene)?
-        };
+        if let Some(found) = discretisation::select(&self.scene) {
+            let notes = found.shortfalls();
+            *self = Session {
+                inputs: self.inputs.clone(),
+                warnings: std::mem::take(&mut self.warnings),
+                ..Session::new(found.scene)?
+            };
+            self.note(&notes);
+        }
         Ok(())
     }
 
@@ -148,6 +154,7 @@ impl Session {
             )));
         }
         let simulation = equilibrium(&self.scene, time, &self.inputs)?;
+        self.note_scene();
         self.watch = Some(Watch::new(&self.scene, &simulation));
         self.simulation = Some(simulation);
         self.note_state();
@@ -167,6 +174,14 @@ impl Session {
         for note in notes {
             self.warnings += &format!("{note}\n");
         }
+    }
+
+    /// Notes on the scene with its present parameters, each once.
+    fn note_scene(&mut self) {
+        let mut notes = self.scene.notes();
+        notes.retain(|note| !self.noted.contains(note));
+        self.note(&notes);
+        self.noted.extend(notes);
     }
 
     /// Notes on the present state, each once.

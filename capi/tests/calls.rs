@@ -17,6 +17,7 @@ unsafe extern "C" {
     fn moorline_load(version: u32, path: *const c_char, simulation: *mut Handle) -> c_int;
     fn moorline_read(version: u32, toml: *const c_char, simulation: *mut Handle) -> c_int;
     fn moorline_close(simulation: Handle) -> c_int;
+    fn moorline_select(simulation: Handle) -> c_int;
     fn moorline_start(simulation: Handle, time: f64) -> c_int;
     fn moorline_reset(simulation: Handle) -> c_int;
     fn moorline_step(simulation: Handle, step: f64) -> c_int;
@@ -514,6 +515,41 @@ fn likely_mistakes_are_told_once() {
         assert!(of_step.contains("buoy has moved by 12.000 m"), "{of_step}");
         assert_eq!(moorline_step(simulation, 1.0), MOORLINE_OK, "{}", message());
         assert_eq!(warnings(simulation), "");
+        moorline_close(simulation);
+    }
+}
+
+#[test]
+fn a_likely_mistake_in_a_parameter_is_told_at_the_start() {
+    let simulation = read(SCENE);
+    let before = warnings(simulation);
+    let (reference, stiff) = (find(simulation, "chain.axial_stiffness"), 1e12);
+    // SAFETY: arrays of one value.
+    unsafe {
+        let set = moorline_set(simulation, &raw const reference, &raw const stiff, 1);
+        assert_eq!(set, MOORLINE_OK, "{}", message());
+        assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK, "{}", message());
+        let told = warnings(simulation);
+        assert!(told.contains("axial_stiffness"), "{before} {told}");
+        moorline_reset(simulation);
+        assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK, "{}", message());
+        assert_eq!(warnings(simulation), "");
+        moorline_close(simulation);
+    }
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn elements_that_are_expected_to_miss_the_tolerance_are_told() {
+    let open = SCENE.replace(", elements = 6", "");
+    let motion =
+        "motion.buoy = { x = [[2.0, 8.0]], ramp = 8.0 }\noutput.duration = 30.0\nsolver.tolerance = 1e-5\n";
+    let simulation = read(&format!("{motion}{open}"));
+    // SAFETY: a handle.
+    unsafe {
+        assert_eq!(moorline_select(simulation), MOORLINE_OK, "{}", message());
+        let told = warnings(simulation);
+        assert!(told.contains("above solver.tolerance = 0.00001"), "{told}");
         moorline_close(simulation);
     }
 }

@@ -59,9 +59,7 @@ pub(crate) fn at_rest(loaded: &mut LoadedScene) -> Result<Simulation, Failure> {
 }
 
 fn take(loaded: &mut LoadedScene, found: Discretisation) {
-    let notes = found.shortfalls().into_iter();
-    let notes = notes.map(|text| Note::new("solver.tolerance".to_string(), text));
-    remark_all(loaded, notes.collect());
+    remark_all(loaded, found.shortfalls());
     loaded.scene = found.scene;
 }
 

@@ -8,7 +8,7 @@ use moorline::discretisation;
 use moorline::output::fmi::FmiVersion;
 use moorline::output::package::write_fmu;
 use moorline::output::{check_file, collect, modes};
-use moorline::scene::{Integrator, LoadError, LoadedScene, Note, load_text};
+use moorline::scene::{Integrator, LoadError, LoadedScene, load_text};
 use moorline::simulation::Simulation;
 use moorline_cli::Library;
 use moorline_decks::{Supplement, load_with};
@@ -72,7 +72,7 @@ impl Scene {
             None => self.loaded.clone(),
             Some(found) => {
                 let notes = found.shortfalls().into_iter();
-                let notes = notes.map(|text| self.loaded.locate_note(Note::new("solver.tolerance", text)));
+                let notes = notes.map(|note| self.loaded.locate_note(note));
                 Arc::new(LoadedScene {
                     notes: self.loaded.notes.iter().cloned().chain(notes).collect(),
                     scene: found.scene,

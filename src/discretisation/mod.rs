@@ -46,7 +46,7 @@ use std::borrow::Cow;
 
 use crate::model::mesh::line_elements;
 use crate::model::{Model, line_shares};
-use crate::scene::{Integrator, Line, Scene, ToleranceOf, few, percent};
+use crate::scene::{Integrator, Line, Note, Scene, ToleranceOf, few, percent};
 use crate::simulation::{self, Simulation};
 use kinds::Kinds;
 use search::Search;
@@ -161,9 +161,9 @@ impl Discretisation {
         said
     }
 
-    /// Returns a sentence for each mesh whose error is expected to exceed the tolerance: it was extrapolated, or it has the greatest number of
+    /// Returns a note for each mesh whose error is expected to exceed the tolerance: it was extrapolated, or it has the greatest number of
     /// elements that is selected; and for each whose error, or that of its short sections, could not be tried.
-    pub fn shortfalls(&self) -> Vec<String> {
+    pub fn shortfalls(&self) -> Vec<Note> {
         let tolerance = self.scene.solver.tolerance;
         let of_mesh = |mesh: &Mesh| {
             let coarse = (!mesh.tried && mesh.error > tolerance).then(|| {
@@ -191,7 +191,10 @@ impl Discretisation {
             });
             [coarse, unknown].into_iter().flatten()
         };
-        self.meshes.iter().flat_map(of_mesh).collect()
+        let sentences = self.meshes.iter().flat_map(of_mesh);
+        sentences
+            .map(|text| Note::new("solver.tolerance", text))
+            .collect()
     }
 
     fn needs_more_at_rest(&self) -> bool {

@@ -46,7 +46,7 @@ use super::Simulation;
 use super::prescribed::MotionSource;
 use crate::dynamics::reaction;
 use crate::model::{Body, End, Model, PointState};
-use crate::scene::{ForceOutput, Integrator};
+use crate::scene::Integrator;
 pub(super) use trial::StepStart;
 use trial::{Sides, Trial};
 
@@ -104,26 +104,6 @@ impl Simulation {
     fn interface_values(&self) -> &InterfaceValues {
         let values = &self.reactions.interface;
         values.get_or_init(|| InterfaceValues::new(&self.model))
-    }
-
-    /// Force [N] and moment [N m] of the mooring on a body as the scene requests it: with the inertia of the ends or without. A point has no
-    /// moment.
-    pub fn host_force(&self, body: Body) -> &[f64; 6] {
-        let force = &self.reactions.bodies[self.snapshot.inputs.place(body)];
-        force.get_or_init(|| match self.model.force {
-            ForceOutput::Total => self.total_force(body),
-            ForceOutput::WithoutInertia => self.force_without_inertia(body).into(),
-        })
-    }
-
-    fn total_force(&self, body: Body) -> [f64; 6] {
-        match body {
-            Body::Point(point) => {
-                let [x, y, z] = self.end_force(point);
-                [x, y, z, 0.0, 0.0, 0.0]
-            }
-            Body::Vessel(vessel) => self.vessel_force(vessel),
-        }
     }
 
     /// Force [N] and moment [N m] on a body, with [`Simulation::end_mass`] times its acceleration added.

@@ -15,7 +15,7 @@ use crate::dynamics::reaction;
 use crate::elements;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, ClosedForm, End, Line, LineState, Model, PointState, WaterAlong, joint};
-use crate::scene::Integrator;
+use crate::scene::{ForceOutput, Integrator};
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
 
@@ -98,6 +98,26 @@ impl Reactions {
 }
 
 impl Simulation {
+    /// Force [N] and moment [N m] of the mooring on a body as the scene requests it: with the inertia of the ends or without. A point has no
+    /// moment.
+    pub fn host_force(&self, body: Body) -> &[f64; 6] {
+        let force = &self.reactions.bodies[self.snapshot.inputs.place(body)];
+        force.get_or_init(|| match self.model.force {
+            ForceOutput::Total => self.total_force(body),
+            ForceOutput::WithoutInertia => self.force_without_inertia(body).into(),
+        })
+    }
+
+    pub(super) fn total_force(&self, body: Body) -> [f64; 6] {
+        match body {
+            Body::Point(point) => {
+                let [x, y, z] = self.end_force(point);
+                [x, y, z, 0.0, 0.0, 0.0]
+            }
+            Body::Vessel(vessel) => self.vessel_force(vessel),
+        }
+    }
+
     /// Force [N] and moment [N m] of the mooring on a vessel, about its origin, in global axes.
     pub fn vessel_force(&self, vessel: usize) -> [f64; 6] {
         self.sum_of_forces(vessel, |point| self.end_force(point))

@@ -75,7 +75,8 @@ impl Kind {
             let scenes = self.extremes.iter().filter_map(|input| input.load().ok());
             let scenes: Vec<Scene> = scenes.map(|loaded| on_one_thread(loaded.scene)).collect();
             let found: Vec<_> = scenes.iter().filter_map(discretisation::select).collect();
-            let mut notes: Vec<String> = found.iter().flat_map(|found| found.shortfalls()).collect();
+            let notes = found.iter().flat_map(|found| found.shortfalls());
+            let mut notes: Vec<String> = notes.map(|note| note.text).collect();
             notes.sort();
             notes.dedup();
             let finest = scenes.first().and_then(|scene| finest(scene, &found));

@@ -63,7 +63,8 @@ fn results(case: &Case, tolerances: &[f64], converged: &Scene) -> [Vec<Kept>; 3]
                 _ => (run_by(mover, &found.scene, step, count), &exact_of_hosts),
             };
             let errors = errors_between(&run.tensions, exact);
-            let told: Vec<String> = found.shortfalls().into_iter().chain(run.warning).collect();
+            let short = found.shortfalls().into_iter().map(|note| note.text);
+            let told: Vec<String> = short.chain(run.warning).collect();
             if verbose {
                 println!("{name}, {mover:?}, {tolerance}: {errors:.4?} {told:?}");
             }
