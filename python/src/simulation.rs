@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{End, Model};
 use moorline::output::sealed::{self, Unreadable};
-use moorline::scene::LoadedScene;
+use moorline::scene::{LoadedScene, Note};
 use moorline::simulation::{self, Inputs, NO_FLOW, Simulation as Mooring, Watch};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -304,15 +304,21 @@ pub(crate) struct Simulation {
     watch: Watch,
 }
 
+/// Issues a Python warning.
+fn warn_of(py: Python<'_>, note: &Note) -> PyResult<()> {
+    PyErr::warn(
+        py,
+        &py.get_type::<PyUserWarning>(),
+        &CString::new(note.to_string())?,
+        1,
+    )
+}
+
 impl Simulation {
     /// Issues Python warnings on the present state, each once.
     fn warn(&mut self, py: Python<'_>) -> PyResult<()> {
-        let notes = self.watch.look(self.mooring.change());
-        for note in notes {
-            let text = self.table.loaded.locate_note(note).to_string();
-            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(text)?, 1)?;
-        }
-        Ok(())
+        let mut notes = self.watch.look(self.mooring.change()).into_iter();
+        notes.try_for_each(|note| warn_of(py, &self.table.loaded.locate_note(note)))
     }
 
     /// Value of a scalar output now.
@@ -365,7 +371,7 @@ impl Simulation {
             let problem = format!("{start_time} s is not a finite number");
             return Err(Failure::of_argument("start_time", problem).into());
         }
-        let scene = scene.clone();
+        let (scene, known) = (scene.clone(), scene.loaded.notes.len());
         let made = aside(py, None, move |_| {
             let loaded = scene.discretise();
             let model = Model::new(&loaded.scene).map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
@@ -388,6 +394,8 @@ impl Simulation {
             given,
             mooring: Held::new(mooring),
         };
+        let mut of_discretisation = simulation.table.loaded.notes.iter().skip(known);
+        of_discretisation.try_for_each(|note| warn_of(py, note))?;
         simulation.warn(py)?;
         Ok(simulation)
     }

@@ -204,6 +204,14 @@ def test_a_vessel_is_moved_by_pose(semi):
     assert abs(simulation["platform.my"]) > 0.0
 
 
+def test_a_mesh_that_is_expected_to_miss_the_tolerance_is_warned_of():
+    scene = moorline.Scene.from_toml(CHAIN.replace(", elements = 20", "") + "[solver]\ntolerance = 1e-5\n")
+    with pytest.warns(UserWarning, match="above solver.tolerance = 0.00001") as found:
+        simulation = moorline.Simulation(scene)
+    assert [str(warning.message) for warning in found] == simulation.scene.notes[len(scene.notes):]
+
+
+
 def test_likely_mistakes_are_warned_of_once(chain):
     simulation = moorline.Simulation(chain)
     with pytest.warns(UserWarning, match="has moved by 50.000 m in one communication step"):
