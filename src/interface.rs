@@ -29,6 +29,23 @@ pub use results::{LineResult, SolverResult};
 /// Message for a value of an energy balance that the scene does not request.
 const NO_BALANCE: &str = "the scene asks for no energy balance (`energy_balance` in [output])";
 
+/// Reason why a variable has no value.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoValue {
+    /// It is not defined in this configuration: the message.
+    #[error("{0}")]
+    Undefined(String),
+    /// It is not finite: the message.
+    #[error("{0}")]
+    NotFinite(String),
+}
+
+impl From<NoValue> for String {
+    fn from(reason: NoValue) -> String {
+        reason.to_string()
+    }
+}
+
 /// Role of a variable, named as in FMI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
@@ -317,6 +334,14 @@ impl Variable {
     pub fn size(&self) -> usize {
         self.dimension.unwrap_or(1)
     }
+
+    #[cold]
+    fn not_finite(&self, value: f64, time: f64) -> NoValue {
+        NoValue::NotFinite(format!(
+            "{}: {value} at t = {time} s is no result; look at the inputs and the start time, or try a smaller solver.time_step_max",
+            self.name
+        ))
+    }
 }
 
 /// The table.
@@ -436,8 +461,8 @@ impl Interface {
     /// Writes the values of a variable that is no parameter; `values` has its size.
     ///
     /// # Errors
-    /// A line whose closed-form catenary does not exist.
-    pub fn read(variable: &Variable, simulation: &Simulation, values: &mut [f64]) -> Result<(), String> {
+    /// A line whose closed-form catenary does not exist, a body without impedance; a value that is not finite.
+    pub fn read(variable: &Variable, simulation: &Simulation, values: &mut [f64]) -> Result<(), NoValue> {
         assert_eq!(values.len(), variable.size(), "one place for each value");
         match variable.binding {
             Binding::EndForce { body, axis } => values[0] = simulation.host_force(body)[axis],
@@ -448,17 +473,21 @@ impl Interface {
                 column,
             } => {
                 let value = coupling::read(simulation, body, quantity, [row, column]);
-                values[0] = value.ok_or_else(|| coupling::missing(&variable.name, quantity))?;
+                values[0] =
+                    value.ok_or_else(|| NoValue::Undefined(coupling::missing(&variable.name, quantity)))?;
             }
             Binding::Line { line, result } => {
                 let missing = || {
-                    let name = &variable.name;
-                    format!("{name}: the reference configuration has no closed-form catenary")
+                    let problem = "the reference configuration has no closed-form catenary";
+                    NoValue::Undefined(format!("{}: {problem}", variable.name))
                 };
                 values[0] = result.read(simulation, line).ok_or_else(missing)?;
             }
             Binding::FlowPlace { line, axis, node } => flow::read_place(simulation, line, axis, node, values),
-            Binding::Solver(result) => values[0] = result.read(simulation, 0).ok_or(NO_BALANCE)?,
+            Binding::Solver(result) => {
+                let missing = || NoValue::Undefined(NO_BALANCE.to_string());
+                values[0] = result.read(simulation, 0).ok_or_else(missing)?;
+            }
             Binding::Profile { line, quantity, node } => {
                 profile::read(simulation, line, quantity, node, values)
             }
@@ -467,7 +496,10 @@ impl Interface {
                 assert!(is_input, "a simulation has no parameters");
             }
         }
-        Ok(())
+        match values.iter().find(|value| !value.is_finite()) {
+            None => Ok(()),
+            Some(value) => Err(variable.not_finite(*value, simulation.time())),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::ffi::c_int;
 use std::path::Path;
 
 use moorline::discretisation;
-use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
+use moorline::interface::{Binding, Causality, Interface, Layout, NoValue, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json, sealed};
 use moorline::scene::{LoadError, Note, Scene};
@@ -271,14 +271,10 @@ impl Session {
             }),
             _ => {
                 let read = Interface::read(variable, self.simulation()?, &mut value);
-                read.map_err(|problem| Failure::new(MOORLINE_NOT_AVAILABLE, problem))?;
-                match value[0].is_finite() {
-                    true => Ok(value[0]),
-                    false => Err(Failure::new(
-                        MOORLINE_STEP_ERROR,
-                        format!("{} is {}: look at the inputs", variable.name, value[0]),
-                    )),
-                }
+                read.map(|()| value[0]).map_err(|reason| match reason {
+                    NoValue::Undefined(problem) => Failure::new(MOORLINE_NOT_AVAILABLE, problem),
+                    NoValue::NotFinite(problem) => Failure::new(MOORLINE_STEP_ERROR, problem),
+                })
             }
         }
     }

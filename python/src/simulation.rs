@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
+use moorline::interface::{Binding, Causality, Interface, Kind, Layout, NoValue, Variable};
 use moorline::model::{End, Model};
 use moorline::output::sealed::{self, Unreadable};
 use moorline::scene::{LoadedScene, Note};
@@ -325,16 +325,10 @@ impl Simulation {
     fn output(&self, mooring: &Mooring, variable: &Variable) -> Result<f64, Failure> {
         let mut value = [f64::NAN];
         let read = Interface::read(variable, mooring, &mut value);
-        read.map_err(|problem| Failure::Input(variable.name.clone(), problem))?;
-        if value[0].is_finite() {
-            return Ok(value[0]);
-        }
-        let (name, time) = (&variable.name, mooring.time());
-        let problem = format!(
-            "{name}: {} at t = {time} s is no result; look at the inputs and the start time, or try a smaller solver.time_step_max",
-            value[0]
-        );
-        Err(Failure::Result(name.clone(), problem))
+        read.map(|()| value[0]).map_err(|reason| match reason {
+            NoValue::Undefined(problem) => Failure::Input(variable.name.clone(), problem),
+            NoValue::NotFinite(problem) => Failure::Result(variable.name.clone(), problem),
+        })
     }
 
     /// A line that takes a flow of the water.

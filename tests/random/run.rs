@@ -264,9 +264,6 @@ impl Outputs {
             }
             let mut values = vec![0.0; variable.size()];
             Interface::read(variable, simulation, &mut values)?;
-            if values.iter().any(|value| !value.is_finite()) {
-                return Err(format!("{} is {values:?}", variable.name));
-            }
         }
         Ok(())
     }

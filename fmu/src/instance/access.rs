@@ -69,8 +69,7 @@ impl Instance {
                         variable.name
                     ))
                 })?;
-                Interface::read(variable, simulation, values)?;
-                check_result(variable, values, self.time)?;
+                Interface::read(variable, simulation, values).map_err(String::from)?;
             }
         }
         Ok(())
@@ -279,17 +278,6 @@ fn with_values<'a>(
         rest = others;
         (variable, own)
     })
-}
-
-/// An output that is not finite is no result.
-fn check_result(variable: &Variable, values: &[f64], time: f64) -> Outcome {
-    match values.iter().find(|value| !value.is_finite()) {
-        None => Ok(()),
-        Some(value) => Err(Refusal(format!(
-            "{}: {value} at t = {time} s is no result; look at the inputs and the start time, or try a smaller solver.time_step_max",
-            variable.name
-        ))),
-    }
 }
 
 /// Refusal of a value reference that no variable has.

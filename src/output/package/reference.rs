@@ -162,7 +162,7 @@ impl Run<'_> {
         for variable in &self.outputs.variables {
             let mut value = [f64::NAN];
             Interface::read(variable, &self.simulation, &mut value).ok()?;
-            row.push(Some(value[0]).filter(|value| value.is_finite())?);
+            row.push(value[0]);
         }
         Some(row)
     }
