@@ -23,6 +23,7 @@ use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
 use crate::simulation::{Inputs, Simulation, reference_catenary};
 
+pub use inputs::INPUT_MAX;
 pub use parameters::{Parameter, Place};
 pub use results::{LineResult, SolverResult};
 

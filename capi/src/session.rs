@@ -4,7 +4,7 @@ use std::ffi::c_int;
 use std::path::Path;
 
 use moorline::discretisation;
-use moorline::interface::{Binding, Causality, Interface, Layout, NoValue, Variable};
+use moorline::interface::{Binding, Causality, INPUT_MAX, Interface, Layout, NoValue, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json, sealed};
 use moorline::scene::{LoadError, Note, Scene};
@@ -13,9 +13,6 @@ use moorline_decks::load;
 use serde::{Deserialize, Serialize};
 
 use crate::codes::*;
-
-/// Greatest magnitude of an input [m, rad, m/s, rad/s, m/s²]: beyond this, squares and cubes of it would overflow.
-const INPUT_MAX: f64 = 1e12;
 
 /// Failure with its code and a sentence.
 #[derive(Debug, Clone, PartialEq, Eq)]

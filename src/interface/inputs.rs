@@ -3,6 +3,9 @@
 use super::{Binding, Variable};
 use crate::simulation::Inputs;
 
+/// Greatest magnitude of an input [m, rad, m/s, rad/s, m/s²]: beyond this, squares and cubes of it would overflow.
+pub const INPUT_MAX: f64 = 1e12;
+
 impl Variable {
     /// Writes the values of an input, whose size `values` has; a velocity that is derived from the displacements is 0. Returns whether the variable is an input.
     pub fn read_input(&self, inputs: &Inputs, values: &mut [f64]) -> bool {

@@ -1,12 +1,9 @@
 //! Access to the variables of an instance: the host reads results, and sets inputs and parameters.
 
-use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
+use moorline::interface::{Binding, Causality, INPUT_MAX, Interface, Kind, Variable};
 
 use super::{Instance, Outcome, Refusal};
 use crate::saved::Phase;
-
-/// Greatest magnitude of an input [m, rad, m/s, rad/s]: beyond this, squares and cubes of it would overflow.
-const INPUT_MAX: f64 = 1e12;
 
 impl Instance {
     /// Row of a value reference.
