@@ -55,12 +55,9 @@ fn prepare() {
 /// The panic, with its place.
 pub fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
     prepare();
-    let result = IS_GUARDED.with(|flag| {
-        let outer = flag.replace(true);
-        let result = panic::catch_unwind(AssertUnwindSafe(body));
-        flag.set(outer);
-        result
-    });
+    let outer = IS_GUARDED.replace(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(body));
+    IS_GUARDED.set(outer);
     result.map_err(|payload| {
         let mut places = places();
         let place = places.remove(&thread_number());
