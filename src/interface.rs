@@ -11,6 +11,7 @@ mod coupling;
 mod dependencies;
 mod derivatives;
 mod flow;
+mod host_inputs;
 mod inputs;
 mod parameters;
 mod profile;
@@ -23,6 +24,7 @@ use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
 use crate::simulation::{Inputs, Simulation, reference_catenary};
 
+pub use host_inputs::HostInputs;
 pub use inputs::INPUT_MAX;
 pub use parameters::{Parameter, Place};
 pub use results::{LineResult, SolverResult};

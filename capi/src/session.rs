@@ -4,11 +4,11 @@ use std::ffi::c_int;
 use std::path::Path;
 
 use moorline::discretisation;
-use moorline::interface::{Binding, Causality, INPUT_MAX, Interface, Layout, NoValue, Variable};
+use moorline::interface::{Binding, Causality, HostInputs, INPUT_MAX, Interface, Layout, NoValue, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json, sealed};
 use moorline::scene::{LoadError, Note, Scene};
-use moorline::simulation::{self, Inputs, NO_FLOW, Simulation, Snapshot, Watch};
+use moorline::simulation::{self, BodyInput, Inputs, NO_FLOW, Simulation, Snapshot, Watch};
 use moorline_decks::load;
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ struct Saved {
     scene: String,
     origin: Inputs,
     start_time: f64,
-    inputs: Inputs,
+    inputs: HostInputs,
     snapshot: Option<Snapshot>,
 }
 
@@ -64,7 +64,7 @@ pub(crate) struct Session {
     scene: Scene,
     interface: Interface,
     moved: Vec<Moved>,
-    inputs: Inputs,
+    inputs: HostInputs,
     /// Inputs at the start, from which the equilibrium was found.
     origin: Inputs,
     start_time: f64,
@@ -93,11 +93,11 @@ impl Session {
     fn new(scene: Scene) -> Outcome<Session> {
         let model = Model::new(&scene).map_err(scene_error)?;
         let interface = Interface::new(&scene, &model, Layout::Scalars).map_err(scene_error)?;
-        let inputs = interface.inputs().clone();
+        let inputs = HostInputs::new(interface.inputs());
         Ok(Session {
             noted: scene.notes(),
             moved: moved(&scene, &model),
-            origin: inputs.clone(),
+            origin: inputs.given().clone(),
             inputs,
             interface,
             scene,
@@ -150,12 +150,12 @@ impl Session {
                 "the start time {time} s is not finite"
             )));
         }
-        let simulation = equilibrium(&self.scene, time, &self.inputs)?;
+        let simulation = equilibrium(&self.scene, time, self.inputs.given())?;
         self.note_scene();
         self.watch = Some(Watch::new(&self.scene, &simulation));
         self.simulation = Some(simulation);
         self.note_state();
-        self.origin = self.inputs.clone();
+        self.origin.clone_from(self.inputs.given());
         self.start_time = time;
         Ok(())
     }
@@ -198,7 +198,7 @@ impl Session {
         }
         self.simulation()?;
         if let Some(simulation) = &mut self.simulation {
-            simulation.set_inputs(&self.inputs);
+            simulation.set_inputs(self.inputs.given());
             let advanced = simulation.advance(step);
             advanced.map_err(|error| Failure::new(MOORLINE_STEP_ERROR, error.to_string()))?;
         }
@@ -262,7 +262,7 @@ impl Session {
     fn value(&self, variable: &Variable) -> Outcome<f64> {
         let mut value = [0.0];
         match &variable.binding {
-            _ if variable.read_input(&self.inputs, &mut value) => Ok(value[0]),
+            _ if self.inputs.read(variable, &mut value) => Ok(value[0]),
             Binding::Parameter(parameter) => parameter.value(&self.scene).ok_or_else(|| {
                 Failure::new(MOORLINE_NOT_AVAILABLE, format!("{} has no value", variable.name))
             }),
@@ -279,7 +279,7 @@ impl Session {
     /// Sets inputs, and parameters before the start: all of them or, where one is refused, none.
     pub(crate) fn set(&mut self, references: &[u32], values: &[f64]) -> Outcome {
         check_lengths(references.len(), values.len())?;
-        let (mut scene, mut inputs) = (None, self.inputs.clone());
+        let (mut scene, mut inputs, steps) = (None, self.inputs.clone(), self.simulation.is_some());
         for (&reference, &value) in references.iter().zip(values) {
             let variable = self.variable(reference)?;
             if !value.is_finite() || value.abs() > INPUT_MAX && variable.causality == Causality::Input {
@@ -295,7 +295,7 @@ impl Session {
                     let set = parameter.set(scene, value);
                     set.map_err(|problem| Failure::argument(format!("{}: {problem}", variable.name)))?;
                 }
-                _ if variable.set_input(&mut inputs, &[value]) => {}
+                _ if variable.causality == Causality::Input => inputs.write(variable, &[value], steps),
                 _ => {
                     return Err(Failure::argument(format!(
                         "{} is a result and not to be set",
@@ -328,9 +328,12 @@ impl Session {
         let body = self.body(index)?.clone();
         check_lengths(body.size, place.len())?;
         check_numbers(&body.name, place.iter().chain(velocity.unwrap_or(&[])))?;
-        let input = self.inputs.body_mut(body.body);
+        let mut input = BodyInput {
+            velocity: std::array::from_fn(|axis| velocity?.get(axis).copied()),
+            ..BodyInput::default()
+        };
         input.displacement[..body.size].copy_from_slice(place);
-        input.velocity = std::array::from_fn(|axis| velocity?.get(axis).copied());
+        self.inputs.set_body(body.body, input);
         Ok(())
     }
 
@@ -404,7 +407,7 @@ impl Session {
         let (velocities, _) = velocities.as_chunks();
         let (accelerations, _) = accelerations.as_chunks();
         for (node, (&velocity, &acceleration)) in velocities.iter().zip(accelerations).enumerate() {
-            self.inputs.flow.set(index, node, velocity, acceleration);
+            self.inputs.flow_mut().set(index, node, velocity, acceleration);
         }
         Ok(())
     }
@@ -494,7 +497,7 @@ impl Session {
         if names(&other) != names(self) {
             return Err(Failure::argument("the state is that of another scene"));
         }
-        other.inputs = saved.origin.clone();
+        other.inputs = HostInputs::new(&saved.origin);
         if saved.snapshot.is_some() {
             other.start(saved.start_time)?;
         }

@@ -47,6 +47,7 @@ unsafe extern "C" {
     fn moorline_rates(simulation: Handle, outputs: *const u32, values: *mut f64, count: usize) -> c_int;
     fn moorline_output_count(simulation: Handle, count: *mut usize) -> c_int;
     fn moorline_get_outputs(simulation: Handle, values: *mut f64, count: usize) -> c_int;
+    fn moorline_input_count(simulation: Handle, count: *mut usize) -> c_int;
     fn moorline_set_inputs(simulation: Handle, values: *const f64, count: usize) -> c_int;
     fn moorline_move(
         simulation: Handle,
@@ -224,6 +225,39 @@ fn the_force_on_a_body_excludes_the_inertia_of_the_ends_where_the_scene_asks_for
         force
     });
     assert_ne!(forces[0], forces[1]);
+}
+
+#[test]
+fn inputs_that_are_all_set_with_velocities_of_zero_are_displacements_alone() {
+    let [by_body, by_variable] = [read(SCENE), read(SCENE)];
+    let (mut count, mut by_all) = (0, Vec::new());
+    // SAFETY: handles, a number, and arrays of as many values.
+    unsafe {
+        for simulation in [by_body, by_variable] {
+            assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK, "{}", message());
+        }
+        assert_eq!(moorline_input_count(by_variable, &raw mut count), MOORLINE_OK);
+        let names = ["buoy.x", "hull.x", "hull.roll"].map(|name| find(by_variable, name));
+        for k in 0..20 {
+            let size = 1.0 - (0.05 * f64::from(k)).cos();
+            let zeros = vec![0.0; count];
+            assert_eq!(
+                moorline_set_inputs(by_variable, zeros.as_ptr(), count),
+                MOORLINE_OK
+            );
+            let values = [size, size, 0.05 * size];
+            assert_eq!(
+                moorline_set(by_variable, names.as_ptr(), values.as_ptr(), 3),
+                MOORLINE_OK
+            );
+            assert_eq!(moorline_step(by_variable, 0.05), MOORLINE_OK, "{}", message());
+            by_all.push(outputs(by_variable));
+        }
+        assert!(sway(by_body, 0, 20) == by_all);
+        for simulation in [by_body, by_variable] {
+            moorline_close(simulation);
+        }
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod access;
 mod derivatives;
 mod parts;
 
-use moorline::interface::{Binding, Interface};
+use moorline::interface::{Binding, HostInputs, Interface};
 use moorline::output::description::{Description, VERSION, time_reference};
 use moorline::scene::{Note, Scene};
 use moorline::simulation::{Inputs, Simulation, Watch};
@@ -16,7 +16,6 @@ use moorline_host::{FmiVersion, Status};
 
 pub(crate) use parts::Parts;
 
-use crate::inputs::HostInputs;
 use crate::log::{Log, Topic};
 use crate::resources;
 use crate::saved::{Phase, Snapshot};

@@ -4,7 +4,6 @@
 mod ffi;
 mod fmi2;
 mod fmi3;
-mod inputs;
 mod instance;
 mod log;
 mod resources;

@@ -1,10 +1,9 @@
 //! A saved state of an instance, in memory and as bytes.
 
+use moorline::interface::HostInputs;
 use moorline::output::sealed::{self, Unreadable};
 use moorline::simulation::{self, Inputs};
 use serde::{Deserialize, Serialize};
-
-use crate::inputs::HostInputs;
 
 /// Phase of an instance's life cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,16 +1,17 @@
 //! Inputs as a host writes them.
 
-use moorline::interface::{Binding, Variable};
-use moorline::model::Body;
-use moorline::simulation::{BodyInput, Inputs};
 use serde::{Deserialize, Serialize};
 
-/// Inputs of a simulation, with the velocities as the host has written them.
+use super::{Binding, Variable};
+use crate::model::Body;
+use crate::simulation::{BodyInput, Inputs, WaterFlow};
+
+/// Inputs of a simulation, with the velocities as a host has written them, variable by variable.
 ///
 /// Hosts that write all inputs at every communication point write the start value 0 to unconnected ones. A velocity of 0 written before the first step is
 /// therefore none, and neither are velocities that were never other than 0 for a body that has moved.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct HostInputs {
+pub struct HostInputs {
     given: Inputs,
     /// Of every point, then of every vessel.
     velocities: Vec<WrittenVelocity>,
@@ -41,7 +42,7 @@ impl WrittenVelocity {
 
 impl HostInputs {
     /// Inputs before a host writes any, those of a simulation `at_rest`.
-    pub(crate) fn new(at_rest: &Inputs) -> HostInputs {
+    pub fn new(at_rest: &Inputs) -> HostInputs {
         HostInputs {
             velocities: vec![WrittenVelocity::default(); at_rest.bodies().len()],
             given: at_rest.clone(),
@@ -49,12 +50,26 @@ impl HostInputs {
     }
 
     /// Inputs of the simulation.
-    pub(crate) fn given(&self) -> &Inputs {
+    pub fn given(&self) -> &Inputs {
         &self.given
     }
 
+    /// Flow of the water, to be set.
+    pub fn flow_mut(&mut self) -> &mut WaterFlow {
+        &mut self.given.flow
+    }
+
+    /// Sets displacement and velocity of a body as they are; without a velocity, it is derived from the displacements.
+    pub fn set_body(&mut self, body: Body, input: BodyInput) {
+        let written = &mut self.velocities[self.given.place(body)];
+        written.value = input.velocity.map(|velocity| velocity.unwrap_or(0.0));
+        written.is_given = input.velocity.map(|velocity| velocity.is_some());
+        written.has_speed = [0, 3].map(|first| written.is_given[first]); // 0 is a velocity too
+        *self.given.body_mut(body) = input;
+    }
+
     /// Values of an input as written; returns whether the variable is an input.
-    pub(crate) fn read(&self, variable: &Variable, values: &mut [f64]) -> bool {
+    pub fn read(&self, variable: &Variable, values: &mut [f64]) -> bool {
         match variable.binding {
             Binding::Velocity { body, axis } => {
                 values[0] = self.velocities[self.given.place(body)].value[axis];
@@ -65,7 +80,7 @@ impl HostInputs {
     }
 
     /// Writes an input, before the first step or between two `steps`.
-    pub(crate) fn write(&mut self, variable: &Variable, values: &[f64], steps: bool) {
+    pub fn write(&mut self, variable: &Variable, values: &[f64], steps: bool) {
         match variable.binding {
             Binding::Velocity { body, axis } => self.write_velocity(body, axis, values[0], steps),
             Binding::Displacement { body, axis } => {
@@ -84,7 +99,7 @@ impl HostInputs {
     }
 
     /// Writes the velocity of a body along or about an axis; 0 counts as a velocity where it `is_given`.
-    pub(crate) fn write_velocity(&mut self, body: Body, axis: usize, value: f64, is_given: bool) {
+    pub fn write_velocity(&mut self, body: Body, axis: usize, value: f64, is_given: bool) {
         let (place, input) = (self.given.place(body), self.given.body_mut(body));
         let written = &mut self.velocities[place];
         written.value[axis] = value;
@@ -97,15 +112,17 @@ impl HostInputs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use moorline::interface::{Interface, Layout};
-    use moorline::model::Model;
-    use moorline::scene::Scene;
+    use crate::draft::draft;
+    use crate::interface::{Interface, Layout};
 
     #[test]
     fn zero_is_a_velocity_only_of_what_rests_or_was_ever_faster() {
-        let scene = Scene::from_toml(include_str!("../../tests/scenes/hand.toml")).unwrap();
-        let model = Model::new(&scene).unwrap();
-        let interface = Interface::new(&scene, &model, Layout::Scalars).unwrap();
+        let rope = "line_types.rope = { mass = 1.0, axial_stiffness = 1e4 }";
+        let drawn = draft(rope)
+            .fixed("anchor", [0.0; 3])
+            .coupled("hand", [10.0, 0.0, 0.0]);
+        let drawn = drawn.sections("rope", ["anchor", "hand"], &[("rope", 11.0, Some(4))]);
+        let interface = Interface::new(&drawn.scene(), &drawn.model(), Layout::Scalars).unwrap();
         let mut inputs = HostInputs::new(interface.inputs());
         let row = |name: &str| {
             let mut rows = interface.variables().iter();
