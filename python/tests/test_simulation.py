@@ -211,7 +211,6 @@ def test_a_mesh_that_is_expected_to_miss_the_tolerance_is_warned_of():
     assert [str(warning.message) for warning in found] == simulation.scene.notes[len(scene.notes):]
 
 
-
 def test_likely_mistakes_are_warned_of_once(chain):
     simulation = moorline.Simulation(chain)
     with pytest.warns(UserWarning, match="has moved by 50.000 m in one communication step"):

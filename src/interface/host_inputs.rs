@@ -8,8 +8,8 @@ use crate::simulation::{BodyInput, Inputs, WaterFlow};
 
 /// Inputs of a simulation, with the velocities as a host has written them, variable by variable.
 ///
-/// Hosts that write all inputs at every communication point write the start value 0 to unconnected ones. A velocity of 0 written before the first step is
-/// therefore none, and neither are velocities that were never other than 0 for a body that has moved.
+/// Hosts that write all inputs at every communication point write the start value 0 to unconnected ones. A velocity of 0 therefore does not count as
+/// given if it is written before the first step, or if the body has moved and no velocity other than 0 was ever written.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct HostInputs {
     given: Inputs,
@@ -31,7 +31,7 @@ struct WrittenVelocity {
 }
 
 impl WrittenVelocity {
-    /// Sets the velocities of an input along the axes, or with `kind` 1 about them.
+    /// Sets the velocities of an input along the axes (`kind` 0) or about them (`kind` 1).
     fn pass_on(&self, kind: usize, input: &mut BodyInput) {
         let gives = self.has_speed[kind] || !self.has_moved[kind];
         for axis in 3 * kind..3 * kind + 3 {
@@ -59,7 +59,7 @@ impl HostInputs {
         &mut self.given.flow
     }
 
-    /// Sets displacement and velocity of a body as they are; without a velocity, it is derived from the displacements.
+    /// Sets the displacement and the velocity of a body exactly as given; an absent velocity is derived from the displacements.
     pub fn set_body(&mut self, body: Body, input: BodyInput) {
         let written = &mut self.velocities[self.given.place(body)];
         written.value = input.velocity.map(|velocity| velocity.unwrap_or(0.0));
@@ -79,7 +79,7 @@ impl HostInputs {
         }
     }
 
-    /// Writes an input, before the first step or between two `steps`.
+    /// Writes the values of an input; `steps` is true from the start of stepping on, when 0 counts as a velocity of a body that rests.
     pub fn write(&mut self, variable: &Variable, values: &[f64], steps: bool) {
         match variable.binding {
             Binding::Velocity { body, axis } => self.write_velocity(body, axis, values[0], steps),
@@ -98,7 +98,7 @@ impl HostInputs {
         }
     }
 
-    /// Writes the velocity of a body along or about an axis; 0 counts as a velocity where it `is_given`.
+    /// Writes the velocity of a body along or about an axis; with `is_given`, 0 counts as a velocity too.
     pub fn write_velocity(&mut self, body: Body, axis: usize, value: f64, is_given: bool) {
         let (place, input) = (self.given.place(body), self.given.body_mut(body));
         let written = &mut self.velocities[place];

@@ -119,7 +119,7 @@ pub fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Col
 /// Present value of an output, in its unit.
 fn output_of(variable: &Variable, simulation: &Simulation) -> f64 {
     let mut value = [f64::NAN];
-    // an output without a value is not finite in the table, which marks it
+    // an output without a value is written as it is, not finite, and the table marks it
     let _ = Interface::read(variable, simulation, &mut value);
     value[0]
 }

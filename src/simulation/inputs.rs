@@ -118,7 +118,10 @@ impl Simulation {
         &mut self.snapshot.inputs
     }
 
-    /// Sets all inputs, which must be those of this model.
+    /// Sets all inputs.
+    ///
+    /// # Panics
+    /// The inputs are those of another model.
     pub fn set_inputs(&mut self, inputs: &Inputs) {
         let own = &mut self.snapshot.inputs;
         own.bodies.copy_from_slice(&inputs.bodies);

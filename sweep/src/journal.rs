@@ -1,6 +1,6 @@
 //! Rows of a sweep as they come, so that it can be killed at any moment.
 //!
-//! Bytes: a mark with the version, then records, each with its length, sealed ([`moorline::output::sealed`]). The first record identifies the
+//! Bytes: a mark with the version, then records, each sealed ([`moorline::output::sealed`]) after its length. The first record identifies the
 //! sweep. A record is appended in one write; one that is truncated or damaged, and all after it, is removed when the journal is opened, and its cases run
 //! again.
 
