@@ -18,8 +18,8 @@
 //!
 //! The runs of the ladder take axial-implicit steps where these cost less than explicit ones. Their length is the longest whose error, 4/3 of the
 //! distance to a run with half the step, is a quarter of the tolerance on a coarse mesh; the same is required on the mesh found, or else the ladder
-//! is run again with the step halved as often as an error of second order requires, if the work allows. Of networks that are displaced copies of one
-//! another, moved in the same way, only one is tried.
+//! is run again from the level below it, with the step halved as often as an error of second order requires, if the work allows. Of networks that are displaced
+//! copies of one another, moved in the same way, only one is tried, and none is run twice with the same elements and steps.
 //!
 //! The axial-implicit leapfrog costs two to three times as much per step as the explicit one. It is tried with steps of ½, ¼, … of the longest allowed, on the mesh
 //! found and on finer ones, in the order of cost; the first option that keeps the error against the finest mesh is taken, else steps are explicit.
@@ -38,9 +38,12 @@
 mod expense;
 mod history;
 mod kinds;
+mod ladder;
 mod rest;
 mod search;
 mod short_sections;
+mod times;
+mod trials;
 
 use std::borrow::Cow;
 

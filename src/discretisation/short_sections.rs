@@ -4,7 +4,7 @@
 //! 20 elements agree within 0.1 %, and are all off by 0.9 %. On the mesh found, the run is repeated with twice the elements in these sections until their
 //! error, 4/3 of the distance between the two runs, is small enough.
 
-use super::search::Run;
+use super::trials::Run;
 use crate::scene::Scene;
 
 /// Doublings of the elements of short sections, at most [-].

@@ -176,6 +176,25 @@ fn of_lines_that_are_copies_one_is_tried() {
     assert_ne!(longer.trials, one.trials);
 }
 
+/// The mesh of one line is given: that of the other is tried as if it were alone.
+#[test]
+fn elements_given_for_a_line_leave_the_trials_of_another() {
+    let alone = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();
+    for given in [12, 60] {
+        let mut scene = field("taut_polyester", 1);
+        scene.lines[1].elements = Some(given);
+        let selected = discretisation::select(&scene).unwrap();
+        assert_eq!(selected.meshes.len(), 1);
+        let mesh = &selected.meshes[0];
+        assert!(mesh.tried && shortfalls(&selected).is_empty(), "{mesh:?}");
+        assert!(!mesh.trials.is_empty());
+        assert_eq!(mesh.elements, alone.meshes[0].elements);
+        let counts = Simulation::new(&selected.scene).unwrap();
+        let count = |line: usize| counts.model().lines[line].segment_count();
+        assert_eq!([count(0), count(1)], [mesh.elements, given]);
+    }
+}
+
 /// RMS error of the position of the middle of a scene's line on the mesh selected, over its deviation from its mean [-].
 fn error_of_middle(scene: &Scene) -> f64 {
     let middle = |scene: &Scene| {

@@ -1,0 +1,242 @@
+//! Runs of a scene's networks on other meshes and with other steps.
+
+use std::rc::Rc;
+
+use super::Networks;
+use super::history::History;
+use super::ladder::LEVELS;
+use super::times::MotionTimes;
+use crate::dynamics::{IMPLICIT_COST, axial_implicit_cost};
+use crate::model::Model;
+use crate::scene::{Integrator, Scene};
+use crate::simulation::{Error, Simulation};
+
+/// Explicit steps of an element that all trials may take [-].
+const WORK_MAX: f64 = 1e8;
+/// The same where steps are fully implicit [-].
+const IMPLICIT_WORK_MAX: f64 = 4e8;
+
+/// Integrator and steps of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Steps {
+    pub(super) integrator: Integrator,
+    /// Longest step [s].
+    pub(super) longest: f64,
+    /// Tolerance that the steps keep where they follow from it [-].
+    pub(super) tolerance: f64,
+}
+
+impl Steps {
+    /// The scene with these steps.
+    pub(super) fn of(self, mut scene: Scene) -> Scene {
+        scene.solver.integrator = self.integrator;
+        scene.solver.time_step_max = self.longest;
+        scene.solver.tolerance = self.tolerance;
+        scene
+    }
+}
+
+/// Result of one run for the lines of a network.
+#[derive(Debug)]
+pub(super) struct Run {
+    /// Elements of a line alone [-].
+    pub(super) elements: usize,
+    steps: Steps,
+    /// Lengths of the elements of every line [m].
+    pub(super) lengths: Vec<Vec<f64>>,
+    /// History of every line after the start.
+    pub(super) histories: Vec<History>,
+    /// Longest step of any network [s].
+    pub(super) step: f64,
+    /// Cost in explicit steps of an element [-].
+    pub(super) work: f64,
+}
+
+/// All runs of a scene so far.
+pub(super) struct Trials<'a> {
+    networks: &'a Networks,
+    /// Scene with the duration and the samples of the trials.
+    scene: Scene,
+    /// First sample that is evaluated.
+    from: usize,
+    /// Longest step of the trials [s].
+    pub(super) longest_step: f64,
+    /// True if a line may need fully implicit steps, for example because it bends. All networks are then run with the integrators that the rules choose.
+    pub(super) implicit: bool,
+    /// Runs of every network.
+    runs: Vec<Vec<Rc<Run>>>,
+    /// Explicit steps of an element so far [-].
+    work: f64,
+}
+
+impl<'a> Trials<'a> {
+    /// None for a scene that gives no motion.
+    pub(super) fn new(scene: &Scene, model: &Model, networks: &'a Networks) -> Option<Trials<'a>> {
+        let times = MotionTimes::of(scene)?;
+        let mut scene = scene.clone();
+        let output = &mut scene.output;
+        output.duration = output.duration.min(times.duration);
+        output.interval = times.sample_interval(output.interval, scene.solver.tolerance_of);
+        let start = (0.5 * output.duration).max(times.ramp.min(0.75 * output.duration));
+        Some(Trials {
+            from: (start / output.interval) as usize,
+            longest_step: scene.solver.time_step_max.min(output.interval),
+            scene,
+            networks,
+            implicit: may_need_implicit_steps(model),
+            runs: vec![Vec::new(); networks.lines.len()],
+            work: 0.0,
+        })
+    }
+
+    /// Scene with the duration and the samples of the trials.
+    pub(super) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Changes the scene, and drops the runs of the one before, which is returned.
+    pub(super) fn replace_scene(&mut self, scene: Scene) -> Scene {
+        self.runs.iter_mut().for_each(Vec::clear);
+        std::mem::replace(&mut self.scene, scene)
+    }
+
+    /// Scene with `elements` elements in every network.
+    pub(super) fn with(&self, elements: &[usize]) -> Scene {
+        self.networks.with_elements(&self.scene, elements)
+    }
+
+    /// Explicit steps of an element so far [-].
+    pub(super) fn work(&self) -> f64 {
+        self.work
+    }
+
+    /// Returns whether all trials may take so much more work, in explicit steps of an element [-].
+    pub(super) fn allow(&self, work: f64) -> bool {
+        self.work + work <= self.work_max()
+    }
+
+    fn work_max(&self) -> f64 {
+        if self.implicit {
+            IMPLICIT_WORK_MAX
+        } else {
+            WORK_MAX
+        }
+    }
+
+    /// Fewest elements that a network has been run with [-].
+    pub(super) fn coarsest(&self, network: usize) -> usize {
+        let elements = self.runs[network].iter().map(|run| run.elements);
+        elements.min().unwrap_or(LEVELS[0])
+    }
+
+    /// Runs of all networks with so many elements in each [-]; none where a line needs an integrator that is not tried. Networks do not affect each other, so one
+    /// whose run is known takes the fewest elements that it has been run with.
+    pub(super) fn run(&mut self, elements: &[usize], steps: Steps) -> Result<Option<Vec<Rc<Run>>>, Error> {
+        let known = |trials: &Trials, network: usize| {
+            let given = !trials.networks.open[network];
+            let same_mesh = |run: &Run| given || run.elements == elements[network];
+            let mut runs = trials.runs[network].iter();
+            runs.find(|run| run.steps == steps && same_mesh(run)).cloned()
+        };
+        let networks = 0..elements.len();
+        if networks.clone().any(|network| known(self, network).is_none()) {
+            let needed = networks.clone().map(|network| match known(self, network) {
+                Some(_) => self.coarsest(network),
+                None => elements[network],
+            });
+            let needed: Vec<usize> = needed.collect();
+            let Some(made) = self.make(&needed, steps)? else {
+                return Ok(None);
+            };
+            let runs = self.runs.iter_mut().zip(made);
+            runs.for_each(|(runs, run)| runs.push(Rc::new(run)));
+        }
+        Ok(networks.map(|network| known(self, network)).collect())
+    }
+
+    fn make(&mut self, elements: &[usize], steps: Steps) -> Result<Option<Vec<Run>>, Error> {
+        let scene = steps.of(self.with(elements));
+        let mut simulation = Simulation::new(&scene)?;
+        simulation.follow_scene()?;
+        let Some(weight) = self.weight(&simulation) else {
+            return Ok(None);
+        };
+        let model = simulation.model();
+        let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();
+        let histories = (0..model.lines.len()).map(|line| History::of(&scene, model, line));
+        let mut histories: Vec<History> = histories.collect();
+        let (output, mut substeps) = (&scene.output, 0);
+        for sample in 0..(output.duration / output.interval).round() as usize {
+            let broken = simulation.advance(output.interval).is_err();
+            let work = weight * (substeps * segments) as f64;
+            if broken || self.work + work > 2.0 * self.work_max() {
+                return Ok(None);
+            }
+            substeps += simulation.substeps();
+            if sample >= self.from {
+                let histories = histories.iter_mut().enumerate();
+                histories.for_each(|(line, history)| history.add(&simulation, line));
+            }
+        }
+        histories.iter_mut().for_each(History::complete);
+        let cost = weight * substeps as f64;
+        self.work += cost * segments as f64;
+        Ok(Some(self.of_networks(
+            elements,
+            steps,
+            &simulation,
+            &histories,
+            cost,
+        )))
+    }
+
+    /// Cost of a step of the costliest integrator in explicit ones [-]; none where one is not tried.
+    fn weight(&self, simulation: &Simulation) -> Option<f64> {
+        let weight = |integrator| match integrator {
+            Integrator::Leapfrog => Some(1.0),
+            Integrator::AxialImplicit => Some(axial_implicit_cost(simulation.model().lines.iter())),
+            Integrator::GeneralisedAlpha if self.implicit => Some(IMPLICIT_COST),
+            _ => None,
+        };
+        let mut choices = simulation.choices();
+        choices.try_fold(0.0, |most: f64, choice| {
+            Some(most.max(weight(choice.integrator)?))
+        })
+    }
+
+    /// Results of a run by network; `cost` is that of all its steps, in explicit ones [-].
+    fn of_networks(
+        &self,
+        elements: &[usize],
+        steps: Steps,
+        simulation: &Simulation,
+        histories: &[History],
+        cost: f64,
+    ) -> Vec<Run> {
+        let longest = simulation.choices().map(|choice| choice.longest);
+        let step = longest.fold(0.0, f64::max);
+        let model = simulation.model();
+        let networks = self.networks.lines.iter().zip(elements);
+        let of_network = |(lines, &elements): (&Vec<usize>, &usize)| {
+            let lengths = lines
+                .iter()
+                .map(|&line| model.lines[line].segments.length.clone());
+            let lengths: Vec<Vec<f64>> = lengths.collect();
+            Run {
+                elements,
+                steps,
+                histories: lines.iter().map(|&line| histories[line].clone()).collect(),
+                step,
+                work: cost * lengths.iter().map(Vec::len).sum::<usize>() as f64,
+                lengths,
+            }
+        };
+        networks.map(of_network).collect()
+    }
+}
+
+/// Returns whether a line, though no beam, cannot take the steps of a leapfrog, or bends: short elements then cost less in fully implicit steps.
+fn may_need_implicit_steps(model: &Model) -> bool {
+    let mut lines = model.lines.iter();
+    lines.any(|line| line.beam.is_none() && (line.bending.is_some() || !line.serves_leapfrog()))
+}
