@@ -55,7 +55,7 @@ impl Ladder {
         (self.passed, self.found) = (false, None);
     }
 
-    /// Returns whether a run with so many elements [-] is needed.
+    /// Returns whether a run with this number of elements [-] is needed.
     pub(super) fn needs(&self, elements: usize) -> bool {
         self.found.is_none() && elements >= self.coarsest
     }
@@ -180,7 +180,7 @@ impl Ladder {
     }
 
     /// Mesh that follows from the trials, with the error where it was tried between mesh levels; none before the
-    /// first trial. A mesh that is given has no error of its own.
+    /// first trial. The error of a mesh that is given is unknown and not counted.
     pub(super) fn mesh(&self, between: Option<Trial>, tolerance: f64) -> Option<Mesh> {
         if !self.open {
             return Some(Mesh::by_rule(self.lines.clone(), tolerance));

@@ -8,7 +8,7 @@ use super::{AIM, Mesh, Networks, Trial, elements_of, short_sections};
 use crate::dynamics::axial_implicit_cost;
 use crate::model::{Model, Role};
 use crate::scene::{Integrator, Scene};
-use crate::simulation::{Error, Simulation};
+use crate::simulation::Simulation;
 
 /// Part of the tolerance for the error of the steps of the ladder [-].
 const FINER: f64 = 0.25;

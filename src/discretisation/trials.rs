@@ -110,7 +110,7 @@ impl<'a> Trials<'a> {
         self.work
     }
 
-    /// Returns whether all trials may take so much more work, in explicit steps of an element [-].
+    /// Returns whether the trials may take this further work, in explicit steps of an element [-].
     pub(super) fn allow(&self, work: f64) -> bool {
         self.work + work <= self.work_max()
     }
@@ -129,7 +129,7 @@ impl<'a> Trials<'a> {
         elements.min().unwrap_or(LEVELS[0])
     }
 
-    /// Runs of all networks with so many elements in each [-]; none where a line needs an integrator that is not tried. Networks do not affect each other, so one
+    /// Runs of all networks with a number of elements in each [-]; none where a line needs an integrator that is not tried. Networks do not affect each other, so one
     /// whose run is known takes the fewest elements that it has been run with.
     pub(super) fn run(&mut self, elements: &[usize], steps: Steps) -> Result<Option<Vec<Rc<Run>>>, Error> {
         let known = |trials: &Trials, network: usize| {
