@@ -75,9 +75,14 @@ impl Study {
         Metric::ALL.into_iter().flat_map(of_metric).collect()
     }
 
-    /// Metric of the tension: RMS of the raw tension, or of the low-passed one where only that is certain at 3 %.
+    /// Metric of the tension at 3 %.
     pub fn tension_metric(&self) -> Metric {
-        let is_certain = |metric: Metric| LEVEL >= self.uncertainty.of(metric);
+        self.tension_metric_at(LEVEL)
+    }
+
+    /// Metric of the tension at a level [-]: RMS of the raw tension, or of the low-passed one where only that is certain.
+    fn tension_metric_at(&self, level: f64) -> Metric {
+        let is_certain = |metric: Metric| level >= self.uncertainty.of(metric);
         match is_certain(Metric::LowPassed) && !is_certain(Metric::Rms) {
             true => Metric::LowPassed,
             false => Metric::Rms,
@@ -90,8 +95,6 @@ impl Study {
             let its_runs = move |code: &Code| matches!(code, Code::Peer(peer) if peer == name);
             (name, self.cheapest(metric, level, its_runs))
         };
-        let is_certain = |metric: Metric| level >= self.uncertainty.of(metric);
-        let low_passed = is_certain(Metric::LowPassed) && !is_certain(Metric::Rms);
         let holds_tension = match self.host_step {
             Some(_) => TOLERANCES.contains(&level),
             None => level == LEVEL || (level == 0.01 && !self.on_seabed),
@@ -100,12 +103,11 @@ impl Study {
             metric,
             level,
             key: match metric {
-                Metric::Rms => holds_tension && !low_passed,
-                Metric::LowPassed => holds_tension && low_passed,
+                Metric::Rms | Metric::LowPassed => holds_tension && metric == self.tension_metric_at(level),
                 Metric::Position => self.host_step.is_none() && level == 0.01,
                 Metric::Peak => false,
             },
-            certain: is_certain(metric),
+            certain: level >= self.uncertainty.of(metric),
             own: self.cheapest(metric, level, Code::is_own),
             peers: self.peers().into_iter().map(of_peer).collect(),
         }
