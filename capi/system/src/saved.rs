@@ -1,12 +1,11 @@
-//! The state of a system as bytes: in words of eight bytes for hosts, and in files.
+//! The state of a system as bytes: sealed in files, and in words of eight bytes for hosts.
 //!
-//! Words: mark, number of bytes of the body, FNV-1a of the words of the body; then the body, filled up with zeros. The body holds the SHA-256 of
-//! the deck's scene, the start and the snapshot of the simulation, so that a state of another deck is refused.
-//!
-//! Source of the check sum, which detects damage but not tampering: Fowler, Noll & Vo, 64 bits, here over words.
+//! Words: number of bytes, then the sealed bytes, filled up with zeros. The value holds the SHA-256 of the deck's scene, the start and the
+//! snapshot of the simulation, so that a state of another deck is refused.
 
 use std::path::Path;
 
+use moorline::output::sealed;
 use moorline::scene::Scene;
 use moorline::simulation::{Snapshot, Watch};
 use serde::{Deserialize, Serialize};
@@ -15,10 +14,10 @@ use sha2::{Digest, Sha256};
 use crate::failure::{Code, Failure, Outcome};
 use crate::system::{Start, System};
 
-/// First word: `moorlin2` in bytes.
-const MARK: u64 = u64::from_le_bytes(*b"moorlin2");
-/// Words before the body.
-pub const HEAD: usize = 3;
+/// Mark of a state: a word.
+const MARK: [u8; WORD] = *b"moorlin3";
+/// Words with the length and the mark of a state.
+pub const HEAD: usize = 2;
 const WORD: usize = size_of::<u64>();
 
 /// A state as it is read.
@@ -50,14 +49,6 @@ fn damaged() -> Failure {
     )
 }
 
-/// Check sum of a state, without its own word.
-fn sum(words: &[u64]) -> u64 {
-    let mix = |sum: u64, word: &u64| (sum ^ word).wrapping_mul(0x0100_0000_01b3);
-    std::iter::once(&words[1])
-        .chain(&words[HEAD..])
-        .fold(0xcbf2_9ce4_8422_2325, mix)
-}
-
 /// SHA-256 of a scene.
 pub(crate) fn check_sum(scene: &Scene) -> [u8; 32] {
     Sha256::digest(scene.to_toml().as_bytes()).into()
@@ -68,10 +59,10 @@ pub(crate) fn check_sum(scene: &Scene) -> [u8; 32] {
 /// # Errors
 /// The words do not begin a state of moorline.
 pub fn length(head: [u64; HEAD]) -> Outcome<usize> {
-    let [mark, bytes, _] = head;
+    let [bytes, mark] = head;
     let bytes = usize::try_from(bytes).ok().filter(|bytes| *bytes < 1 << 40);
-    match bytes.filter(|_| mark == MARK) {
-        Some(bytes) => Ok(HEAD + bytes.div_ceil(WORD)),
+    match bytes.filter(|_| mark.to_le_bytes() == MARK) {
+        Some(bytes) => Ok(1 + bytes.div_ceil(WORD)),
         None => Err(damaged()),
     }
 }
@@ -82,6 +73,15 @@ impl System {
     /// # Errors
     /// A system that was not started.
     pub fn serialize(&self) -> Outcome<Vec<u64>> {
+        let mut bytes = self.sealed()?;
+        let mut words = vec![bytes.len() as u64];
+        bytes.resize(bytes.len().next_multiple_of(WORD), 0);
+        let pieces = bytes.chunks_exact(WORD);
+        words.extend(pieces.map(|piece| u64::from_le_bytes(std::array::from_fn(|i| piece[i]))));
+        Ok(words)
+    }
+
+    fn sealed(&self) -> Outcome<Vec<u8>> {
         let body = BodyView {
             version: env!("CARGO_PKG_VERSION"),
             scene: self.scene_sum,
@@ -90,15 +90,7 @@ impl System {
             ahead: self.ahead,
             snapshot: self.simulation()?.snapshot(),
         };
-        let mut bytes = postcard::to_stdvec(&body).map_err(|error| {
-            Failure::new(Code::Unhandled, format!("the state cannot be written: {error}"))
-        })?;
-        let mut words = vec![MARK, bytes.len() as u64, 0];
-        bytes.resize(bytes.len().next_multiple_of(WORD), 0);
-        let pieces = bytes.chunks_exact(WORD);
-        words.extend(pieces.map(|piece| u64::from_le_bytes(std::array::from_fn(|i| piece[i]))));
-        words[2] = sum(&words);
-        Ok(words)
+        Ok(sealed::seal(&MARK, &body))
     }
 
     /// Goes back to a state; a system that was not started then is.
@@ -107,11 +99,15 @@ impl System {
     /// The words are no state of this deck; the system is unchanged.
     pub fn deserialize(&mut self, words: &[u64]) -> Outcome {
         let head = words.first_chunk::<HEAD>().copied().ok_or_else(damaged)?;
-        if length(head)? != words.len() || sum(words) != head[2] {
+        if length(head)? != words.len() {
             return Err(damaged());
         }
-        let bytes: Vec<u8> = words[HEAD..].iter().flat_map(|word| word.to_le_bytes()).collect();
-        let body: Body = postcard::from_bytes(&bytes).map_err(|_| damaged())?;
+        let bytes: Vec<u8> = words[1..].iter().flat_map(|word| word.to_le_bytes()).collect();
+        self.unseal(&bytes[..head[0] as usize])
+    }
+
+    fn unseal(&mut self, bytes: &[u8]) -> Outcome {
+        let body: Body = sealed::open(&MARK, bytes).map_err(|_| damaged())?;
         if body.version != env!("CARGO_PKG_VERSION") {
             return Err(damaged());
         }
@@ -149,9 +145,7 @@ impl System {
     /// # Errors
     /// A system that was not started, or a file that the operating system refuses.
     pub fn save(&self, path: &Path) -> Outcome {
-        let words = self.serialize()?;
-        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        std::fs::write(path, bytes).map_err(|error| {
+        std::fs::write(path, self.sealed()?).map_err(|error| {
             let message = format!("cannot write {}: {error}", path.display());
             Failure::new(Code::InvalidOutputFile, message)
         })
@@ -166,13 +160,6 @@ impl System {
             let message = format!("cannot read {}: {error}", path.display());
             Failure::new(Code::InvalidInputFile, message)
         })?;
-        if bytes.len() % WORD != 0 {
-            return Err(damaged());
-        }
-        let pieces = bytes.chunks_exact(WORD);
-        let words: Vec<u64> = pieces
-            .map(|piece| u64::from_le_bytes(std::array::from_fn(|i| piece[i])))
-            .collect();
-        self.deserialize(&words)
+        self.unseal(&bytes)
     }
 }
