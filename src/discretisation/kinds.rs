@@ -1,5 +1,6 @@
 //! Networks of lines that are copies of one another: the same lines between points at the same positions except for a displacement along the seabed, moved
-//! in the same way. The errors of their meshes are the same, over any time in waves, so one network of each kind is tried.
+//! in the same way. The errors of their meshes are the same, over any time in waves, so one network of each kind is tried. Networks with beams are not, and
+//! leave the trials of the others.
 
 use std::collections::BTreeMap;
 
@@ -21,24 +22,24 @@ pub(super) struct Kinds {
 }
 
 impl Kinds {
-    /// None if no two networks are of the same kind.
+    /// None if no two networks are of the same kind, and none has beams, or all have.
     pub(super) fn of(scene: &Scene, networks: &Networks) -> Option<Kinds> {
         let level = scene
             .seabed
             .as_ref()
             .is_none_or(|seabed| seabed.slope.is_none() && seabed.file.is_none() && seabed.grid.is_none());
-        if !level || networks.lines.len() < 2 {
-            return None;
-        }
         let alone = |lines: &Vec<usize>| Part::of(scene, lines).displaced();
         let seen: Vec<Part> = networks.lines.iter().map(alone).collect();
-        let first = |network: &Part| seen.iter().position(|other| other == network);
-        let first: Vec<usize> = seen.iter().filter_map(first).collect();
-        let is_first = |&network: &usize| first[network] == network;
-        let kept = (0..first.len()).filter(is_first);
+        let of_kind = |(i, network): (usize, &Part)| {
+            let same = seen.iter().position(|other| level && other == network);
+            same.unwrap_or(i)
+        };
+        let first: Vec<usize> = seen.iter().enumerate().map(of_kind).collect();
+        let is_tried = |&network: &usize| first[network] == network && !networks.beams[network];
+        let kept = (0..first.len()).filter(is_tried);
         let mut lines: Vec<usize> = kept.flat_map(|network| networks.lines[network].clone()).collect();
         lines.sort_unstable();
-        (lines.len() < scene.lines.len()).then(|| Kinds {
+        (!lines.is_empty() && lines.len() < scene.lines.len()).then(|| Kinds {
             first,
             scene: Part::of(scene, &lines).in_place_of_all(scene),
             lines,
@@ -63,7 +64,10 @@ impl Kinds {
                     lines,
                     ..mesh.clone()
                 },
-                None => Mesh::by_rule(lines, scene.solver.tolerance),
+                None => Mesh {
+                    tried: !networks.beams[network],
+                    ..Mesh::by_rule(lines, scene.solver.tolerance)
+                },
             }
         };
         let meshes: Vec<Mesh> = (0..networks.lines.len()).map(mesh).collect();
@@ -75,7 +79,9 @@ impl Kinds {
                 }
             }
         }
-        whole.solver.integrator = found.scene.solver.integrator;
+        if !networks.beams.contains(&true) {
+            whole.solver.integrator = found.scene.solver.integrator;
+        }
         whole.solver.time_step_max = found.scene.solver.time_step_max;
         Discretisation {
             scene: whole,

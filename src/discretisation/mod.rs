@@ -19,7 +19,7 @@
 //! The runs of the ladder take axial-implicit steps where these cost less than explicit ones. Their length is the longest whose error, 4/3 of the
 //! distance to a run with half the step, is a quarter of the tolerance on a coarse mesh; the same is required on the mesh found, or else the ladder
 //! is run again from the level below it, with the step halved as often as an error of second order requires, if the work allows. Of networks that are displaced
-//! copies of one another, moved in the same way, only one is tried, and none is run twice with the same elements and steps.
+//! copies of one another, moved in the same way, only one is tried, none with beams, and none twice with the same elements and steps.
 //!
 //! The axial-implicit leapfrog costs two to three times as much per step as the explicit one. It is tried with steps of ½, ¼, … of the longest allowed, on the mesh
 //! found and on finer ones, in the order of cost; the first option that keeps the error against the finest mesh is taken, else steps are explicit.
@@ -266,7 +266,7 @@ pub fn select(scene: &Scene) -> Option<Discretisation> {
         return None;
     }
     let networks = Networks::of(scene)?;
-    match Kinds::of(scene, &networks) {
+    match Kinds::of(scene, &networks).filter(|kinds| is_open(&kinds.scene)) {
         None => tried(scene, &networks),
         Some(kinds) => {
             let found = tried(&kinds.scene, &Networks::of(&kinds.scene)?)?;
@@ -413,6 +413,8 @@ struct Networks {
     lines: Vec<Vec<usize>>,
     /// True if the elements of any line of a network are left open.
     open: Vec<bool>,
+    /// True if a line of a network is a beam, whose integrator is not tried.
+    beams: Vec<bool>,
     /// Elements of every line over those of a line alone [-].
     shares: Vec<f64>,
 }
@@ -427,8 +429,10 @@ impl Networks {
         let networks = model.networks.iter();
         let lines: Vec<Vec<usize>> = networks.map(|network| network.lines.clone()).collect();
         let is_open = |lines: &Vec<usize>| lines.iter().any(|&line| scene.lines[line].is_open());
+        let has_beam = |lines: &Vec<usize>| lines.iter().any(|&line| model.lines[line].beam.is_some());
         Networks {
             open: lines.iter().map(is_open).collect(),
+            beams: lines.iter().map(has_beam).collect(),
             shares: line_shares(scene),
             lines,
         }

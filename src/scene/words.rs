@@ -50,12 +50,16 @@ impl Scene {
 
     fn solution_in_words(&self) -> Vec<String> {
         let (solver, output) = (&self.solver, &self.output);
-        let compression = if solver.negative_tension {
-            "axial damping acts in compression and stiffness does not: tension may be negative, as in other codes"
-        } else if self.all_beams() {
-            "beams carry compression as well as tension"
-        } else {
-            self.compression_in_words()
+        let of_cables = match solver.negative_tension {
+            true => {
+                "axial damping acts in compression and stiffness does not: tension may be negative, as in other codes"
+            }
+            false => self.compression_in_words(),
+        };
+        let compression = match self.lines.iter().any(|line| self.is_beam(line)) {
+            true if self.all_beams() => "beams carry compression as well as tension".to_string(),
+            true => format!("{of_cables}, except for beams, which carry compression as well as tension"),
+            false => of_cables.to_string(),
         };
         let nodes = if output.profile.is_given() {
             " of all nodes"
@@ -84,7 +88,7 @@ impl Scene {
                 solver.tolerance_of.in_words(),
                 percent(solver.tolerance)
             ),
-            compression.to_string(),
+            compression,
             format!("`run` simulates {duration}, with output{nodes} every {interval}{tables}"),
         ];
         let balance = output
@@ -119,7 +123,7 @@ impl Scene {
 
     /// Effects that are not modelled.
     fn absences(&self) -> Vec<String> {
-        let bending = (!self.all_beams()).then(|| self.absence_of_bending().to_string());
+        let bending = (!self.all_beams()).then(|| self.absence_of_bending());
         let water = match &self.water {
             Some(_) => self.absences_of_water(),
             None => "buoyancy, drag and added mass".to_string(),

@@ -65,6 +65,22 @@ fn words_say_what_is_modelled_and_what_is_not() {
 }
 
 #[test]
+fn beams_among_cables_are_described_as_modelled() {
+    let beam = "\n[line_types.rod]\nmodel = \"beam\"\nmass = 10.0\ndiameter = 0.1\naxial_stiffness = 1.0e7\nshear_stiffness = 1.0e6\n\
+                bending_stiffness = 1.0e4\ntorsional_stiffness = 1.0e4\nrotary_inertia = 0.1\n\n[[points]]\nname = \"foot\"\n\
+                position = [0.0, 5.0, -50.0]\nkind = \"fixed\"\n\n[[points]]\nname = \"head\"\nposition = [0.0, 5.0, -10.0]\nkind = \"fixed\"\n\n\
+                [[lines]]\nname = \"riser\"\nfrom = \"foot\"\nto = \"head\"\nsections = [{ type = \"rod\", length = 40.0 }]\n";
+    let words = in_words(&Scene::from_toml(&format!("{SCENE}{beam}")).unwrap());
+    assert_says(
+        &words,
+        &[
+            "lines carry no compression: the tension of a slack line is zero, except for beams",
+            "bending, torsion and shear of lines other than beams",
+        ],
+    );
+}
+
+#[test]
 fn notes_speak_of_what_is_unused_or_strange() {
     let text = SCENE
         .replace("[[points]]\nname = \"buoy\"", "[line_types.spare]\nmass = 1.0\ndiameter = 0.1\naxial_stiffness = 1.0\n\n[[points]]\nname = \"buoy\"")

@@ -74,12 +74,16 @@ impl Scene {
     }
 
     /// The parts of bending, torsion and shear that are not modelled.
-    pub(super) fn absence_of_bending(&self) -> &'static str {
+    pub(super) fn absence_of_bending(&self) -> String {
         let cables = || self.lines.iter().filter(|line| !self.is_beam(line));
-        match cables().filter(|line| self.bends(line)).count() {
+        let absences = match cables().filter(|line| self.bends(line)).count() {
             0 => "bending, torsion and shear of lines",
             n if n == cables().count() => "torsion and shear of lines",
-            _ => "bending of lines without bending stiffness, torsion and shear of all lines",
+            _ => "bending of lines without bending stiffness, torsion and shear of lines",
+        };
+        match cables().count() == self.lines.len() {
+            true => absences.to_string(),
+            false => format!("{absences} other than beams"),
         }
     }
 

@@ -195,6 +195,51 @@ fn elements_given_for_a_line_leave_the_trials_of_another() {
     }
 }
 
+/// The integrator of beams is not tried: a riser that is a beam leaves the trials of a rope; a note says that the error of its open mesh is unknown.
+#[test]
+fn a_beam_leaves_the_trials_of_other_lines() {
+    let rope = moved("taut_polyester", [1.0, 1.0]);
+    let alone = discretisation::select(&rope).unwrap();
+    let riser = r#"
+[line_types.rod]
+model = "beam"
+mass = 200.0
+diameter = 0.3
+axial_stiffness = 7.0e8
+shear_stiffness = 1.0e8
+bending_stiffness = 1.0e5
+torsional_stiffness = 1.0e5
+rotary_inertia = 2.0
+
+[[points]]
+name = "foot"
+position = [-5.0, 0.0, -150.0]
+kind = "fixed"
+
+[[points]]
+name = "head"
+position = [-5.0, 0.0, -10.0]
+kind = "fixed"
+
+[[lines]]
+name = "riser"
+from = "foot"
+to = "head"
+sections = [{ type = "rod", length = 139.5 }]
+"#;
+    let mut scene = Scene::from_toml(&(rope.to_toml() + riser)).unwrap();
+    let selected = discretisation::select(&scene).unwrap();
+    assert_eq!(selected.meshes[0], alone.meshes[0]);
+    assert_says(
+        &shortfalls(&selected),
+        &["riser: the error of this mesh is unknown"],
+    );
+    scene.lines[1].elements = Some(10);
+    let selected = discretisation::select(&scene).unwrap();
+    assert_eq!(selected.meshes, alone.meshes);
+    assert_eq!(shortfalls(&selected), "");
+}
+
 /// RMS error of the position of the middle of a scene's line on the mesh selected, over its deviation from its mean [-].
 fn error_of_middle(scene: &Scene) -> f64 {
     let middle = |scene: &Scene| {
