@@ -1,6 +1,6 @@
 //! Networks of lines that are copies of one another: the same lines between points at the same positions except for a displacement along the seabed, moved
-//! in the same way. The errors of their meshes are the same, over any time in waves, so one network of each kind is tried. Networks with beams are not, and
-//! leave the trials of the others.
+//! in the same way. The errors of their meshes are the same, over any time in waves, so one network of each kind is tried. Networks with beams are not
+//! tried, and do not prevent the trials of the others.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub(super) struct Kinds {
 }
 
 impl Kinds {
-    /// None if no two networks are of the same kind, and none has beams, or all have.
+    /// None if every network is to be tried, or none can be.
     pub(super) fn of(scene: &Scene, networks: &Networks) -> Option<Kinds> {
         let level = scene
             .seabed

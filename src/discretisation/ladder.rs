@@ -46,7 +46,7 @@ impl Ladder {
         }
     }
 
-    /// Starts again, for shorter steps, a level below the mesh found, or below the last one assessed. The errors of the coarser meshes of before are kept.
+    /// Starts again, for shorter steps, a level below the mesh found, or below the last one assessed. The errors of coarser meshes are kept.
     pub(super) fn restart(&mut self) {
         let below = self.trials.len().saturating_sub(2);
         self.coarsest = self.trials.get(below).map_or(LEVELS[0], |trial| trial.elements);

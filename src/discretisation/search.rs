@@ -66,7 +66,7 @@ impl<'a> Search<'a> {
     fn by_rule(&self) -> Steps {
         Steps {
             integrator: self.scene().solver.integrator,
-            longest: self.trials.longest_step,
+            longest: self.scene().solver.time_step_max,
             tolerance: FINER * self.tolerance(),
         }
     }
@@ -389,17 +389,13 @@ impl<'a> Search<'a> {
 
     /// Cost of explicit steps; none where the axial-implicit leapfrog is not applicable.
     fn explicit_cost(&self, elements: &[usize]) -> Option<Explicit> {
-        let steps = Steps {
-            tolerance: self.tolerance(),
-            ..self.by_rule()
-        };
-        let simulation = Simulation::new(&steps.of(self.trials.with(elements))).ok()?;
+        let simulation = Simulation::new(&self.trials.with(elements)).ok()?;
         let model = simulation.model();
         if model.lines.iter().any(|line| line.winch.is_some()) {
             return None;
         }
         let limits = simulation.choices().map(|choice| choice.explicit.step);
-        let limit = limits.fold(steps.longest, f64::min);
+        let limit = limits.fold(self.scene().solver.time_step_max, f64::min);
         let output = &self.scene().output;
         let count = (output.interval / limit).ceil() * output.duration / output.interval;
         let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();

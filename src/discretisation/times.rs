@@ -54,16 +54,16 @@ impl MotionTimes {
             ToleranceOf::LowPassedTension => SAMPLES_TO_FILTER,
             ToleranceOf::Tension | ToleranceOf::Position => SAMPLES,
         };
-        spread(interval.min(self.shortest / samples), self.shortest)
+        interval.min(self.shortest / samples)
     }
-}
 
-/// Returns an interval of samples [s] for a motion of a period [s], a little shorter where so few samples would miss the same snap in every period.
-fn spread(interval: f64, period: f64) -> f64 {
-    let samples = period / interval;
-    if samples < PHASES {
-        period / (samples.ceil() + SHIFT)
-    } else {
-        interval
+    /// Returns an interval of samples [s] that is a little shorter where so few samples would miss the same snap in every period.
+    pub(super) fn spread(&self, interval: f64) -> f64 {
+        let samples = self.shortest / interval;
+        if samples < PHASES {
+            self.shortest / (samples.ceil() + SHIFT)
+        } else {
+            interval
+        }
     }
 }

@@ -76,11 +76,12 @@ impl<'a> Trials<'a> {
         let mut scene = scene.clone();
         let output = &mut scene.output;
         output.duration = output.duration.min(times.duration);
-        output.interval = times.sample_interval(output.interval, scene.solver.tolerance_of);
+        let interval = times.sample_interval(output.interval, scene.solver.tolerance_of);
+        output.interval = times.spread(interval);
         let start = (0.5 * output.duration).max(times.ramp.min(0.75 * output.duration));
         Some(Trials {
             from: (start / output.interval) as usize,
-            longest_step: scene.solver.time_step_max.min(output.interval),
+            longest_step: scene.solver.time_step_max.min(interval),
             scene,
             networks,
             implicit: may_need_implicit_steps(model),

@@ -176,7 +176,7 @@ fn of_lines_that_are_copies_one_is_tried() {
     assert_ne!(longer.trials, one.trials);
 }
 
-/// The mesh of one line is given: that of the other is tried as if it were alone.
+/// A line whose mesh is given does not prevent the trials of the other, which finds the mesh that it has alone.
 #[test]
 fn elements_given_for_a_line_leave_the_trials_of_another() {
     let alone = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();
@@ -195,7 +195,8 @@ fn elements_given_for_a_line_leave_the_trials_of_another() {
     }
 }
 
-/// The integrator of beams is not tried: a riser that is a beam leaves the trials of a rope; a note says that the error of its open mesh is unknown.
+/// The integrator of beams is not tried: a riser that is a beam does not prevent the trials of a rope, and a note says that the error of its open mesh
+/// is unknown.
 #[test]
 fn a_beam_leaves_the_trials_of_other_lines() {
     let rope = moved("taut_polyester", [1.0, 1.0]);
