@@ -9,7 +9,7 @@ use moorline::output::record::Record;
 use moorline::output::state::{self, RunState};
 use moorline::output::times::Times;
 use moorline::output::{collect, write_report};
-use moorline::scene::{Drive, LoadedScene, MotionPath, Reconstruction, Scene};
+use moorline::scene::{Drive, LoadedScene, MotionPath, Note, Reconstruction, Scene};
 use moorline::simulation::{Simulation, Watch};
 
 use crate::arguments::Input;
@@ -70,9 +70,10 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
     }
     let mut motion = None;
     if !drive.is_empty() {
-        let before = loaded.scene.clone();
-        motion = loaded.scene.drive(drive).map_err(Failure::Argument)?;
-        remark_driven(&loaded, &before, drive);
+        let (before, mut scene) = (loaded.scene.clone(), loaded.scene.clone());
+        motion = scene.drive(drive).map_err(Failure::Argument)?;
+        let notes = loaded.change(scene);
+        remark_driven(notes, &loaded, &before, drive);
     }
     let given = Given::of(&loaded.scene, stepping);
     let saved = match course.resume {
@@ -115,10 +116,8 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
     ))
 }
 
-/// Remarks on a scene that a drive has changed, except those on the scene before. Remarks on motions of the drive name its file or argument.
-fn remark_driven(loaded: &LoadedScene, before: &Scene, drive: &Drive) {
-    let (known, mut notes) = (before.notes(), loaded.scene.notes());
-    notes.retain(|note| !known.contains(note));
+/// Remarks on a scene that a drive has changed. Those on motions of the drive name its file or argument.
+fn remark_driven(notes: Vec<Note>, loaded: &LoadedScene, before: &Scene, drive: &Drive) {
     for note in notes {
         let body = note
             .at

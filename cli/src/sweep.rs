@@ -1,13 +1,12 @@
 //! `moorline sweep`: a scene case by case, on all cores.
 
-use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
-use moorline_sweep::{Base, Case, Progress, Row, Sweep, SweepError, cases, shortfalls};
+use moorline_sweep::{Base, Case, Progress, Row, Sweep, SweepError, cases, remarks, shortfalls};
 
 use crate::arguments::Input;
 use crate::failure::Failure;
@@ -31,7 +30,9 @@ pub(crate) fn sweep(input: &Input, file: &Path, folder: &Path, choice: &Choice) 
     let base = Base::load(&input.scene, &input.host.supplement())?;
     base.notes().iter().for_each(|note| remark(&input.scene, note));
     let cases = cases(&base, file, choice.from)?;
-    remark_cases(&cases, file);
+    for (case, note) in remarks(&cases) {
+        let _ = writeln!(io::stderr(), "note: {}:{}: {note}", file.display(), case.line);
+    }
     let _open = Folder::open(folder)?;
     let mut sweep = Sweep::open(&cases, folder, choice.series)?;
     let before = sweep.rows().len();
@@ -51,9 +52,14 @@ pub(crate) fn sweep(input: &Input, file: &Path, folder: &Path, choice: &Choice) 
         .bar
         .finish_and_clear();
     let state = state?;
-    for (case, note) in shortfalls(&cases, &sweep.rows()[before..]) {
+    for (case, note) in shortfalls(&cases) {
         // a remark that cannot be written does not end the command
-        let _ = writeln!(io::stderr(), "note: {}, case {case}: {note}", file.display());
+        let _ = writeln!(
+            io::stderr(),
+            "note: {}, case {}: {note}",
+            file.display(),
+            case.number
+        );
     }
     if state.done < cases.len() {
         return Err(Failure::Interrupted(format!(
@@ -68,18 +74,6 @@ pub(crate) fn sweep(input: &Input, file: &Path, folder: &Path, choice: &Choice) 
     match state.failed {
         0 => Ok(()),
         _ => Err(Failure::Computation(failures(&sweep, &cases, file))),
-    }
-}
-
-/// Remarks on the scenes of the cases, each once, at the line of its first case.
-fn remark_cases(cases: &[Case], file: &Path) {
-    let mut known = BTreeSet::new();
-    for case in cases {
-        for note in &case.notes {
-            if known.insert((&note.at, &note.text)) {
-                let _ = writeln!(io::stderr(), "note: {}:{}: {note}", file.display(), case.line);
-            }
-        }
     }
 }
 

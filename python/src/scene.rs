@@ -59,10 +59,9 @@ impl Scene {
 
     /// The same description with other content, which is no longer that of the text.
     fn with(&self, scene: moorline::scene::Scene) -> Scene {
-        let changed = LoadedScene {
-            scene,
-            ..(*self.loaded).clone()
-        };
+        let mut changed = (*self.loaded).clone();
+        let notes = changed.change(scene);
+        changed.notes.extend(notes);
         changed.into()
     }
 

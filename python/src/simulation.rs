@@ -5,7 +5,7 @@ use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, NoValue, Variable};
-use moorline::model::{End, Model};
+use moorline::model::{Body, End, Model};
 use moorline::output::sealed::{self, Unreadable};
 use moorline::scene::{LoadedScene, Note};
 use moorline::simulation::{self, Inputs, NO_FLOW, Simulation as Mooring, Watch};
@@ -613,10 +613,14 @@ impl Simulation {
         let state = &mooring.state().points[point];
         let vector = |vector: [f64; 3]| PyArray1::from_slice(py, &vector);
         let (position, velocity) = (vector(state.position.into()), vector(state.velocity.into()));
+        let force = match mooring.model().points[point].free() {
+            None => mooring.host_force(Body::Point(point))[..3].to_vec(),
+            Some(_) => mooring.end_force(point).to_vec(),
+        };
         let results = py.import("moorline.results")?;
         results
             .getattr("PointState")?
-            .call1((position, velocity, vector(mooring.end_force(point))))
+            .call1((position, velocity, PyArray1::from_vec(py, force)))
     }
 
     /// Forces of a line on its supports at end A and end B [N], a row an end.

@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use moorline::output::OutputError;
 use moorline::output::record::{Column, Form};
 use moorline_decks::Supplement;
-use moorline_sweep::{Base, Case, Row, SERIES, SweepError, cases, fingerprint, run_case_until, table};
+use moorline_sweep::{
+    Base, Case, Row, SERIES, SweepError, cases, fingerprint, remarks, run_case_until, shortfalls, table,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -21,6 +23,11 @@ pub(crate) struct Sweep {
     cases: Arc<[Case]>,
     notes: Vec<String>,
     sweep: Mutex<Option<moorline_sweep::Sweep>>,
+}
+
+/// A remark on a case.
+fn of_case(case: &Case, note: impl std::fmt::Display) -> String {
+    format!("case {}: {note}", case.number)
 }
 
 fn of_output(error: OutputError) -> Failure {
@@ -63,8 +70,12 @@ impl Sweep {
         }
         let read = aside(py, None, move |_| -> Result<_, Failure> {
             let base = Base::load(&base, &Supplement::default())?;
-            let notes = base.notes().iter().map(ToString::to_string).collect();
-            Ok((notes, self::cases(&base, &cases, start)?))
+            let mut notes: Vec<String> = base.notes().iter().map(ToString::to_string).collect();
+            let cases = self::cases(&base, &cases, start)?;
+            let of_cases = remarks(&cases);
+            notes.extend(of_cases.iter().map(|(case, note)| of_case(case, note)));
+            drop(of_cases);
+            Ok((notes, cases))
         })?;
         let (notes, cases) = read?;
         Ok(Sweep {
@@ -160,7 +171,12 @@ impl Sweep {
         let facts = PyDict::new(py);
         facts.set_item("units", units)?;
         facts.set_item("descriptions", descriptions)?;
-        facts.set_item("notes", &self.notes)?;
+        let of_meshes = shortfalls(&self.cases);
+        let of_meshes = of_meshes.into_iter().map(|(case, note)| of_case(case, note));
+        facts.set_item(
+            "notes",
+            self.notes.iter().cloned().chain(of_meshes).collect::<Vec<_>>(),
+        )?;
         py.import("moorline.results")?
             .getattr("Table")?
             .call((columns,), Some(&facts))

@@ -74,6 +74,14 @@ def test_parameters_have_the_names_of_the_fmu_and_give_another_scene(chain):
     assert other.to_dict()["seabed"]["depth"] == 121.0
 
 
+def test_remarks_follow_changed_parameters_and_motions(chain):
+    unlikely = chain.with_parameters({"chain.drag_normal": 120.0})
+    assert [note for note in unlikely.notes if "drag_normal" in note] and not [note for note in chain.notes if "drag_normal" in note]
+    assert unlikely.with_parameters({"chain.drag_normal": 1.3}).notes == chain.notes
+    lifted = chain.with_motion({"time": [0.0, 10.0], "fairlead.z": [0.0, 500.0]})
+    assert lifted.notes != chain.notes
+
+
 def test_scenes_are_pickled_to_the_last_bit(chain):
     assert pickle.loads(pickle.dumps(chain)) == chain
 

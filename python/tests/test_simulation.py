@@ -22,6 +22,14 @@ def steps(simulation, count, start=0):
     return np.array(rows)
 
 
+@pytest.mark.parametrize("kind", ["total", "without_inertia"])
+def test_the_force_on_a_coupled_point_is_that_of_the_outputs(kind):
+    scene = moorline.Scene.from_toml(CHAIN.replace("[output]", f'[output]\nforce = "{kind}"'))
+    simulation = moorline.Simulation(scene)
+    steps(simulation, 20)
+    assert simulation.point("fairlead").force.tolist() == [simulation[f"fairlead.f{axis}"] for axis in "xyz"]
+
+
 def test_inputs_by_name_and_as_an_array_give_the_same_bits(chain):
     named, listed = moorline.Simulation(chain), moorline.Simulation(chain)
     assert listed.input_names == ["fairlead.x", "fairlead.y", "fairlead.z"]

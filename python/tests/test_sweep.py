@@ -50,6 +50,13 @@ def test_a_sweep_writes_and_returns_the_table_of_the_program(prepared, tmp_path)
     pandas.testing.assert_frame_equal(pandas.DataFrame(again), pandas.DataFrame(table))
 
 
+def test_remarks_on_the_scenes_of_cases_are_notes_of_the_table(tmp_path):
+    (tmp_path / "base.toml").write_text(CHAIN)
+    (tmp_path / "cases.csv").write_text("line_types.chain.drag_normal\n1.2\n120\n")
+    notes = moorline.sweep(tmp_path / "base.toml", tmp_path / "cases.csv").notes
+    assert [note for note in notes if note.startswith("case 2: ") and "drag_normal" in note], notes
+
+
 def test_wrong_input_of_a_sweep_is_refused_with_its_place(tmp_path):
     (tmp_path / "base.toml").write_text(CHAIN)
     (tmp_path / "cases.csv").write_text("lines.line1.lenght\n450\n")

@@ -14,12 +14,14 @@ use toml::Value;
 
 use crate::key::Place;
 use crate::kind::{Kind, Severity, ramp, severity, system};
-use crate::sheet::{Column, Draft, Sheet, mistake};
+use crate::sheet::{Column, Draft, Entry, Sheet, mistake};
 
 /// Most mistakes of CASES that are reported [-].
 const MISTAKES_MAX: usize = 20;
 /// Column of a motion file that moves what its columns name, as `run --motion` does.
 const MOTION: &str = "motion";
+/// Key of the duration, which is also that of a motion file in the column [`MOTION`].
+const DURATION: &str = "output.duration";
 
 /// Scene or deck whose keys the cases set.
 #[derive(Debug)]
@@ -59,26 +61,25 @@ pub(crate) struct Input {
     pub base: Arc<PathBuf>,
     /// The scene as TOML.
     pub document: String,
-    /// Motion file in place of the scene's motion.
-    pub motion: Option<PathBuf>,
+    /// Motion file in place of the scene's motion, with the duration where the case sets it.
+    pub drive: Drive,
 }
 
 impl Input {
     /// Reads the scene.
     pub(crate) fn load(&self) -> Result<LoadedScene, LoadError> {
         let mut loaded = load_text(&self.base, self.document.clone())?;
-        if let Some(file) = &self.motion {
-            let drive = Drive {
-                file: Some(file.clone()),
-                ..Drive::default()
-            };
-            let driven = loaded.scene.drive(&drive);
-            driven.map_err(|problem| LoadError::Scene {
-                path: loaded.path.clone(),
-                text: String::new(),
-                mistakes: vec![SceneError::new(MOTION, problem)],
-            })?;
+        if self.drive.is_empty() {
+            return Ok(loaded);
         }
+        let mut scene = loaded.scene.clone();
+        scene.drive(&self.drive).map_err(|problem| LoadError::Scene {
+            path: loaded.path.clone(),
+            text: String::new(),
+            mistakes: vec![SceneError::new(MOTION, problem)],
+        })?;
+        let notes = loaded.change(scene);
+        loaded.notes.extend(notes);
         Ok(loaded)
     }
 }
@@ -127,7 +128,7 @@ impl Case {
         file_names(&document.expect("a document that was written"), &mut names);
         let folder = folder_of(&self.input.base);
         let named = names.iter().map(|name| folder.join(name));
-        named.chain(self.input.motion.clone()).collect()
+        named.chain(self.input.drive.file.clone()).collect()
     }
 }
 
@@ -154,6 +155,17 @@ struct Target {
     place: Option<Place>,
     /// Factor to SI units, where the heading gives a unit [-].
     factor: Option<f64>,
+}
+
+impl Target {
+    /// Returns whether only one of two columns can have a value in a case.
+    fn excludes(&self, other: &Target) -> bool {
+        match (&self.place, &other.place) {
+            (Some(one), Some(other)) => one.excludes(other),
+            (Some(place), None) | (None, Some(place)) => place.is_motion(),
+            (None, None) => true,
+        }
+    }
 }
 
 /// Reads the cases of a file and checks each of them as a scene. `from` is the time from which results count [s], in place of the end of the
@@ -263,41 +275,19 @@ impl<'b> Builder<'b> {
     /// The case of a row, read as a scene.
     fn check(&self, index: usize) -> Result<Checked, Vec<SceneError>> {
         let draft = &self.sheet.cases[index];
+        let mistakes = self.replaced(draft);
+        if !mistakes.is_empty() {
+            return Err(mistakes);
+        }
+        let input = self.input(draft)?;
         let mut values: Vec<(Arc<Key>, Option<Value>)> = self
             .targets
             .iter()
             .map(|target| (target.key.clone(), None))
             .collect();
-        let mut document = self.base.document.clone();
-        let mut motion = None;
-        let mut mistakes = Vec::new();
         for entry in &draft.entries {
-            let target = &self.targets[entry.column];
-            let in_si = match in_si(target, &entry.value, &entry.span) {
-                Ok(value) => value,
-                Err(mistake) => {
-                    mistakes.push(mistake);
-                    continue;
-                }
-            };
             values[entry.column].1 = Some(entry.value.clone());
-            match (&target.place, in_si) {
-                (None, value) => motion = value.as_str().map(|file| self.beside(file)),
-                (Some(place), Value::String(file)) if place.is_file() => {
-                    let file = self.beside(&file).display().to_string();
-                    place.set(&mut document, Value::String(file));
-                }
-                (Some(place), value) => place.set(&mut document, value),
-            }
         }
-        if !mistakes.is_empty() {
-            return Err(mistakes);
-        }
-        let input = Input {
-            base: self.base_path.clone(),
-            document: toml::to_string(&document).expect("a document that was read can be written"),
-            motion,
-        };
         let loaded = input.load().map_err(|error| self.located(draft, error))?;
         let from = self.start(draft, &loaded.scene)?;
         let mut notes = loaded.notes;
@@ -322,6 +312,56 @@ impl<'b> Builder<'b> {
                 input,
                 kind: self.open.clone(),
             },
+        })
+    }
+
+    /// Values of a case that another of its keys would replace.
+    fn replaced(&self, draft: &Draft) -> Vec<SceneError> {
+        let target = |entry: &Entry| &self.targets[entry.column];
+        let mut mistakes = Vec::new();
+        for (index, entry) in draft.entries.iter().enumerate() {
+            let mut earlier = draft.entries[..index].iter();
+            if let Some(other) = earlier.find(|other| target(other).excludes(target(entry))) {
+                let path = &target(other).key.path;
+                let problem = format!("`{path}` sets the same in this case: leave one of them out");
+                mistakes.push(mistake(&target(entry).key.path, problem, &entry.span));
+            }
+        }
+        mistakes
+    }
+
+    /// The base with the values of a case.
+    fn input(&self, draft: &Draft) -> Result<Input, Vec<SceneError>> {
+        let mut document = self.base.document.clone();
+        let mut drive = Drive::default();
+        let mut mistakes = Vec::new();
+        for entry in &draft.entries {
+            let target = &self.targets[entry.column];
+            match (in_si(target, &entry.value, &entry.span), &target.place) {
+                (Err(mistake), _) => mistakes.push(mistake),
+                (Ok(value), None) => drive.file = value.as_str().map(|file| self.beside(file)),
+                (Ok(Value::String(file)), Some(place)) if place.is_file() => {
+                    let file = self.beside(&file).display().to_string();
+                    place.set(&mut document, Value::String(file));
+                }
+                (Ok(value), Some(place)) => {
+                    if place.path() == DURATION {
+                        drive.duration = value.as_float().or(value.as_integer().map(|value| value as f64));
+                    }
+                    place.set(&mut document, value);
+                }
+            }
+        }
+        if !mistakes.is_empty() {
+            return Err(mistakes);
+        }
+        if drive.file.is_none() {
+            drive.duration = None; // the document has it
+        }
+        Ok(Input {
+            base: self.base_path.clone(),
+            document: toml::to_string(&document).expect("a document that was read can be written"),
+            drive,
         })
     }
 
@@ -355,11 +395,11 @@ impl<'b> Builder<'b> {
         };
         let place = |found: SceneError| {
             let entries = draft.entries.iter().rev();
-            let set = |entry: &&crate::sheet::Entry| match &self.targets[entry.column].place {
+            let set = |entry: &&Entry| match &self.targets[entry.column].place {
                 Some(place) => is_within(&found.at, &place.path()),
                 None => found.at.starts_with(MOTION),
             };
-            let above = |entry: &&crate::sheet::Entry| match &self.targets[entry.column].place {
+            let above = |entry: &&Entry| match &self.targets[entry.column].place {
                 Some(place) => is_within(&place.path(), &found.at),
                 None => false,
             };

@@ -94,6 +94,26 @@ impl Place {
         self.steps.last() == Some(&Step::Key("file".to_string()))
     }
 
+    /// Returns whether the value belongs to the motions of the scene.
+    pub(crate) fn is_motion(&self) -> bool {
+        self.steps.first() == Some(&Step::Key("motion".to_string()))
+    }
+
+    /// Returns whether only one of two places can have a value in a case: one holds the other, or one is the file of a motion that the other
+    /// belongs to.
+    pub(crate) fn excludes(&self, other: &Place) -> bool {
+        let holds =
+            |one: &Place, other: &Place| other.steps.starts_with(one.replaced().unwrap_or(&one.steps));
+        holds(self, other) || holds(other, self)
+    }
+
+    /// Steps to the motion that a file here replaces.
+    fn replaced(&self) -> Option<&[Step]> {
+        let (_, above) = self.steps.split_last()?;
+        let is_motion = above.contains(&Step::Key("motion".to_string()));
+        (is_motion && self.is_file()).then_some(above)
+    }
+
     /// Sets the value in a document of the same lists; tables that are missing are made. A motion that becomes a file loses its other keys.
     pub(crate) fn set(&self, document: &mut Value, new: Value) {
         let Some((last, above)) = self.steps.split_last() else {
@@ -109,12 +129,11 @@ impl Place {
                 Step::Index(index) => &mut holder[*index],
             };
         }
-        let is_motion = above.iter().any(|step| *step == Step::Key("motion".into()));
         match last {
             Step::Index(index) => holder[*index] = new,
             Step::Key(key) => {
                 let table = as_table(holder);
-                if is_motion && self.is_file() {
+                if self.replaced().is_some() {
                     table.clear();
                 }
                 if let Some(alias) = self.alias {

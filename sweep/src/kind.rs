@@ -65,9 +65,9 @@ impl Kind {
         }
     }
 
-    /// Remarks on the discretisation: errors that are expected to exceed the tolerance.
+    /// Remarks on the discretisation, once it was selected: errors that are expected to exceed the tolerance.
     pub(crate) fn notes(&self) -> &[String] {
-        &self.choice().notes
+        self.choice.get().map_or(&[], |choice| &choice.notes)
     }
 
     fn choice(&self) -> &Choice {
@@ -224,6 +224,7 @@ fn of_motion(path: &MotionPath, lever: f64) -> Severity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use moorline::scene::Drive;
 
     const SCENE: &str = include_str!("../../tests/scenes/platform.toml");
 
@@ -300,7 +301,7 @@ mod tests {
         let input = |name: &str| Input {
             base: std::sync::Arc::new("base.toml".into()),
             document: name.into(),
-            motion: None,
+            drive: Drive::default(),
         };
         let inputs = ["far", "fast", "fast again", "mild"].map(input);
         let severities = [[9.0, 1.0, 0.1], [2.0, 3.0, 4.0], [2.0, 3.0, 4.0], [1.0, 1.0, 1.0]];

@@ -33,7 +33,7 @@ pub use case::{Base, Case, Key, cases};
 pub use journal::JOURNAL;
 pub use row::{Figures, Quantity, Results, Row, TABLE, Table, table};
 pub use run::{SERIES, run_case, run_case_until};
-pub use sweep::{Progress, Sweep, fingerprint, shortfalls};
+pub use sweep::{Progress, Sweep, fingerprint, remarks, shortfalls};
 
 /// Reason why a sweep does not run in a folder.
 #[derive(Debug, thiserror::Error)]

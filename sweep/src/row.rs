@@ -56,7 +56,7 @@ pub struct Row {
     pub values: Vec<(Arc<Key>, Option<Value>)>,
     /// Results, or the reason why there are none.
     pub results: Result<Results, String>,
-    /// Remarks on the run.
+    /// Remarks on the discretisation and on the run.
     pub notes: Vec<String>,
 }
 
@@ -125,7 +125,7 @@ pub fn table(rows: &[Row]) -> Table {
             "reason why the case has no results",
             failures.collect(),
         ),
-        ("notes", "remarks on the run", notes.collect()),
+        ("notes", "remarks on the mesh and on the run", notes.collect()),
     ];
     for (name, description, texts) in texts {
         let (form, column) = of_texts(texts);

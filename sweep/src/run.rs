@@ -79,9 +79,11 @@ pub(crate) fn run(
     let mut stepping = Duration::ZERO;
     let mut work = || -> Result<Results, Ended> {
         let scene = on_one_thread(case.scene().map_err(failed)?);
+        notes.extend_from_slice(case.kind.notes());
         let mut run = Run::start(case, &scene, series)?;
         let done = run.finish(stops);
-        (notes, stepping) = (std::mem::take(&mut run.notes), run.stepping);
+        notes.append(&mut run.notes);
+        stepping = run.stepping;
         done?;
         run.results()
     };

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use moorline::output::{OutputError, make_folder};
+use moorline::scene::Note;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
@@ -199,7 +200,12 @@ fn identity(cases: &[Case], series: bool) -> Result<Identity, OutputError> {
     let mut files: BTreeSet<PathBuf> = BTreeSet::new();
     options.update([u8::from(series)]);
     for case in cases {
-        let motion = case.input.motion.as_ref().map(|file| file.display().to_string());
+        let motion = case
+            .input
+            .drive
+            .file
+            .as_ref()
+            .map(|file| file.display().to_string());
         for text in [&case.input.document, &motion.unwrap_or_default()] {
             scenes.update((text.len() as u64).to_le_bytes());
             scenes.update(text);
@@ -229,16 +235,22 @@ fn content(files: &BTreeSet<PathBuf>) -> Result<[u8; 32], OutputError> {
     Ok(sum.finalize().into())
 }
 
-/// Remarks on the discretisation of the cases, each once with the number of a case.
-pub fn shortfalls(cases: &[Case], ended: &[Row]) -> Vec<(usize, String)> {
+/// Remarks on the scenes of the cases that do not hold for the base, each once with its first case.
+pub fn remarks(cases: &[Case]) -> Vec<(&Case, &Note)> {
+    let notes = cases
+        .iter()
+        .flat_map(|case| case.notes.iter().map(move |note| (case, note)));
     let mut known = BTreeSet::new();
-    let mut notes = Vec::new();
-    for row in ended {
-        for note in cases[row.case - 1].kind.notes() {
-            if known.insert(note) {
-                notes.push((row.case, note.clone()));
-            }
-        }
-    }
     notes
+        .filter(|(_, note)| known.insert((&note.at, &note.text)))
+        .collect()
+}
+
+/// Remarks on the discretisations that this process has selected, each once with its first case.
+pub fn shortfalls(cases: &[Case]) -> Vec<(&Case, &str)> {
+    let notes = cases
+        .iter()
+        .flat_map(|case| case.kind.notes().iter().map(move |note| (case, note.as_str())));
+    let mut known = BTreeSet::new();
+    notes.filter(|(_, note)| known.insert(*note)).collect()
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use moorline::scene::LoadError;
 use moorline_decks::Supplement;
-use moorline_sweep::{Base, Case, JOURNAL, Row, Sweep, SweepError, cases, run_case, table};
+use moorline_sweep::{Base, Case, JOURNAL, Row, Sweep, SweepError, cases, run_case, shortfalls, table};
 use tempfile::TempDir;
 
 /// A hanging line in still air, quick to run.
@@ -138,6 +138,45 @@ fn motion_files_stand_beside_the_file_of_cases_and_take_the_place_of_the_motion(
 }
 
 #[test]
+fn the_duration_of_a_case_is_kept_beside_a_motion_file() {
+    let folder = Folder::with(ROPE, "cases.csv", "motion,output.duration\na.csv,1.5\na.csv,\n");
+    folder.write("cases/a.csv", "time,x,y,z\n0,0,0,0\n1,0.1,0,0\n2,0,0,0\n");
+    let cases = folder.cases("cases.csv").unwrap();
+    let duration = |index: usize| cases[index].scene().unwrap().output.duration;
+    assert_eq!((duration(0), duration(1)), (1.5, 2.0));
+}
+
+#[test]
+fn two_keys_that_set_the_same_value_are_refused_in_one_case_and_not_in_two() {
+    for [first, second] in [
+        ["lines.line1.length", "\"lines[0].sections[0].length\""],
+        ["solver.integrator", "solver.dynamics"],
+        ["points.anchor.position", "\"points.anchor.position[2]\""],
+        ["motion.fairlead.ramp", "motion.fairlead.file"],
+        ["motion.fairlead.file", "motion.fairlead.ramp"],
+        ["motion", "motion.fairlead.ramp"],
+        ["motion.fairlead.ramp", "motion"],
+    ] {
+        let header = format!("{first},{second}\n").replace('"', "");
+        let said = format!("`{}` sets the same in this case", first.replace('"', ""));
+        refused(
+            ROPE,
+            "cases.csv",
+            &format!("{header}1,2\n"),
+            &["cases.csv:2:3: ", &said],
+        );
+    }
+    let folder = Folder::with(
+        ROPE,
+        "cases.csv",
+        "lines.line1.length,lines[0].sections[0].length\n14.2,\n,14.3\n",
+    );
+    let cases = folder.cases("cases.csv").unwrap();
+    let length = |index: usize| cases[index].scene().unwrap().lines[0].sections[0].length;
+    assert_eq!((length(0), length(1)), (14.2, 14.3));
+}
+
+#[test]
 fn values_with_units_are_those_in_si_units() {
     let folder = Folder::with(
         ROPE,
@@ -261,6 +300,26 @@ fn a_case_that_fails_is_a_row_with_its_reason_and_the_others_are_as_without_it()
     assert!(reason.contains("t = "), "{reason}");
     assert_eq!(two[0].results, three[0].results);
     assert_eq!(two[1].results, three[2].results);
+}
+
+#[test]
+fn the_rows_of_a_kind_whose_mesh_could_not_be_tried_say_so() {
+    let open = ROPE.replace(", elements = 8", "");
+    let folder = Folder::with(&open, "cases.csv", "motion.fairlead.x[0][0]\n0.05\n1e7\n");
+    let cases = folder.cases("cases.csv").unwrap();
+    assert!(shortfalls(&cases).is_empty());
+    let words = "the error of this mesh is unknown, since no trial could be run";
+    for row in cases.iter().map(run_case) {
+        assert!(
+            row.notes.iter().any(|note| note.contains(words)),
+            "{:?}",
+            row.notes
+        );
+    }
+    let [(case, note)] = shortfalls(&cases)[..] else {
+        panic!("one remark for one kind");
+    };
+    assert!(case.number == 1 && note.contains(words), "{note}");
 }
 
 #[test]

@@ -127,7 +127,8 @@ class PointState(NamedTuple):
     velocity: Array
     """Velocity [m/s]."""
     force: Array
-    """Force of all lines, and of the mass and volume of the point, on its support [N]."""
+    """Force of all lines, and of the mass and volume of the point, on its support [N]; without the inertia of the line ends and of the point where
+    the scene has `force = "without_inertia"`."""
 
 
 class Hold(NamedTuple):
