@@ -323,7 +323,9 @@ impl<'b> Builder<'b> {
             let mut earlier = draft.entries[..index].iter();
             if let Some(other) = earlier.find(|other| target(other).excludes(target(entry))) {
                 let path = &target(other).key.path;
-                let problem = format!("`{path}` sets the same in this case: leave one of them out");
+                let problem = format!(
+                    "`{path}` of this case sets or replaces the same part of the scene: leave one of them out"
+                );
                 mistakes.push(mistake(&target(entry).key.path, problem, &entry.span));
             }
         }

@@ -158,7 +158,10 @@ fn two_keys_that_set_the_same_value_are_refused_in_one_case_and_not_in_two() {
         ["motion.fairlead.ramp", "motion"],
     ] {
         let header = format!("{first},{second}\n").replace('"', "");
-        let said = format!("`{}` sets the same in this case", first.replace('"', ""));
+        let said = format!(
+            "`{}` of this case sets or replaces the same part",
+            first.replace('"', "")
+        );
         refused(
             ROPE,
             "cases.csv",

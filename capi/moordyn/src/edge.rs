@@ -216,9 +216,11 @@ pub(crate) unsafe fn get<H: Handle, T>(
 pub(crate) fn part_of<H: Handle>(system: MoorDyn, function: &str, kind: Kind, number: c_uint) -> H {
     let mut part = 0;
     let _ = call(system, function, |held, _| {
-        let row = (number as usize).wrapping_sub(1);
+        let row = (number as usize).checked_sub(1);
         let has_part = kind != Kind::Seafloor || held.deck.scene.seabed.is_some();
-        let found = number_of(held, kind, row).filter(|_| has_part);
+        let found = row
+            .filter(|_| has_part)
+            .and_then(|row| number_of(held, kind, row));
         let missing = || Failure::new(Code::InvalidInput, format!("there is no {kind:?} {number}"));
         part = Handles::<Held>::part(held.handle, found.ok_or_else(missing)?);
         Ok(())
