@@ -27,6 +27,7 @@ const STUDIED: [&str; 6] = [
 ];
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_study_is_written_to_its_end_whatever_becomes_of_standard_output() {
     let folder = short_study();
     let output = folder.piped("accuracy short.toml -o out", |child| drop(child.stdout.take()));
@@ -37,13 +38,6 @@ fn a_study_is_written_to_its_end_whatever_becomes_of_standard_output() {
         "{remarks}"
     );
     assert_eq!(folder.names_in("out"), STUDIED);
-}
-
-#[test]
-fn a_study_of_a_scene_without_title_or_seabed_speaks_of_neither() {
-    let text = short_study().done("accuracy short.toml -o out");
-    assert_says(&text, &["\nshort\nconverged solution"]);
-    assert!(!text.contains("seabed"), "{text}");
 }
 
 #[test]
@@ -83,9 +77,12 @@ fn default_settings_keep_their_tolerance_in_a_host_of_short_steps() {
 }
 
 #[test]
-fn a_study_is_added_to_those_of_a_folder_of_the_same_processor() {
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn a_study_without_title_or_seabed_speaks_of_neither_and_is_added_to_those_of_the_same_processor() {
     let folder = short_study();
-    folder.done("accuracy short.toml -o out");
+    let text = folder.done("accuracy short.toml -o out");
+    assert_says(&text, &["\nshort\nconverged solution"]);
+    assert!(!text.contains("seabed"), "{text}");
     let before = folder.read("out/accuracy.csv").replace(",short,", ",earlier,");
     folder.write("out/accuracy.csv", &before);
     folder.done("accuracy short.toml -o out --add");
@@ -122,6 +119,7 @@ fn a_study_takes_decks_and_motion_as_a_run_does() {
 
 #[cfg(unix)]
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn peers_that_give_nothing_are_a_computation_that_failed_after_all_else_is_written() {
     use std::os::unix::fs::PermissionsExt;
     let folder = short_study();
