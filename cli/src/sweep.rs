@@ -31,6 +31,7 @@ pub(crate) fn sweep(input: &Input, file: &Path, folder: &Path, choice: &Choice) 
     base.notes().iter().for_each(|note| remark(&input.scene, note));
     let cases = cases(&base, file, choice.from)?;
     for (case, note) in remarks(&cases) {
+        // a remark that cannot be written does not end the command
         let _ = writeln!(io::stderr(), "note: {}:{}: {note}", file.display(), case.line);
     }
     let _open = Folder::open(folder)?;
@@ -53,7 +54,6 @@ pub(crate) fn sweep(input: &Input, file: &Path, folder: &Path, choice: &Choice) 
         .finish_and_clear();
     let state = state?;
     for (case, note) in shortfalls(&cases) {
-        // a remark that cannot be written does not end the command
         let _ = writeln!(
             io::stderr(),
             "note: {}, case {}: {note}",

@@ -72,9 +72,8 @@ impl Sweep {
             let base = Base::load(&base, &Supplement::default())?;
             let mut notes: Vec<String> = base.notes().iter().map(ToString::to_string).collect();
             let cases = self::cases(&base, &cases, start)?;
-            let of_cases = remarks(&cases);
-            notes.extend(of_cases.iter().map(|(case, note)| of_case(case, note)));
-            drop(of_cases);
+            let of_cases = remarks(&cases).into_iter();
+            notes.extend(of_cases.map(|(case, note)| of_case(case, note)));
             Ok((notes, cases))
         })?;
         let (notes, cases) = read?;

@@ -46,11 +46,12 @@ impl LoadedScene {
         }
     }
 
-    /// Replaces the scene by a changed one, and drops the remarks that no longer hold. Returns those that now hold, which have no place in the file.
+    /// Replaces the scene by a changed one and drops the remarks that no longer apply. Returns the new ones, without places in the file.
     pub fn change(&mut self, scene: Scene) -> Vec<Note> {
         let (before, mut now) = (self.scene.notes(), scene.notes());
         let past = before.iter().filter(|note| !now.contains(note));
-        let with_place = |note: &Note| [note.clone(), self.locate_note(note.clone())]; // as it was found now or earlier
+        // remarks of earlier changes have no place
+        let with_place = |note: &Note| [note.clone(), self.locate_note(note.clone())];
         let past: Vec<Note> = past.flat_map(with_place).collect();
         self.notes.retain(|note| !past.contains(note));
         now.retain(|note| !before.contains(note));

@@ -20,7 +20,7 @@ use crate::sheet::{Column, Draft, Entry, Sheet, mistake};
 const MISTAKES_MAX: usize = 20;
 /// Column of a motion file that moves what its columns name, as `run --motion` does.
 const MOTION: &str = "motion";
-/// Key of the duration, which is also that of a motion file in the column [`MOTION`].
+/// Key of the duration, which takes precedence over that of a motion file.
 const DURATION: &str = "output.duration";
 
 /// Scene or deck whose keys the cases set.
@@ -315,7 +315,7 @@ impl<'b> Builder<'b> {
         })
     }
 
-    /// Values of a case that another of its keys would replace.
+    /// Mistakes in a case: values that another of its keys replaces.
     fn replaced(&self, draft: &Draft) -> Vec<SceneError> {
         let target = |entry: &Entry| &self.targets[entry.column];
         let mut mistakes = Vec::new();
@@ -335,20 +335,20 @@ impl<'b> Builder<'b> {
     /// The base with the values of a case.
     fn input(&self, draft: &Draft) -> Result<Input, Vec<SceneError>> {
         let mut document = self.base.document.clone();
-        let mut drive = Drive::default();
+        let (mut file, mut duration) = (None, None);
         let mut mistakes = Vec::new();
         for entry in &draft.entries {
             let target = &self.targets[entry.column];
             match (in_si(target, &entry.value, &entry.span), &target.place) {
                 (Err(mistake), _) => mistakes.push(mistake),
-                (Ok(value), None) => drive.file = value.as_str().map(|file| self.beside(file)),
-                (Ok(Value::String(file)), Some(place)) if place.is_file() => {
-                    let file = self.beside(&file).display().to_string();
-                    place.set(&mut document, Value::String(file));
+                (Ok(value), None) => file = value.as_str().map(|name| self.beside(name)),
+                (Ok(Value::String(name)), Some(place)) if place.is_file() => {
+                    let path = self.beside(&name).display().to_string();
+                    place.set(&mut document, Value::String(path));
                 }
                 (Ok(value), Some(place)) => {
                     if place.path() == DURATION {
-                        drive.duration = value.as_float().or(value.as_integer().map(|value| value as f64));
+                        duration = value.as_float().or(value.as_integer().map(|value| value as f64));
                     }
                     place.set(&mut document, value);
                 }
@@ -357,13 +357,14 @@ impl<'b> Builder<'b> {
         if !mistakes.is_empty() {
             return Err(mistakes);
         }
-        if drive.file.is_none() {
-            drive.duration = None; // the document has it
-        }
         Ok(Input {
             base: self.base_path.clone(),
             document: toml::to_string(&document).expect("a document that was read can be written"),
-            drive,
+            drive: Drive {
+                duration: duration.filter(|_| file.is_some()), // otherwise that of the document
+                file,
+                ..Drive::default()
+            },
         })
     }
 
