@@ -42,14 +42,20 @@ class Failure(Exception):
     """A step without which the others mean nothing."""
 
 
-def run(*command, **environment):
-    """Runs a command in the repository, shows it, and says whether it succeeded."""
+def start(*command, **environment):
+    """Starts a command in the repository, and shows it."""
     words = [str(word) for word in command]
     print("\n$", " ".join(words), flush=True)
-    start = time.monotonic()
-    done = subprocess.run(words, cwd=ROOT, env={**os.environ, **environment}, stdin=subprocess.DEVNULL)
-    print(f"({time.monotonic() - start:.0f} s)", flush=True)
-    return done.returncode == 0
+    return subprocess.Popen(words, cwd=ROOT, env={**os.environ, **environment}, stdin=subprocess.DEVNULL)
+
+
+def run(*command, **environment):
+    """Runs a command in the repository, shows it, and says whether it succeeded."""
+    began = time.monotonic()
+    with start(*command, **environment) as process:
+        succeeded = process.wait() == 0
+    print(f"({time.monotonic() - began:.0f} s)", flush=True)
+    return succeeded
 
 
 def must(*command, **environment):
@@ -121,11 +127,14 @@ def run_all(arguments):
     module = {"PYO3_BUILD_EXTENSION_MODULE": "1", "PYO3_PYTHON": str(interpreter)}
     settings = {**libclang(interpreter), **module, "MOORLINE": str(program)}
     # Programs, tests and bench in one build: dependencies of the tests add features to those of the library, which would then be built twice.
-    must("cargo", "build", "--release", *EVERYTHING, "--lib", "--bins", "--tests", "--bench", "instructions", **settings)
+    must("cargo", "build", "--release", *EVERYTHING, "--lib", "--bins", "--test", "*", "--bench", "instructions", **settings)
+    # The unit tests of the library are one unit of code, which takes one thread for minutes: pytest has the other one.
+    with start("cargo", "build", "--quiet", "--release", *EVERYTHING, "--tests", **settings):
+        pytest = run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program))
     # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
     passed = {
+        "pytest": pytest,
         "cargo test": run("cargo", "test", "--release", *EVERYTHING, "--no-fail-fast", **settings),
-        "pytest": run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program)),
         "pytest of the Python package": test_wheel(interpreter, built, arguments),
         "instructions": run("cargo", "bench", *EVERYTHING, "--bench", "instructions", **settings),
     }
