@@ -257,6 +257,22 @@ def test_a_host_that_samples_too_coarsely_is_warned_once(slave):
     assert warned[60, False][0] == 0 and warned[60, False][1] < 0.02, warned
 
 
+def test_an_instance_that_gets_its_state_from_another_warns_as_that_one_does(slave):
+    one, other = slave(logging=True).initialize(), slave(logging=True)
+    state = one.save()
+    status, back = other.deserialize(one.serialize(state))
+    other.expect(status)
+    other.expect(other.restore(back))
+    for host in (one, other):
+        for k in range(40):
+            host.expect(host.set("fairlead.x", 2.0 * math.sin(math.pi * k / 3.0)))
+            host.expect(host.step(0.5 * k, 0.5))
+    noted = [[text for _, _, text in host.messages if "solver.input_error" in text] for host in (one, other)]
+    assert len(noted[0]) == 1 and noted[1] == noted[0]
+    one.free_state(state)
+    other.free_state(back)
+
+
 def test_no_output_no_file_and_no_dependence_on_locale_or_folder(package, version, tmp_path):
     unpack(package("CHAIN", version), tmp_path / "fmu")
     before = sorted(p for p in tmp_path.rglob("*"))

@@ -24,7 +24,7 @@ use crate::dynamics::advance::{Counters, Integrators};
 use crate::dynamics::energy_balance::{self, EnergyBalance};
 use crate::dynamics::motion::Extrapolation;
 use crate::dynamics::{Choice, StepError};
-use crate::model::{Line, LineState, Model, State, WaveSpans};
+use crate::model::{Line, LineState, Model, Motion, Role, State, WaveSpans};
 use crate::scene::{InitialShape, Scene, SceneError, few};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
@@ -384,6 +384,11 @@ impl Simulation {
 /// Removes waves, a host's flow of the water and initial shapes, for an equilibrium.
 fn make_still(model: &mut Model) {
     (model.waves, model.host_flow) = (None, false);
+    for point in &mut model.points {
+        if let Role::Prescribed(motion) = &mut point.role {
+            *motion = Motion::none();
+        }
+    }
     // the initial shape of a beam may be its moment-free shape, and the search for its equilibrium starts from it
     for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
         line.initial = InitialShape::Static;

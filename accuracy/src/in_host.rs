@@ -34,18 +34,18 @@ pub(crate) struct Hosted {
 impl Hosted {
     fn new(fmu: Fmu, scene: &Scene, trial: &Trial) -> Result<Hosted, String> {
         let interface =
-            Interface::new(scene, trial.model(), Layout::Scalars).map_err(|error| error.to_string())?;
+            Interface::new(scene, trial.start.model(), Layout::Scalars).map_err(|error| error.to_string())?;
         let reference = |name: &str| fmu.reference(name).map_err(|error| error.to_string());
         let (mut inputs, mut outputs, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for variable in interface.variables() {
             match variable.binding {
                 Binding::Displacement { body, axis } => {
-                    if let Some(place) = trial.bodies().iter().position(|moved| *moved == body) {
+                    if let Some(place) = trial.bodies.iter().position(|moved| *moved == body) {
                         inputs.push(reference(&variable.name)?);
                         places.push((place, axis));
                     }
                 }
-                Binding::EndForce { body, .. } if trial.bodies().contains(&body) => {
+                Binding::EndForce { body, .. } if trial.bodies.contains(&body) => {
                     outputs.push(reference(&variable.name)?);
                 }
                 _ => {}
@@ -56,12 +56,12 @@ impl Hosted {
                 "the scene has no moving coupled point or vessel, so a host has nothing to drive".to_string(),
             );
         }
-        let rows = trial.inputs().chunks_exact(trial.bodies().len());
+        let rows = trial.inputs.chunks_exact(trial.bodies.len());
         let displacements =
             rows.flat_map(|row| places.iter().map(|&(place, axis)| row[place].displacement[axis]));
         Ok(Hosted {
             displacements: displacements.collect(),
-            step: trial.step(),
+            step: trial.step,
             fmu,
             inputs,
             outputs,

@@ -7,8 +7,8 @@
 use std::hint::black_box;
 
 use cpu_time::ThreadTime;
-use moorline::model::{Body, Line, Model, Role};
-use moorline::scene::{Integrator, Reconstruction, Scene};
+use moorline::model::{Body, Line};
+use moorline::scene::{Integrator, Reconstruction, Scene, TimeFunction};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
@@ -26,14 +26,16 @@ const ROUNDING: f64 = 1e-9;
 /// A run that can be repeated.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
-    start: Simulation,
+    pub(crate) start: Simulation,
     /// Inputs before every step, body by body, contiguous in memory: fetching them is no work of the solver. Empty where the scene's motion
     /// is followed exactly.
-    inputs: Vec<Input>,
+    pub(crate) inputs: Vec<Input>,
     /// Bodies that the host moves.
-    bodies: Vec<Body>,
+    pub(crate) bodies: Vec<Body>,
+    /// Lines on winches that the scene moves, with the lengths paid out before every step [m].
+    winches: Vec<(usize, Vec<f64>)>,
     /// Communication step [s].
-    step: f64,
+    pub(crate) step: f64,
     count: usize,
     /// Interval [s] and number of the samples.
     interval: f64,
@@ -100,7 +102,17 @@ impl Trial {
         };
         let first: Vec<Input> = at(0.0).collect();
         let times = (0..count).map(|index| (index + usize::from(ahead)) as f64 * step);
-        let inputs = times.flat_map(at).collect();
+        let inputs = times.clone().flat_map(at).collect();
+        let lines = start.model().lines.iter().enumerate();
+        let paths = lines.filter_map(|(line, data)| Some((line, data.winch.as_ref()?.path.as_ref()?)));
+        let of_path = |(line, path): (usize, &TimeFunction)| {
+            (
+                line,
+                path.at(0.0),
+                times.clone().map(|time| path.at(time)).collect(),
+            )
+        };
+        let paths: Vec<(usize, f64, Vec<f64>)> = paths.map(of_path).collect();
         let bodies: Vec<Body> = start
             .model()
             .moving(0.0)
@@ -108,11 +120,17 @@ impl Trial {
             .map(|moving| moving.body)
             .collect();
         give(&mut start, &bodies, &first);
+        let mut winches = Vec::new();
+        for (line, change, changes) in paths {
+            start.set_length_change(line, change);
+            winches.push((line, changes));
+        }
         start.restart(0.0).map_err(|error| error.to_string())?;
         Ok(Trial {
             start,
             inputs,
             bodies,
+            winches,
             step,
             count,
             interval,
@@ -129,31 +147,12 @@ impl Trial {
             start,
             inputs: Vec::new(),
             bodies: Vec::new(),
+            winches: Vec::new(),
             step: scene.output.interval,
             count: samples,
             interval: scene.output.interval,
             samples,
         })
-    }
-
-    /// The model of its simulation.
-    pub(crate) fn model(&self) -> &Model {
-        self.start.model()
-    }
-
-    /// Bodies that the host moves.
-    pub(crate) fn bodies(&self) -> &[Body] {
-        &self.bodies
-    }
-
-    /// Inputs before every step, body by body.
-    pub(crate) fn inputs(&self) -> &[Input] {
-        &self.inputs
-    }
-
-    /// Communication step [s].
-    pub(crate) fn step(&self) -> f64 {
-        self.step
     }
 
     /// Integrator and planned steps in a communication step, by network: two runs with one mesh and the same plan are the same.
@@ -212,6 +211,9 @@ impl Trial {
             let bodies = self.bodies.len();
             let inputs = &self.inputs[index * bodies..(index + 1) * bodies];
             give(&mut simulation, &self.bodies, inputs);
+            for (line, changes) in &self.winches {
+                simulation.set_length_change(*line, changes[index]);
+            }
             simulation.advance(self.step).map_err(|error| error.to_string())?;
             each(&simulation);
         }
@@ -253,7 +255,8 @@ struct Record {
 impl Record {
     fn new(start: &Simulation, count: usize) -> Record {
         let model = start.model();
-        let is_driven = |line: &usize| model.lines[*line].ends.iter().any(|end| moved(model, *end));
+        let is_moved = |point: usize| model.points[point].is_moved();
+        let is_driven = |line: &usize| model.lines[*line].ends.into_iter().any(is_moved);
         let lines = 0..model.lines.len();
         let mut driven: Vec<usize> = lines.clone().filter(is_driven).collect();
         if driven.is_empty() {
@@ -270,7 +273,7 @@ impl Record {
 
     fn read(&mut self, simulation: &Simulation) {
         for (tension, line) in self.tension.iter_mut().zip(&self.driven) {
-            tension.push(driven_tension(simulation, *line));
+            tension.push(simulation.tension_at(*line, simulation.model().driven_end(*line)));
         }
         for (line, middle) in self.middle.iter_mut().enumerate() {
             middle.push(half_way_of(simulation, line));
@@ -314,24 +317,6 @@ fn samples(scene: &Scene) -> usize {
 /// The integrator as the scene format spells it.
 fn name(integrator: Integrator) -> String {
     integrator.word().replace('_', "-")
-}
-
-/// Tension at the end of a line that is moved, end B where both or none are [N].
-fn driven_tension(simulation: &Simulation, line: usize) -> f64 {
-    let model = simulation.model();
-    let [a, b] = model.lines[line].ends;
-    if moved(model, a) && !moved(model, b) {
-        simulation.tension_a(line)
-    } else {
-        simulation.tension_b(line)
-    }
-}
-
-fn moved(model: &Model, point: usize) -> bool {
-    matches!(
-        model.points[point].role,
-        Role::Coupled { .. } | Role::Carried { .. } | Role::Prescribed(_)
-    )
 }
 
 /// Position half-way along a line [m]: by a cubic through four nodes, on a chord where there are fewer.

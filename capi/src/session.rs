@@ -7,7 +7,7 @@ use moorline::discretisation;
 use moorline::interface::{Binding, Causality, HostInputs, INPUT_MAX, Interface, Layout, NoValue, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::{collect, json, sealed};
-use moorline::scene::{LoadError, Note, Scene};
+use moorline::scene::{Note, Scene};
 use moorline::simulation::{self, BodyInput, Inputs, NO_FLOW, Simulation, Snapshot, Watch};
 use moorline_decks::load;
 use serde::{Deserialize, Serialize};
@@ -78,7 +78,7 @@ pub(crate) struct Session {
 
 impl Session {
     pub(crate) fn load(path: &Path) -> Outcome<Session> {
-        let loaded = load(path).map_err(|error| Failure::new(MOORLINE_SCENE_ERROR, in_words(&error)))?;
+        let loaded = load(path).map_err(|error| Failure::new(MOORLINE_SCENE_ERROR, error.list()))?;
         let mut session = Session::new(loaded.scene)?;
         session.note(&loaded.notes);
         Ok(session)
@@ -113,11 +113,12 @@ impl Session {
         self.expect_not_started("select")?;
         if let Some(found) = discretisation::select(&self.scene) {
             let notes = found.shortfalls();
-            *self = Session {
-                inputs: self.inputs.clone(),
-                warnings: std::mem::take(&mut self.warnings),
-                ..Session::new(found.scene)?
-            };
+            let mut next = Session::new(found.scene)?;
+            let flow = next.inputs.given().flow.clone(); // of the nodes of the selected mesh
+            next.inputs.clone_from(&self.inputs);
+            *next.inputs.flow_mut() = flow;
+            next.warnings = std::mem::take(&mut self.warnings);
+            *self = next;
             self.note(&notes);
         }
         Ok(())
@@ -428,10 +429,7 @@ impl Session {
             water.waves = None; // an equilibrium is that of the sea at rest
         }
         let simulation = Simulation::at_rest(&scene).map_err(building_error)?;
-        let mut bytes = Vec::new();
-        json::write(&collect::statics(&scene, simulation), &mut bytes)
-            .map_err(|error| Failure::new(MOORLINE_INTERNAL_ERROR, error.to_string()))?;
-        String::from_utf8(bytes).map_err(|error| Failure::new(MOORLINE_INTERNAL_ERROR, error.to_string()))
+        Ok(json::text(&collect::statics(&scene, simulation)))
     }
 
     /// The scene with its present parameters, as TOML.
@@ -565,20 +563,6 @@ fn building_error(error: simulation::Error) -> Failure {
         simulation::Error::Statics(_) => MOORLINE_STATICS_ERROR,
     };
     Failure::new(code, error.to_string())
-}
-
-/// A file that cannot be used, with all of its mistakes.
-fn in_words(error: &LoadError) -> String {
-    match error {
-        LoadError::Scene { path, text, mistakes } => {
-            let place = |mistake: &moorline::scene::SceneError| {
-                let (line, column) = mistake.line_column(text);
-                format!("{}:{line}:{column}: {mistake}", path.display())
-            };
-            mistakes.iter().map(place).collect::<Vec<_>>().join("\n")
-        }
-        other => other.to_string(),
-    }
 }
 
 fn equilibrium(scene: &Scene, time: f64, inputs: &Inputs) -> Outcome<Simulation> {

@@ -441,6 +441,27 @@ fn a_flow_that_is_not_asked_for_or_cannot_be_used_has_its_code_and_a_sentence() 
     }
 }
 
+#[test]
+fn elements_are_selected_for_a_scene_whose_host_gives_the_flow() {
+    let scene = hosted().replace(", elements = 6", "");
+    let scene = format!(
+        "{scene}motion.buoy = {{ x = [[1.0, 8.0]] }}\nsolver.tolerance = 0.1\noutput.duration = 20.0\n"
+    );
+    let simulation = read(&scene);
+    // SAFETY: a simulation, and room for as many values as are given.
+    unsafe {
+        assert_eq!(moorline_select(simulation), MOORLINE_OK, "{}", message());
+        assert_eq!(moorline_start(simulation, 0.0), MOORLINE_OK, "{}", message());
+        let mut nodes = 0;
+        assert_eq!(moorline_node_count(simulation, 0, &raw mut nodes), MOORLINE_OK);
+        let values = vec![0.1; 3 * nodes];
+        let given = moorline_set_flow(simulation, 0, values.as_ptr(), values.as_ptr(), values.len());
+        assert_eq!(given, MOORLINE_OK, "{}", message());
+        assert_eq!(moorline_step(simulation, 0.05), MOORLINE_OK, "{}", message());
+        moorline_close(simulation);
+    }
+}
+
 /// Claims the code of a call, and words of its message.
 fn refused(code: c_int, expected: c_int, words: &str) {
     assert_eq!(code, expected, "{}", message());

@@ -19,7 +19,7 @@ use crate::Library;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::summary::Table;
-use crate::terminal::{bar, print, read_scene};
+use crate::terminal::{bar, print, read_scene, remark_all};
 
 /// A scene of the repository, built in.
 macro_rules! built_in {
@@ -157,25 +157,33 @@ fn scenes(
     drive: &Drive,
 ) -> Result<Vec<(String, Scene)>, Failure> {
     let mut scenes: Vec<(String, Scene)> = Vec::new();
+    let moved = |name: &str, scene: &mut Scene| {
+        let words = scene.drive(drive);
+        words.map_err(|problem| Failure::Argument(format!("{name}: {problem}")))
+    };
     if paths.is_empty() {
         if !supplement.is_empty() {
             let text = "the public scenes leave nothing to a host: give the deck that --depth, --at and --vessel are for";
             return Err(Failure::Argument(text.to_string()));
         }
         for (name, text) in PUBLIC {
-            let scene = Scene::from_toml(text).expect("the public scenes are tested");
+            let mut scene = Scene::from_toml(text).expect("the public scenes are tested");
+            moved(name, &mut scene)?;
             scenes.push((name.to_string(), scene));
         }
     }
     for path in paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        scenes.push((name.into_owned(), read_scene(path, supplement)?.scene));
-    }
-    if !drive.is_empty() {
-        for (name, scene) in &mut scenes {
-            let moved = scene.drive(drive);
-            moved.map_err(|problem| Failure::Argument(format!("{name}: {problem}")))?;
+        if scenes.iter().any(|(other, _)| *other == name) {
+            let text = format!("two scenes are called {name}: results have the names of their files");
+            return Err(Failure::Argument(text));
         }
+        let mut loaded = read_scene(path, supplement)?;
+        let mut scene = loaded.scene.clone();
+        moved(&name, &mut scene)?;
+        let notes = loaded.change(scene);
+        remark_all(&loaded, notes);
+        scenes.push((name.into_owned(), loaded.scene));
     }
     Ok(scenes)
 }

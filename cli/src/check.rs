@@ -56,13 +56,9 @@ pub(crate) fn check(input: &Input, write: bool) -> Result<(), Failure> {
         }
     }
     let at_rest = started().flat_map(|simulation| Watch::new(scene, simulation).look(simulation));
-    let idle = started().flat_map(|simulation| {
-        let integrators = simulation.choices().map(|choice| choice.integrator);
-        loaded.scene.idle_with(integrators)
-    });
     let interval = scene.output.interval;
     let expense = started().filter_map(|simulation| discretisation::expense(scene, simulation, interval));
-    let later = at_rest.chain(idle).chain(expense).chain(loaded.scene.advice());
+    let later = at_rest.chain(expense).chain(loaded.scene.advice());
     let later = later.map(|note| loaded.locate_note(note));
     for note in loaded.notes.iter().cloned().chain(later) {
         text.push_str(&format!("{}\n", noted(&loaded.path, &note)));

@@ -10,6 +10,10 @@ use crate::failure::Failure;
 
 /// Keys of `[solver]` that a discretisation sets.
 const SOLVER: [&str; 3] = ["elements", "integrator", "time_step_max"];
+/// Byte order mark.
+const MARK: char = '\u{feff}';
+/// The other name of `integrator`.
+const DYNAMICS: &str = "dynamics";
 
 /// Refuses the file of another program, which has no place for a discretisation.
 pub(crate) fn check_format(loaded: &LoadedScene) -> Result<(), Failure> {
@@ -52,7 +56,11 @@ fn edited(text: &str, given: &Scene, held: &Scene) -> Option<(String, Vec<String
         let [before, after] = [&*before, &*after].map(|scene| scene.get("solver")?.get(key));
         if let Some(item) = changed(before, after) {
             let solver = document.entry("solver").or_insert(toml_edit::table());
-            keys.push(put(solver.as_table_like_mut()?, "solver", key, item));
+            let solver = solver.as_table_like_mut()?;
+            if key == "integrator" {
+                solver.remove(DYNAMICS);
+            }
+            keys.push(put(solver, "solver", key, item));
         }
     }
     for (i, line) in held.lines.iter().enumerate() {
@@ -71,7 +79,19 @@ fn edited(text: &str, given: &Scene, held: &Scene) -> Option<(String, Vec<String
             }
         }
     }
-    Some((document.to_string(), keys))
+    Some((like(text, &document.to_string()), keys))
+}
+
+/// A text with the line ends and the byte order mark of another.
+fn like(model: &str, text: &str) -> String {
+    let text = match model.contains("\r\n") {
+        true => text.replace("\r\n", "\n").replace('\n', "\r\n"),
+        false => text.to_string(),
+    };
+    match model.starts_with(MARK) && !text.starts_with(MARK) {
+        true => format!("{MARK}{text}"),
+        false => text,
+    }
 }
 
 /// Value of a key after a change; none where it is the same as before or absent.

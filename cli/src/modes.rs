@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use moorline::output::figures;
-use moorline::output::modes::{Mode, NaturalModes, natural_modes, write};
+use moorline::output::json;
+use moorline::output::modes::{Mode, NaturalModes, natural_modes};
 use moorline::output::report::rounded;
 use moorline::output::write_file;
 use moorline::scene::Integrator;
@@ -50,9 +51,7 @@ pub(crate) fn modes(input: &Input, shown: &Shown) -> Result<(), Failure> {
     }
     drop(folder);
     if shown.as_json {
-        let mut bytes = Vec::new();
-        write(&found, &mut bytes).expect("memory takes any text");
-        return print(&String::from_utf8(bytes).expect("JSON is UTF-8"));
+        return print(&json::text(&found));
     }
     print(&table(&found))
 }

@@ -6,18 +6,19 @@ use std::time::{Duration, Instant};
 use moorline::discretisation;
 use moorline::output::files::RunFiles;
 use moorline::output::record::Record;
+use moorline::output::recorder::Recorder;
 use moorline::output::state::{self, RunState};
 use moorline::output::times::Times;
 use moorline::output::{collect, write_report};
 use moorline::scene::{Drive, LoadedScene, MotionPath, Note, Reconstruction, Scene};
 use moorline::simulation::{Simulation, Watch};
+use moorline_decks::load_with;
 
 use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::folder::{Folder, Listener};
 use crate::summary::run_summary;
-use crate::terminal::{Progress, discretise, print, read_scene, remark, remark_all, simulate};
-use moorline::output::recorder::{Recorder, check_finite};
+use crate::terminal::{Progress, discretise, print, remark, remark_all, simulate};
 
 /// Time between saved states of a run.
 const SAVED_EVERY: Duration = Duration::from_secs(60);
@@ -61,19 +62,24 @@ pub(crate) struct Course {
 /// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
 pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) -> Result<(), Failure> {
     let stepping = course.stepping;
-    let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
+    let mut loaded = load_with(&input.scene, &input.host.supplement())?;
     if let Stepping::Host { .. } = stepping
         && let Some(packaged) = discretisation::frozen(&loaded.scene)
     {
         // The elements of the FMU do not depend on the motion and duration of this run.
         loaded.scene = packaged;
     }
-    let mut motion = None;
-    if !drive.is_empty() {
-        let (before, mut scene) = (loaded.scene.clone(), loaded.scene.clone());
-        motion = scene.drive(drive).map_err(Failure::Argument)?;
-        let notes = loaded.change(scene);
-        remark_driven(notes, &loaded, &before, drive);
+    let before = loaded.scene.clone();
+    let mut scene = before.clone();
+    let motion = match drive.is_empty() {
+        true => None,
+        false => scene.drive(drive).map_err(Failure::Argument)?,
+    };
+    let notes = loaded.change(scene);
+    loaded.notes.iter().for_each(|note| remark(&loaded.path, note));
+    remark_driven(notes, &loaded, &before, drive);
+    if let Stepping::Host { step, .. } = stepping {
+        check_step(step, &loaded.scene)?;
     }
     let given = Given::of(&loaded.scene, stepping);
     let saved = match course.resume {
@@ -114,6 +120,21 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
         run_summary(&record),
         folder.display()
     ))
+}
+
+/// Checks a communication step [s] as the interval of the output.
+fn check_step(step: f64, scene: &Scene) -> Result<(), Failure> {
+    const OPTION: &str = "--communication-step";
+    let mut coupled = scene.clone();
+    coupled.output.interval = step;
+    let mut mistakes = coupled.mistakes().into_iter();
+    if let Some(mistake) = mistakes.find(|mistake| mistake.at == "output.interval") {
+        return Err(Failure::Argument(format!("{OPTION}: {}", mistake.problem)));
+    }
+    let before = scene.notes();
+    let notes = coupled.notes().into_iter().filter(|note| !before.contains(note));
+    notes.for_each(|note| remark(Path::new(OPTION), &note));
+    Ok(())
 }
 
 /// Remarks on a scene that a drive has changed. Those on motions of the drive name its file or argument.
@@ -240,7 +261,7 @@ impl<'r> Run<'r> {
         let recorder =
             Recorder::new(scene, simulation.model()).map_err(|mistake| Failure::of_scene(mistake, loaded))?;
         let times = Times::new(scene.output.duration, stepping.interval(scene));
-        let columns = (recorder.columns(simulation.model()), times.count + 1);
+        let columns = (recorder.columns()[1..].to_vec(), times.count + 1);
         let mut record = collect::record(scene, &simulation, still.as_ref(), columns);
         let mut watch = Watch::new(scene, &simulation);
         remark_all(loaded, watch.look(&simulation));
@@ -345,10 +366,7 @@ impl<'r> Run<'r> {
     fn add_row(&mut self, index: usize) -> Result<(), Failure> {
         let (simulation, record) = (&self.simulation, &mut self.record);
         let now = self.times.at(index);
-        let row = self.recorder.row(simulation, now);
-        if index > 0 {
-            check_finite(record.columns(), row).map_err(Failure::Computation)?;
-        }
+        let row = self.recorder.row(simulation, now).map_err(Failure::Computation)?;
         let shape = |time| collect::frame(simulation, time);
         self.files.add(record, index, row, shape)?;
         if let Some(flight) = collect::flight(simulation, now) {
@@ -376,5 +394,11 @@ fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
     for moving in simulation.model().moving(time) {
         let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
         simulation.set_body(moving.body, moving.pose, velocity);
+    }
+    for line in 0..simulation.model().lines.len() {
+        let winch = simulation.model().lines[line].winch.as_ref();
+        if let Some(change) = winch.and_then(|winch| Some(winch.path.as_ref()?.at(time))) {
+            simulation.set_length_change(line, change);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use moorline::output::{collect, json};
-use moorline::scene::{InitialShape, Note};
+use moorline::scene::{InitialShape, Integrator, Note};
 use moorline::simulation::Watch;
 
 use crate::arguments::Input;
@@ -20,17 +20,14 @@ pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
     let simulation = at_rest(&mut loaded)?;
     remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));
     for (index, line) in loaded.scene.lines.iter().enumerate() {
-        if line.initial != InitialShape::Static {
+        if line.initial != InitialShape::Static && loaded.scene.solver.integrator != Integrator::QuasiStatic {
             let at = format!("lines[{index}].initial");
             let text = "runs start on this shape, not in the equilibrium that is shown";
             remark_all(&loaded, vec![Note::new(at, text)]);
         }
     }
     if as_json {
-        let statics = collect::statics(&loaded.scene, simulation);
-        let mut bytes = Vec::new();
-        json::write(&statics, &mut bytes).expect("memory takes any text");
-        return print(&String::from_utf8(bytes).expect("JSON is UTF-8"));
+        return print(&json::text(&collect::statics(&loaded.scene, simulation)));
     }
     let record = collect::record(&loaded.scene, &simulation, Some(&simulation), (Vec::new(), 0));
     let statics = collect::statics(&loaded.scene, simulation);

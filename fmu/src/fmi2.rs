@@ -12,29 +12,11 @@ use moorline_host::{FmiVersion, fmi2_functions};
 
 use crate::ffi::{self, Sink};
 use crate::instance::{Instance, Refusal};
+use crate::symbols::{assert_complete, no_variables, refuse, transitions};
 
 const VERSION: FmiVersion = FmiVersion::Two;
 
-/// Asserts at compile time that every function of the standard is here with the standard's signature.
-macro_rules! assert_complete {
-    ($($name:ident: $type:ident = fn($($argument:ty),*) -> $result:ty;)*) => {
-        $(const _: $type = $name;)*
-    };
-}
 fmi2_functions!(assert_complete);
-
-/// Functions that the standard demands and co-simulation does not use.
-macro_rules! refuse {
-    ($why:literal; $($name:ident($($argument:ty),*);)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(c: fmi2Component $(, _: $argument)*) -> fmi2Status {
-                // SAFETY: the host's handle.
-                unsafe { ffi::call(c, VERSION, stringify!($name), |_| Err($why.into())) }
-            }
-        )*
-    };
-}
 
 refuse! {
     "this FMU offers co-simulation, not model exchange";
@@ -135,19 +117,6 @@ unsafe extern "C" fn fmi2SetupExperiment(
     }
 }
 
-/// Functions of a handle alone.
-macro_rules! transitions {
-    ($($name:ident: $method:ident;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(c: fmi2Component) -> fmi2Status {
-                // SAFETY: the host's handle.
-                unsafe { ffi::call(c, VERSION, stringify!($name), Instance::$method) }
-            }
-        )*
-    };
-}
-
 transitions! {
     fmi2EnterInitializationMode: enter_initialization;
     fmi2ExitInitializationMode: exit_initialization;
@@ -238,7 +207,8 @@ unsafe extern "C" fn fmi2GetInteger(
     // SAFETY: the host's handle and arrays.
     unsafe {
         ffi::call(c, VERSION, "fmi2GetInteger", |instance| {
-            instance.get_integers(ffi::slice(vr, nvr)?, ffi::slice_mut(value, nvr)?)
+            let values = ffi::slice_mut(value, nvr)?;
+            instance.get_as(Kind::Int32, ffi::slice(vr, nvr)?, values, |number| number as i32)
         })
     }
 }
@@ -253,7 +223,8 @@ unsafe extern "C" fn fmi2SetInteger(
     // SAFETY: the host's handle and arrays.
     unsafe {
         ffi::call(c, VERSION, "fmi2SetInteger", |instance| {
-            instance.set_integers(ffi::slice(vr, nvr)?, ffi::slice(value, nvr)?)
+            let numbers = ffi::slice(value, nvr)?.iter().map(|value| f64::from(*value));
+            instance.set_from(Kind::Int32, ffi::slice(vr, nvr)?, numbers)
         })
     }
 }
@@ -268,11 +239,9 @@ unsafe extern "C" fn fmi2GetBoolean(
     // SAFETY: the host's handle and arrays.
     unsafe {
         ffi::call(c, VERSION, "fmi2GetBoolean", |instance| {
-            let found = instance.get_booleans(ffi::slice(vr, nvr)?, nvr)?;
-            for (value, found) in ffi::slice_mut(value, nvr)?.iter_mut().zip(found) {
-                *value = fmi2Boolean::from(found);
-            }
-            Ok(())
+            let values = ffi::slice_mut(value, nvr)?;
+            let made = |number| fmi2Boolean::from(number != 0.0);
+            instance.get_as(Kind::Boolean, ffi::slice(vr, nvr)?, values, made)
         })
     }
 }
@@ -287,32 +256,12 @@ unsafe extern "C" fn fmi2SetBoolean(
     // SAFETY: the host's handle and arrays.
     unsafe {
         ffi::call(c, VERSION, "fmi2SetBoolean", |instance| {
-            let values = ffi::slice(value, nvr)?.iter().map(|value| *value != 0);
-            instance.set_booleans(ffi::slice(vr, nvr)?, values)
+            let numbers = ffi::slice(value, nvr)?
+                .iter()
+                .map(|value| f64::from(u8::from(*value != 0)));
+            instance.set_from(Kind::Boolean, ffi::slice(vr, nvr)?, numbers)
         })
     }
-}
-
-/// Access by types that no variable has.
-macro_rules! no_variables {
-    ($($name:ident($values:ty): $kind:literal;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(
-                c: fmi2Component,
-                vr: *const fmi2ValueReference,
-                nvr: usize,
-                _: $values,
-            ) -> fmi2Status {
-                // SAFETY: the host's handle and array.
-                unsafe {
-                    ffi::call(c, VERSION, stringify!($name), |instance| {
-                        instance.refuse_type($kind, ffi::slice(vr, nvr)?)
-                    })
-                }
-            }
-        )*
-    };
 }
 
 no_variables! {

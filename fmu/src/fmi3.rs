@@ -9,29 +9,11 @@ use moorline_host::{FmiVersion, Status, fmi3_functions};
 
 use crate::ffi::{self, Sink, Update};
 use crate::instance::{Instance, Parts, Refusal};
+use crate::symbols::{assert_complete, no_variables, refuse, transitions};
 
 const VERSION: FmiVersion = FmiVersion::Three;
 
-/// Asserts at compile time that every function of the standard is here with the standard's signature.
-macro_rules! assert_complete {
-    ($($name:ident: $type:ident = fn($($argument:ty),*) -> $result:ty;)*) => {
-        $(const _: $type = $name;)*
-    };
-}
 fmi3_functions!(assert_complete);
-
-/// Functions that the standard demands and this FMU does not use.
-macro_rules! refuse {
-    ($why:literal; $($name:ident($($argument:ty),*);)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(instance: fmi3Instance $(, _: $argument)*) -> fmi3Status {
-                // SAFETY: the host's handle.
-                unsafe { ffi::call(instance, VERSION, stringify!($name), |_| Err($why.into())) }
-            }
-        )*
-    };
-}
 
 refuse! {
     "this FMU offers co-simulation, not model exchange";
@@ -214,19 +196,6 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
     }
 }
 
-/// Functions of a handle alone.
-macro_rules! transitions {
-    ($($name:ident: $method:ident;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(instance: fmi3Instance) -> fmi3Status {
-                // SAFETY: the host's handle.
-                unsafe { ffi::call(instance, VERSION, stringify!($name), Instance::$method) }
-            }
-        )*
-    };
-}
-
 transitions! {
     fmi3ExitInitializationMode: exit_initialization;
     fmi3Terminate: terminate;
@@ -355,10 +324,9 @@ unsafe extern "C" fn fmi3GetInt32(
     // SAFETY: the host's handle and arrays.
     unsafe {
         ffi::call(instance, VERSION, "fmi3GetInt32", |instance| {
-            instance.get_integers(
-                ffi::slice(valueReferences, nValueReferences)?,
-                ffi::slice_mut(values, nValues)?,
-            )
+            let references = ffi::slice(valueReferences, nValueReferences)?;
+            let values = ffi::slice_mut(values, nValues)?;
+            instance.get_as(Kind::Int32, references, values, |number| number as i32)
         })
     }
 }
@@ -374,10 +342,9 @@ unsafe extern "C" fn fmi3SetInt32(
     // SAFETY: the host's handle and arrays.
     unsafe {
         ffi::call(instance, VERSION, "fmi3SetInt32", |instance| {
-            instance.set_integers(
-                ffi::slice(valueReferences, nValueReferences)?,
-                ffi::slice(values, nValues)?,
-            )
+            let references = ffi::slice(valueReferences, nValueReferences)?;
+            let numbers = ffi::slice(values, nValues)?.iter().map(|value| f64::from(*value));
+            instance.set_from(Kind::Int32, references, numbers)
         })
     }
 }
@@ -394,12 +361,8 @@ unsafe extern "C" fn fmi3GetBoolean(
     unsafe {
         ffi::call(instance, VERSION, "fmi3GetBoolean", |instance| {
             let references = ffi::slice(valueReferences, nValueReferences)?;
-            let found = instance.get_booleans(references, nValues)?;
             let bytes = ffi::slice_mut(values.cast::<u8>(), nValues)?;
-            for (byte, found) in bytes.iter_mut().zip(found) {
-                *byte = u8::from(found);
-            }
-            Ok(())
+            instance.get_as(Kind::Boolean, references, bytes, |number| u8::from(number != 0.0))
         })
     }
 }
@@ -417,31 +380,10 @@ unsafe extern "C" fn fmi3SetBoolean(
         ffi::call(instance, VERSION, "fmi3SetBoolean", |instance| {
             let references = ffi::slice(valueReferences, nValueReferences)?;
             let bytes = ffi::slice(values.cast::<u8>(), nValues)?;
-            instance.set_booleans(references, bytes.iter().map(|byte| *byte != 0))
+            let numbers = bytes.iter().map(|byte| f64::from(u8::from(*byte != 0)));
+            instance.set_from(Kind::Boolean, references, numbers)
         })
     }
-}
-
-/// Access by types that no variable has; `rest` are the parameters after the references.
-macro_rules! no_variables {
-    ($($name:ident($($rest:ty),*): $kind:literal;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn $name(
-                instance: fmi3Instance,
-                valueReferences: *const fmi3ValueReference,
-                nValueReferences: usize,
-                $(_: $rest),*
-            ) -> fmi3Status {
-                // SAFETY: the host's handle and array.
-                unsafe {
-                    ffi::call(instance, VERSION, stringify!($name), |instance| {
-                        instance.refuse_type($kind, ffi::slice(valueReferences, nValueReferences)?)
-                    })
-                }
-            }
-        )*
-    };
 }
 
 no_variables! {

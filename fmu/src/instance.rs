@@ -130,7 +130,14 @@ impl Instance {
 
     /// Notes on the present state of the simulation, each once.
     fn log_watch(&mut self) {
-        if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
+        let simulation = self
+            .simulation
+            .as_ref()
+            .filter(|_| self.log.keeps(Topic::Warning));
+        if let Some(simulation) = simulation {
+            let watch = self
+                .watch
+                .get_or_insert_with(|| Watch::new(&self.scene, simulation));
             for note in watch.look(simulation) {
                 self.log.push(Topic::Warning, || note.to_string());
             }
@@ -196,9 +203,7 @@ impl Instance {
         self.phase = Phase::Step;
         self.log_choices();
         self.log_plausibility();
-        let watched = self.simulation.as_ref();
-        let watched = watched.filter(|_| self.log.keeps(Topic::Warning));
-        self.watch = watched.map(|simulation| Watch::new(&self.scene, simulation));
+        self.watch = None;
         self.log_watch();
         Ok(())
     }

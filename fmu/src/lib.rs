@@ -8,3 +8,4 @@ mod instance;
 mod log;
 mod resources;
 mod saved;
+mod symbols;

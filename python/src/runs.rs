@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use moorline::output::collect;
 use moorline::output::record::{Column, Form, Frame};
-use moorline::output::recorder::{Recorder, check_finite};
+use moorline::output::recorder::Recorder;
 use moorline::output::times::Times;
 use moorline::scene::{LoadedScene, Note, Threads};
 use moorline::simulation::{Simulation, Watch};
@@ -46,7 +46,6 @@ struct Run<'r> {
     times: Times,
     simulation: Simulation,
     recorder: Recorder,
-    all: Vec<Column>,
     /// Places of the kept columns in a row.
     kept: Vec<usize>,
     /// Rows from one shape to the next [-].
@@ -63,11 +62,10 @@ impl<'r> Run<'r> {
         simulation.follow_scene().map_err(fail)?;
         let recorder = Recorder::new(scene, simulation.model());
         let recorder = recorder.map_err(|mistake| Failure::of_scene(mistake, loaded))?;
-        let mut all = vec![Column::time()];
-        all.extend(recorder.columns(simulation.model()));
+        let all = recorder.columns();
         let places = match &kept.columns {
             None => (0..all.len()).collect(),
-            Some(names) => places(&all, names)?,
+            Some(names) => places(all, names)?,
         };
         let times = Times::new(scene.output.duration, scene.output.interval);
         let stride = kept
@@ -98,7 +96,6 @@ impl<'r> Run<'r> {
             times,
             simulation,
             recorder,
-            all,
             kept: places,
             stride,
             watch,
@@ -127,11 +124,8 @@ impl<'r> Run<'r> {
     /// Adds the row of the present state.
     fn add(&mut self, index: usize) -> Result<(), Failure> {
         let now = self.times.at(index);
-        let row = self.recorder.row(&self.simulation, now);
-        if index > 0 {
-            check_finite(&self.all[1..], row)
-                .map_err(|problem| Failure::Result("the run".to_string(), problem))?;
-        }
+        let no_result = |problem| Failure::Result("the run".to_string(), problem);
+        let row = self.recorder.row(&self.simulation, now).map_err(no_result)?;
         for ((_, values), &place) in self.rows.columns.iter_mut().zip(&self.kept) {
             values.push(row[place]);
         }

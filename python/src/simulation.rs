@@ -435,20 +435,19 @@ impl Simulation {
                 Failure::of_argument("h", format!("a step of {h} s is not finite and not negative")).into(),
             );
         }
-        if inputs.is_instance_of::<PyDict>() {
-            let mut given = self.given.clone(); // a wrong name leaves all inputs as they were
-            self.table.set_all(&mut given, inputs)?;
-            self.given = given;
-        } else {
-            self.table.set_all(&mut self.given, inputs)?;
-        }
-        let Simulation { given, mooring, .. } = self;
-        let mooring = mooring.change();
+        let mut given = self.given.clone();
+        self.table.set_all(&mut given, inputs)?;
+        let mooring = self.mooring.change();
+        let before = mooring.inputs().clone();
         let advanced = py.detach(|| {
-            mooring.set_inputs(given);
+            mooring.set_inputs(&given);
             mooring.advance(h)
         });
-        advanced.map_err(Failure::Step)?;
+        if let Err(error) = advanced {
+            mooring.set_inputs(&before);
+            return Err(Failure::Step(error).into());
+        }
+        self.given = given;
         self.warn(py)
     }
 

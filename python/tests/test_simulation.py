@@ -43,6 +43,16 @@ def test_inputs_by_name_and_as_an_array_give_the_same_bits(chain):
     assert named.time == listed.time == pytest.approx(2.5)
 
 
+def test_a_step_that_fails_leaves_the_simulation_as_it_was(chain):
+    simulation = moorline.Simulation(chain)
+    steps(simulation, 10)
+    before = simulation.save()
+    with pytest.raises(moorline.StepError):
+        simulation.advance({"fairlead.x": 1e6}, 0.05)
+    assert simulation.save() == before and simulation["fairlead.x"] == 2.0 * math.sin(0.5 * 0.45)
+    simulation.advance({}, 0.05)
+
+
 def test_outputs_by_name_are_those_of_the_array(chain):
     simulation = moorline.Simulation(chain)
     simulation.advance({"fairlead.x": 0.1}, 0.05)

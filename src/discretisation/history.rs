@@ -1,11 +1,10 @@
 //! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, raw or low-passed, or the positions of three
 //! of its points.
 
-use super::search::driven;
 use crate::math::hermite::Hermite;
 use crate::math::low_pass::low_pass;
 use crate::math::shape_preserving::{End, smooth_slopes};
-use crate::model::Model;
+use crate::model::{self, Model};
 use crate::scene::{Scene, ToleranceOf};
 use crate::simulation::{STILL_TENSION, Simulation};
 
@@ -24,8 +23,8 @@ pub(super) struct History {
 
 #[derive(Debug, Clone, Copy)]
 enum Kind {
-    /// Tension at an end, 0 for A.
-    Tension { end: usize, filter: Option<Filter> },
+    /// Tension at an end.
+    Tension { end: model::End, filter: Option<Filter> },
     /// Positions on a line of a length [m].
     Positions { length: f64 },
 }
@@ -48,7 +47,7 @@ impl History {
             cut_off: scene.cut_off(),
         };
         let of_tension = |filter| Kind::Tension {
-            end: driven(model, line),
+            end: model.driven_end(line),
             filter,
         };
         let (kind, count) = match scene.solver.tolerance_of {
@@ -68,8 +67,7 @@ impl History {
     /// Adds the present state of the line.
     pub(super) fn add(&mut self, simulation: &Simulation, line: usize) {
         match self.kind {
-            Kind::Tension { end: 0, .. } => self.series[0].push(simulation.tension_a(line)),
-            Kind::Tension { .. } => self.series[0].push(simulation.tension_b(line)),
+            Kind::Tension { end, .. } => self.series[0].push(simulation.tension_at(line, end)),
             Kind::Positions { .. } => {
                 let series = self.series.iter_mut();
                 series

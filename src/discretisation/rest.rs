@@ -4,8 +4,6 @@ use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Rest};
 use crate::scene::{InitialShape, Scene};
 use crate::simulation::Simulation;
 
-use super::search::driven;
-
 /// Fraction of an error at rest that the most elements must remove to be worthwhile, if they do not keep the tolerance [-].
 const GAIN: f64 = 0.5;
 
@@ -61,10 +59,11 @@ fn errors(scene: &Scene, networks: &Networks, simulation: &Simulation) -> Option
         if built.bends() || built.drifts(model) || scene.lines[line].initial != InitialShape::Static {
             return None;
         }
-        let [found, exact] = match driven(model, line) {
-            0 => [simulation.tension_a(line), exact.tension_a()],
-            _ => [simulation.tension_b(line), exact.tension_b()],
-        };
+        let end = model.driven_end(line);
+        let (found, exact) = (
+            simulation.tension_at(line, end),
+            [exact.tension_a(), exact.tension_b()][end as usize],
+        );
         Some((found - exact).abs() / exact)
     };
     let errors: Vec<Option<f64>> = networks

@@ -6,7 +6,7 @@ use super::ladder::{LEVELS, Ladder, smooth_error};
 use super::trials::{Run, Steps, Trials};
 use super::{AIM, Mesh, Networks, Trial, elements_of, short_sections};
 use crate::dynamics::axial_implicit_cost;
-use crate::model::{Model, Role};
+use crate::model::Model;
 use crate::scene::{Integrator, Scene};
 use crate::simulation::Simulation;
 
@@ -424,16 +424,4 @@ impl Explicit {
     fn axial_implicit_work(&self, step: f64) -> f64 {
         self.axial_work / step
     }
-}
-
-/// End of a line that is moved, 0 for A; B where both or none are.
-pub(super) fn driven(model: &Model, line: usize) -> usize {
-    let moved = |end: usize| {
-        let role = &model.points[model.lines[line].ends[end]].role;
-        matches!(
-            role,
-            Role::Coupled { .. } | Role::Carried { .. } | Role::Prescribed(_)
-        )
-    };
-    usize::from(!moved(0) || moved(1))
 }

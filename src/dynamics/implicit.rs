@@ -37,7 +37,7 @@ use super::energy_balance::implicit::Passed;
 use super::{StepError, StepFailure, reaction};
 use crate::elements::{Counters, Stretch, Weights, Workspace, copy_network, free_points, place_ends};
 use crate::math::block_banded::Pivots;
-use crate::model::{Kinematics, Model, Network, PointState, State};
+use crate::model::{Kinematics, Model, Network, State};
 use crate::scene::{Integrator, Solver};
 
 /// Spectral radius at infinite frequency where the scene gives none [-].
@@ -196,21 +196,9 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
     for &index in &network.lines {
         for point in model.lines[index].ends {
             if model.points[point].free().is_none() {
-                let Kinematics {
-                    position,
-                    velocity,
-                    acceleration,
-                    orientation,
-                    spin,
-                } = held(point, t);
-                state.points[point] = PointState {
-                    position,
-                    velocity,
-                    acceleration,
-                    orientation,
-                    spin,
-                    ..state.points[point]
-                };
+                let (at, now) = (held(point, t), &mut state.points[point]);
+                (now.position, now.velocity, now.acceleration) = (at.position, at.velocity, at.acceleration);
+                (now.orientation, now.spin) = (at.orientation, at.spin);
             }
         }
     }
@@ -228,27 +216,6 @@ pub struct Span {
     pub step_max: f64,
 }
 
-/// Advances one network through a time span; does nothing unless its end is after its start. `held` returns
-/// position, velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
-///
-/// # Errors
-/// Newton's method failed even in steps 4096 times smaller; the state is then unchanged.
-pub fn advance<K: Fn(usize, f64) -> Kinematics>(
-    model: &Model,
-    number: usize,
-    state: &mut State,
-    held: &K,
-    span: Span,
-    scheme: &Scheme,
-    work: &mut Workspace,
-) -> Result<Counters, StepError> {
-    let held = Driving {
-        kinematics: held,
-        scheme,
-    };
-    advance_observed(model, number, state, held, span, work, |_| {})
-}
-
 /// Prescribed motion and loads of a network, with the scheme that integrates it.
 #[derive(Debug)]
 pub struct Driving<'a, K> {
@@ -258,12 +225,12 @@ pub struct Driving<'a, K> {
     pub scheme: &'a Scheme,
 }
 
-/// [`advance`] with a call of `observe` after every internal step, and one more with a step of zero length where ends
-/// were released after it.
+/// Advances one network through a time span; does nothing unless its end is after its start. `state.time` is left to the caller. Calls `observe` after
+/// every internal step, and once more with a step of zero length where ends were released after it.
 ///
 /// # Errors
-/// As for [`advance`].
-pub fn advance_observed<K: Fn(usize, f64) -> Kinematics>(
+/// Newton's method failed even in steps 4096 times smaller; the state is then unchanged.
+pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
     state: &mut State,
@@ -388,15 +355,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
     fn failure(&self, [t0, t1]: [f64; 2], work: &Workspace) -> StepError {
         let (residual, place) = work.greatest_residual(self.network);
         let (line, node) = place.node(self.model);
-        StepError {
-            time: t0,
-            line: self.model.lines[line].name.clone(),
-            node,
-            cause: StepFailure::NotConverged {
-                step: t1 - t0,
-                residual,
-            },
-        }
+        let step = t1 - t0;
+        let cause = StepFailure::NotConverged { step, residual };
+        StepError::new(t0, &self.model.lines[line], node, cause)
     }
 
     /// Takes one step from the state `before`; returns whether Newton's method converged. If not, the state is

@@ -15,6 +15,7 @@ mod sea;
 mod threads;
 mod viscoelastic;
 
+use crate::model::Line;
 use crate::statics::StaticsError;
 
 pub use choice::Choice;
@@ -33,6 +34,19 @@ pub struct StepError {
     pub node: usize,
     /// Cause.
     pub cause: StepFailure,
+}
+
+impl StepError {
+    /// Failure of a step that starts at a time [s], at a node of a line.
+    #[cold]
+    pub(crate) fn new(time: f64, line: &Line, node: usize, cause: impl Into<StepFailure>) -> StepError {
+        StepError {
+            time,
+            line: line.name.clone(),
+            node,
+            cause: cause.into(),
+        }
+    }
 }
 
 /// Cause of a failed step.

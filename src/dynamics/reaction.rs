@@ -80,127 +80,106 @@ fn transport_force(line: &Line, winch_state: WinchState) -> f64 {
     density * winch_state.rate.powi(2) + nodes.mass_tangent[node] * winch_state.acceleration
 }
 
-/// Force [N] of the line on the point at one of its ends, in water that moves or rests, with `moments` [N m] on its ends.
-pub fn end_force(
-    line: &Line,
-    state: &LineState,
-    end: End,
-    point: &PointState,
-    loads: (WaterAlong, [Vector3<f64>; 2]),
-    negative_tension: bool,
-) -> Vector3<f64> {
-    force_of_line(line, state, end, point).unwrap_or_else(|| {
-        let half = HalfNode::new(line, state, end, point, loads);
-        half.force(state, line.linear_load[end as usize], negative_tension)
-    })
+/// An end of a line, with everything on which its force depends.
+#[derive(Debug, Clone, Copy)]
+pub struct LineEnd<'a> {
+    /// The line.
+    pub line: &'a Line,
+    /// State of the line.
+    pub state: &'a LineState,
+    /// The end.
+    pub end: End,
+    /// State of the point at the end.
+    pub point: &'a PointState,
+    /// Water along the line.
+    pub water: WaterAlong<'a>,
+    /// Moments on the ends of the line [N m].
+    pub moments: [Vector3<f64>; 2],
+    /// Whether slack segments of the line carry negative tension.
+    pub negative_tension: bool,
 }
 
-/// Force [N] of the end node on its point as lumped-mass codes report it: pull of the end's segment, weight, drag and contact of its
-/// half, all lumped at the node, without inertia. Beams and closed-form catenaries have no such node: theirs is [`end_force`].
-pub fn nodal_force(
-    line: &Line,
-    state: &LineState,
-    end: End,
-    point: &PointState,
-    loads: (WaterAlong, [Vector3<f64>; 2]),
-    negative_tension: bool,
-) -> Vector3<f64> {
-    force_of_line(line, state, end, point).unwrap_or_else(|| {
-        let point = point.without_acceleration();
-        HalfNode::new(line, state, end, &point, loads).force(state, false, negative_tension)
-    })
-}
+impl<'a> LineEnd<'a> {
+    /// Force [N] of the line on the point.
+    pub fn force(&self) -> Vector3<f64> {
+        let is_linear = self.line.linear_load[self.end as usize];
+        let of_line = self.without_half_node(self.point);
+        of_line.unwrap_or_else(|| HalfNode::new(*self).force(is_linear))
+    }
 
-/// Mass [kg] of a line at one of its ends, −∂F/∂a of [`end_force`] at the present positions and velocities.
-///
-/// With the load uniform over the half node it is the mass M(t) of the half node, including added mass. With the load linear to the next node
-/// F contains ⅔ of the end's own load, and the rest is that of the next node, whose acceleration is a state of the line: ⅔ M(t₀), t₀ the tangent at
-/// the end. The share of the linear load is taken as it is. The force of a beam is linear in a, so that its mass follows from unit
-/// accelerations; a closed-form catenary and a released end have none.
-pub fn end_mass(
-    line: &Line,
-    state: &LineState,
-    end: End,
-    point: &PointState,
-    loads: (WaterAlong, [Vector3<f64>; 2]),
-    negative_tension: bool,
-) -> Matrix3<f64> {
-    let still = point.without_acceleration();
-    if let Some(force) = force_of_line(line, state, end, &still) {
-        return Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
-            let moved = PointState {
-                acceleration: axis,
-                ..still
-            };
-            force - force_of_line(line, state, end, &moved).unwrap_or(force)
-        }));
+    /// Force [N] of the end node on its point as lumped-mass codes report it: pull of the end's segment, weight, drag and contact of its
+    /// half, all lumped at the node, without inertia. Beams and closed-form catenaries have no such node: theirs is [`LineEnd::force`].
+    pub fn nodal_force(&self) -> Vector3<f64> {
+        let of_line = self.without_half_node(self.point);
+        of_line.unwrap_or_else(|| {
+            let point = &self.point.without_acceleration();
+            HalfNode::new(LineEnd { point, ..*self }).force(false)
+        })
     }
-    HalfNode::new(line, state, end, point, loads).mass(
-        state,
-        line.linear_load[end as usize],
-        negative_tension,
-    )
-}
 
-/// Force [N] at an end that has no half node: of a released end, a beam or a closed-form catenary.
-fn force_of_line(line: &Line, state: &LineState, end: End, point: &PointState) -> Option<Vector3<f64>> {
-    if state.released[usize::from(end == End::B)] {
-        return Some(Vector3::zeros());
+    /// Mass [kg] of the line at this end, −∂F/∂a of [`LineEnd::force`] at the present positions and velocities.
+    ///
+    /// With the load uniform over the half node it is the mass M(t) of the half node, including added mass. With the load linear to the next node
+    /// F contains ⅔ of the end's own load, and the rest is that of the next node, whose acceleration is a state of the line: ⅔ M(t₀), t₀ the tangent at
+    /// the end. The share of the linear load is taken as it is. The force of a beam is linear in a, so that its mass follows from unit
+    /// accelerations; a closed-form catenary and a released end have none.
+    pub fn mass(&self) -> Matrix3<f64> {
+        let still = self.point.without_acceleration();
+        if let Some(force) = self.without_half_node(&still) {
+            return Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
+                let moved = PointState {
+                    acceleration: axis,
+                    ..still
+                };
+                force - self.without_half_node(&moved).unwrap_or(force)
+            }));
+        }
+        HalfNode::new(*self).mass(self.line.linear_load[self.end as usize])
     }
-    if let Some(view) = BeamView::of(line, state) {
-        return Some(view.end_action(end, point).0);
+
+    /// Force [N] at an end that has no half node, of a released end, a beam or a closed-form catenary, with its point in a state.
+    fn without_half_node(&self, point: &PointState) -> Option<Vector3<f64>> {
+        if self.state.released[self.end as usize] {
+            return Some(Vector3::zeros());
+        }
+        if let Some(view) = BeamView::of(self.line, self.state) {
+            return Some(view.end_action(self.end, point).0);
+        }
+        let closed_form = self.state.closed_form.as_ref()?;
+        Some(closed_form.end_force[self.end as usize])
     }
-    let [a, b] = state.closed_form.as_ref()?.end_force;
-    Some(match end {
-        End::A => a,
-        End::B => b,
-    })
 }
 
 /// The half node at an end.
 struct HalfNode<'a> {
-    line: &'a Line,
-    end: End,
+    at: LineEnd<'a>,
     node: usize,
-    point: &'a PointState,
-    water: WaterAlong<'a>,
     /// Velocity of the water at the end [m/s].
     flow: Vector3<f64>,
     dry: Dry,
-    /// Moments on the ends of the line [N m].
-    moments: [Vector3<f64>; 2],
 }
 
 impl<'a> HalfNode<'a> {
-    fn new(
-        line: &'a Line,
-        state: &LineState,
-        end: End,
-        point: &'a PointState,
-        (water, moments): (WaterAlong<'a>, [Vector3<f64>; 2]),
-    ) -> HalfNode<'a> {
-        let node = line.end_node(end);
-        let dry = line.surface.as_ref().map_or(Dry::default(), |surface| {
-            surface.node_in(water, node, &state.position)
-        });
+    fn new(at: LineEnd<'a>) -> HalfNode<'a> {
+        let (node, position) = (at.line.end_node(at.end), &at.state.position);
+        let surface = at.line.surface.as_ref();
         HalfNode {
-            line,
-            end,
+            at,
             node,
-            point,
-            water,
-            flow: water.velocity(node, state.position[node].z),
-            dry,
-            moments,
+            flow: at.water.velocity(node, position[node].z),
+            dry: surface.map_or(Dry::default(), |surface| {
+                surface.node_in(at.water, node, position)
+            }),
         }
     }
 
     /// Force on the point [N], with the load linear to the next node or uniform over the half.
-    fn force(&self, state: &LineState, is_linear: bool, negative_tension: bool) -> Vector3<f64> {
-        let (line, end, node, nodes) = (self.line, self.end, self.node, &self.line.nodes);
-        let (chord, inward, pull) = self.pull(state, negative_tension);
+    fn force(&self, is_linear: bool) -> Vector3<f64> {
+        let LineEnd { line, state, end, .. } = self.at;
+        let (node, nodes) = (self.node, &line.nodes);
+        let (chord, inward, pull) = self.pull();
         let load = match is_linear {
-            true => self.linear_load(state, [inward, pull], negative_tension),
+            true => self.linear_load([inward, pull]),
             false => self.load(inward, self.dry.part)[0],
         };
         let mut force = pull + load;
@@ -211,7 +190,7 @@ impl<'a> HalfNode<'a> {
         if let Some(contact) = &nodes.contact {
             let velocity = |i: usize| {
                 if i == node {
-                    self.point.velocity
+                    self.at.point.velocity
                 } else {
                     state.velocity[i]
                 }
@@ -222,48 +201,50 @@ impl<'a> HalfNode<'a> {
     }
 
     /// Chord from the end to the next node [m], its direction, and the pull of the segment between them, shear included [N].
-    fn pull(&self, state: &LineState, negative_tension: bool) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
-        let (segment, other) = match self.end {
+    fn pull(&self) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
+        let position = &self.at.state.position;
+        let (segment, other) = match self.at.end {
             End::A => (0, 1),
             End::B => (self.node - 1, self.node - 1),
         };
-        let chord = state.position[other] - state.position[self.node];
+        let chord = position[other] - position[self.node];
         let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let pull = tension(self.line, state, segment, negative_tension) * inward;
-        (chord, inward, pull + self.shear(state, segment))
+        (chord, inward, self.along(segment, inward))
     }
 
-    /// Mass [kg] that multiplies the acceleration of the end in the force, see [`end_mass`].
-    fn mass(&self, state: &LineState, is_linear: bool, negative_tension: bool) -> Matrix3<f64> {
-        let (_, inward, pull) = self.pull(state, negative_tension);
-        let masses = Slender::new(self.line.nodes.masses(self.node, self.dry.part));
+    /// Mass [kg] that multiplies the acceleration of the end in the force, see [`LineEnd::mass`].
+    fn mass(&self, is_linear: bool) -> Matrix3<f64> {
+        let (_, inward, pull) = self.pull();
+        let masses = Slender::new(self.at.line.nodes.masses(self.node, self.dry.part));
         let uniform = masses.matrix(inward);
         if !is_linear {
             return uniform;
         }
-        let (_, share, tangent) = self.linear_part(state, [inward, pull], negative_tension);
+        let (_, share, tangent) = self.linear_part([inward, pull]);
         uniform + share * (masses.matrix(tangent) * (2.0 / 3.0) - uniform)
     }
 
-    /// Shear of a segment on its node towards this end [N].
-    fn shear(&self, state: &LineState, segment: usize) -> Vector3<f64> {
-        if self.line.bending.is_none() {
-            return Vector3::zeros();
+    /// Tension of a segment along its direction, and its shear on its node towards this end [N].
+    fn along(&self, segment: usize, direction: Vector3<f64>) -> Vector3<f64> {
+        let LineEnd { line, state, .. } = self.at;
+        let pull = tension(line, state, segment, self.at.negative_tension) * direction;
+        if line.bending.is_none() {
+            return pull;
         }
         let nodes = [&*state.position, &*state.velocity];
-        let at = (self.end, self.point);
-        shear(self.line, nodes, segment, at, self.moments)
+        let at = (self.at.end, self.at.point);
+        pull + shear(line, nodes, segment, at, self.at.moments)
     }
 
     /// Load without weight and seabed [N] of a half node of which a part `dry` [-] is out of the water: inertia, water and mass damping. The
     /// second vector is the drag alone.
     fn load(&self, inward: Vector3<f64>, dry: f64) -> [Vector3<f64>; 2] {
-        let (nodes, node) = (&self.line.nodes, self.node);
-        let (velocity, acceleration) = (self.point.velocity, self.point.acceleration);
+        let (nodes, node) = (&self.at.line.nodes, self.node);
+        let (velocity, acceleration) = (self.at.point.velocity, self.at.point.acceleration);
         let mut load = -Slender::new(nodes.masses(node, dry)).times(acceleration, inward);
         let drag = self.drag(velocity - self.flow, inward, dry);
         load += drag;
-        if let (Some(froude_krylov), Some(waves)) = (&nodes.froude_krylov, &self.water.waves) {
+        if let (Some(froude_krylov), Some(waves)) = (&nodes.froude_krylov, &self.at.water.waves) {
             load += (1.0 - dry) * froude_krylov.force(node, waves.at(node).acceleration, inward);
         }
         if let Some(damping) = &nodes.mass_damping {
@@ -274,13 +255,8 @@ impl<'a> HalfNode<'a> {
 
     /// Load without weight and seabed [N] of a half node whose load is linear to the next node; the pull of its
     /// segment is `pull` [N] along `inward`.
-    fn linear_load(
-        &self,
-        state: &LineState,
-        [inward, pull]: [Vector3<f64>; 2],
-        negative_tension: bool,
-    ) -> Vector3<f64> {
-        let (linear, share, _) = self.linear_part(state, [inward, pull], negative_tension);
+    fn linear_load(&self, [inward, pull]: [Vector3<f64>; 2]) -> Vector3<f64> {
+        let (linear, share, _) = self.linear_part([inward, pull]);
         if share == 1.0 {
             return linear;
         }
@@ -289,22 +265,17 @@ impl<'a> HalfNode<'a> {
     }
 
     /// Load that is linear to the next node [N], its share in the load of the half node [-], and the tangent at the end.
-    fn linear_part(
-        &self,
-        state: &LineState,
-        [inward, pull]: [Vector3<f64>; 2],
-        negative_tension: bool,
-    ) -> (Vector3<f64>, f64, Vector3<f64>) {
-        let [next, after] = match self.end {
+    fn linear_part(&self, [inward, pull]: [Vector3<f64>; 2]) -> (Vector3<f64>, f64, Vector3<f64>) {
+        let LineEnd { line, state, .. } = self.at;
+        let [next, after] = match self.at.end {
             End::A => [1, 2],
             End::B => [self.node - 1, self.node - 2],
         };
-        let nodes = &self.line.nodes;
+        let nodes = &line.nodes;
         let chord = state.position[after] - state.position[next];
         let onward = chord.try_normalize(0.0).unwrap_or(inward);
         let segment = next.min(after);
-        let passed_on =
-            tension(self.line, state, segment, negative_tension) * onward + self.shear(state, segment);
+        let passed_on = self.along(segment, onward);
         let tangents = [3.0 * inward - onward, inward, inward + onward]
             .map(|along| along.try_normalize(0.0).unwrap_or(inward));
         let [own, drag] = self.load(tangents[0], self.dry.part);
@@ -314,8 +285,8 @@ impl<'a> HalfNode<'a> {
         }
         let share = nodes.length[self.node] / nodes.length[next];
         let mut at_surface = 1.0;
-        if let Some(surface) = &self.line.surface {
-            let dry = surface.node_in(self.water, next, &state.position);
+        if let Some(surface) = &line.surface {
+            let dry = surface.node_in(self.at.water, next, &state.position);
             borne.z += dry.weight;
             let lack = (share * dry.weight - self.dry.weight).abs();
             let jump = (self.load(tangents[0], dry.part)[0] - own).norm() + lack;
@@ -324,22 +295,17 @@ impl<'a> HalfNode<'a> {
         }
         let change = share * (pull - passed_on + borne) - own;
         let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
-        let bulge = self.bulge(state, next, tangents, drag);
+        let bulge = self.bulge(next, tangents, drag);
         let linear = own + change / 3.0 + bulge;
         (linear, at_surface * ratio.powi(2).min(1.0), tangents[0])
     }
 
     /// Difference of the drag in the middle of the last element from the mean of its ends, over 3/2 [N]; `tangents` are those of the end, the middle
     /// and the `next` node, `end` is the drag at the end [N].
-    fn bulge(
-        &self,
-        state: &LineState,
-        next: usize,
-        tangents: [Vector3<f64>; 3],
-        end: Vector3<f64>,
-    ) -> Vector3<f64> {
-        let flow = self.water.velocity(next, state.position[next].z);
-        let (past, last) = (self.point.velocity - self.flow, state.velocity[next] - flow);
+    fn bulge(&self, next: usize, tangents: [Vector3<f64>; 3], end: Vector3<f64>) -> Vector3<f64> {
+        let state = self.at.state;
+        let flow = self.at.water.velocity(next, state.position[next].z);
+        let (past, last) = (self.at.point.velocity - self.flow, state.velocity[next] - flow);
         let [half_way, next] = [(1, 0.5 * (past + last)), (2, last)]
             .map(|(place, velocity)| self.drag(velocity, tangents[place], self.dry.part));
         (2.0 * half_way - end - next) / 3.0
@@ -348,7 +314,7 @@ impl<'a> HalfNode<'a> {
     /// Drag of the half node at a velocity [m/s] relative to the water with a part `dry` of it [-] out of the water
     /// [N].
     fn drag(&self, velocity: Vector3<f64>, tangent: Vector3<f64>, dry: f64) -> Vector3<f64> {
-        let Some(drag) = &self.line.nodes.drag else {
+        let Some(drag) = &self.at.line.nodes.drag else {
             return Vector3::zeros();
         };
         morison::drag(drag.at(self.node).times(1.0 - dry), velocity, tangent)
@@ -397,8 +363,16 @@ mod tests {
     }
 
     fn pull(model: &Model, state: &LineState, point: &PointState) -> Vector3<f64> {
-        let loads = (WaterAlong::default(), [Vector3::zeros(); 2]);
-        -end_force(&model.lines[0], state, End::B, point, loads, false)
+        let end = LineEnd {
+            line: &model.lines[0],
+            state,
+            end: End::B,
+            point,
+            water: WaterAlong::default(),
+            moments: [Vector3::zeros(); 2],
+            negative_tension: false,
+        };
+        -end.force()
     }
 
     #[test]

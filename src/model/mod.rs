@@ -662,6 +662,14 @@ impl Point {
         }
     }
 
+    /// Returns whether a host or the scene's motion may move the point.
+    pub fn is_moved(&self) -> bool {
+        matches!(
+            self.role,
+            Role::Coupled { .. } | Role::Carried { .. } | Role::Prescribed(_)
+        )
+    }
+
     /// Returns whether waves would act on the body of the point.
     pub fn heaves(&self) -> bool {
         self.body().is_some_and(|body| body.sphere.is_some())
@@ -672,20 +680,20 @@ impl Point {
         self.free().or(self.own.as_ref())
     }
 
-    /// Force [N] of the point, without its lines, on its support: its load, weight and buoyancy, drag, the force of
-    /// waves and inertia. Zero for a free point.
+    /// Force [N] of the point without its lines: its load, weight and buoyancy, drag, the force of waves, the spring of the seabed under a free point,
+    /// and inertia.
     pub fn own_force(
         &self,
         state: &PointState,
         t: f64,
         water: (Option<Stream>, Option<Orbit>),
     ) -> Vector3<f64> {
-        if self.free().is_some() {
-            return Vector3::zeros();
-        }
         let load = self.load_at(t);
-        let forces = self.own.as_ref().map(|own| own.forces(load, state, water));
-        forces.map_or(load, |forces| forces.sum - forces.at.mass * state.acceleration)
+        let Some(body) = self.body() else { return load };
+        let forces = body.forces(load, state, water);
+        let seabed = self.free().and_then(|free| free.seabed_at_rest(state.position.z));
+        let push = seabed.map_or(0.0, |(_, push)| push) * Vector3::z();
+        forces.sum + push - forces.at.mass * state.acceleration
     }
 
     /// Point load at time `t` [s], in [N].
@@ -768,6 +776,14 @@ impl Model {
             (Body::Point(driven), _) => point == driven,
             (Body::Vessel(carrier), Role::Carried { vessel, .. }) => *vessel == carrier,
             (Body::Vessel(_), _) => false,
+        }
+    }
+
+    /// End of a line that is moved; B where both or none are.
+    pub fn driven_end(&self, line: usize) -> End {
+        match self.lines[line].ends.map(|point| self.points[point].is_moved()) {
+            [true, false] => End::A,
+            _ => End::B,
         }
     }
 

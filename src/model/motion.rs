@@ -128,6 +128,14 @@ impl Motion {
         }
     }
 
+    /// No motion: the reference position.
+    pub fn none() -> Motion {
+        Motion::Harmonic {
+            axes: Default::default(),
+            ramp: None,
+        }
+    }
+
     /// Bounds of its derivatives; `None` where it is piecewise cubic.
     pub fn derivatives(&self) -> Option<Derivatives> {
         let Motion::Harmonic { axes, ramp } = self else {

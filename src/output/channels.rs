@@ -1,15 +1,19 @@
 //! Output channels by MoorDyn's names, as columns next to moorline's.
 //!
-//! Tensions are those of segments, as in MoorDyn-C: of the last one at an end, the mean of the two adjacent ones at an inner node. Positions
-//! are global, and forces at a point are those of the lines on it.
+//! As in MoorDyn 2.7, the tension of an inner node is the mean of the two adjacent segments, that of an end node the magnitude of its force on the point,
+//! and the force on a point includes the point's own weight, buoyancy and drag. None of them includes inertia. Positions are global.
 //!
-//! Source: MoorDyn-C, `Line.hpp`, `getNodeTen`.
+//! Source: MoorDyn 2.7.2, files and functions compared on one deck (`python_tests/test_libmoordyn.py`).
+
+use nalgebra::Vector3;
 
 use super::record::{Column, Form};
-use crate::model::Model;
+use crate::model::{End, Model};
 use crate::scene::channel::{Channel, LineEnd, NodePlace, Quantity, check_node};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
+
+const ON_POINT: &str = "force of the lines and of the point itself, without inertia,";
 
 /// Channels that a scene requests.
 #[derive(Debug, Clone)]
@@ -94,10 +98,14 @@ fn column(name: &str, source: Source, model: &Model) -> Column {
     let (unit, what) = match quantity {
         Quantity::Position(axis) => ("m", format!("position along {}", letter(axis))),
         Quantity::Velocity(axis) => ("m/s", format!("velocity along {}", letter(axis))),
-        Quantity::Force(axis) => ("N", format!("force of the lines along {}", letter(axis))),
+        Quantity::Force(axis) => ("N", format!("{ON_POINT} along {}", letter(axis))),
         Quantity::Tension => match source {
+            Source::Node { line, node, .. } if node == 0 || node == model.lines[line].nodes_max() - 1 => (
+                "N",
+                "magnitude of the force on the point, without inertia".to_string(),
+            ),
             Source::Node { .. } => ("N", "tension of the segments next to it".to_string()),
-            Source::Point { .. } => ("N", "size of the force of the lines".to_string()),
+            Source::Point { .. } => ("N", format!("magnitude of the {ON_POINT}")),
         },
     };
     Column::new(name, unit, format!("{what}, {place}"), Form::Real)
@@ -108,20 +116,24 @@ fn value(source: Source, simulation: &Simulation) -> f64 {
     match source {
         Source::Node { line, node, quantity } => {
             let shape = &state.lines[line];
-            let node = node.min(shape.position.len() - 1); // nodes that a winch has not paid out are at the winch
+            let last = shape.position.len() - 1;
+            let node = node.min(last); // nodes that a winch has not paid out are at the winch
+            let at_end = |end: End| simulation.line_nodal_force(line, end).norm();
             match quantity {
                 Quantity::Position(axis) => shape.position[node][axis],
                 Quantity::Velocity(axis) => shape.velocity[node][axis],
+                Quantity::Tension | Quantity::Force(_) if node == 0 => at_end(End::A),
+                Quantity::Tension | Quantity::Force(_) if node == last => at_end(End::B),
                 Quantity::Tension | Quantity::Force(_) => simulation.segment_tension(line, node),
             }
         }
         Source::Point { point, quantity } => {
-            let force = || simulation.end_force(point);
+            let force = || simulation.nodal_force(point);
             match quantity {
                 Quantity::Position(axis) => state.points[point].position[axis],
                 Quantity::Velocity(axis) => state.points[point].velocity[axis],
                 Quantity::Force(axis) => force()[axis],
-                Quantity::Tension => force().iter().map(|part| part * part).sum::<f64>().sqrt(),
+                Quantity::Tension => Vector3::from(force()).norm(),
             }
         }
     }
@@ -156,15 +168,15 @@ mod tests {
         let (scene, simulation) = simulation(&names);
         let channels = Channels::new(&scene, simulation.model()).unwrap();
         let profile = simulation.profile(0);
-        let force = simulation.end_force(1);
+        let force = simulation.nodal_force(1);
         let expected = [
-            simulation.segment_tension(0, 10),
-            simulation.segment_tension(0, 0),
+            simulation.line_nodal_force(0, End::B).norm(),
+            simulation.line_nodal_force(0, End::A).norm(),
             profile[4].z,
             15.0,
             simulation.segment_tension(0, 4),
             force[0],
-            simulation.tension_b(0),
+            Vector3::from(force).norm(),
             0.0,
         ];
         assert!(channels.values(&simulation).eq(expected));
@@ -173,15 +185,15 @@ mod tests {
         let first = channels.columns().next().unwrap();
         assert_eq!(
             first.description,
-            "tension of the segments next to it, node 10 of line1"
+            "magnitude of the force on the point, without inertia, node 10 of line1"
         );
     }
 
-    /// A taut rope hanging straight down: T(z) is the weight below, so that the last segment has half a segment's weight less than the
-    /// point above it.
+    /// A taut rope hanging straight down: T(z) is the weight below, so that the node next to the end has the weight of a segment less than the point
+    /// above it.
     #[test]
-    fn a_tension_at_an_end_is_that_of_the_last_segment_and_not_the_force_on_the_point() {
-        let (mut scene, _) = simulation(&["FairTen1", "AnchTen1", "L1N1T", "L1N10T"]);
+    fn a_tension_at_an_end_is_the_force_on_the_point_and_one_between_that_of_the_segments() {
+        let (mut scene, _) = simulation(&["FairTen1", "AnchTen1", "L1N1T", "L1N9T", "L1N10T"]);
         scene.points[1].position = [0.0, 0.0, 21.0];
         let simulation = Simulation::new(&scene).unwrap();
         let channels = Channels::new(&scene, simulation.model()).unwrap();
@@ -191,10 +203,11 @@ mod tests {
         let close = |value: f64, expected: f64| {
             assert!((value / expected - 1.0).abs() < 1e-9, "{value} {expected}");
         };
-        close(values[0], above - 0.5 * segment);
-        close(values[1], below + 0.5 * segment);
+        close(values[0], above);
+        close(values[1], below);
         close(values[2], below + segment);
-        assert_eq!(values[3], values[0]);
+        close(values[3], above - segment);
+        assert_eq!(values[4], values[0]);
     }
 
     #[test]

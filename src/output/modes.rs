@@ -1,7 +1,6 @@
 //! Natural modes of a mooring about its equilibrium, as `moorline modes` prints and draws them. `docs/json.md` has the layout.
 
 use std::f64::consts::TAU;
-use std::io::{self, Write};
 
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -268,13 +267,4 @@ impl LineShape {
             nodes: nodes.iter().enumerate().map(node).collect(),
         }
     }
-}
-
-/// Writes the modes as indented JSON with a trailing newline.
-///
-/// # Errors
-/// Writing to `out` fails.
-pub fn write(modes: &NaturalModes, mut out: impl Write) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut out, modes)?;
-    writeln!(out)
 }

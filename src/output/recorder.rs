@@ -7,28 +7,14 @@ use crate::model::{Body, Model, Moving};
 use crate::scene::{Scene, SceneError};
 use crate::simulation::Simulation;
 
-/// Refuses a row with a value that is not finite.
-///
-/// # Errors
-/// The time, the column and a remedy.
-pub fn check_finite(columns: &[Column], row: &[f64]) -> Result<(), String> {
-    let time = row[0];
-    let lost = columns.iter().zip(row).find(|(_, value)| !value.is_finite());
-    lost.map_or(Ok(()), |(column, value)| {
-        Err(format!(
-            "at t = {time} s, {}: {value} {} is no result; try a smaller solver.time_step_max, and look at the motion",
-            column.name, column.unit
-        ))
-    })
-}
-
-/// Columns of the results: time, variables of the interface, then channels.
+/// Results of a run, row by row: time, variables of the interface, then channels.
 #[derive(Debug, Clone)]
 pub struct Recorder {
     variables: Vec<Variable>,
     channels: Channels,
     /// False if inputs and the elevation of the waves are left out.
     has_inputs: bool,
+    columns: Vec<Column>,
     row: Vec<f64>,
 }
 
@@ -38,13 +24,7 @@ impl Recorder {
     /// # Errors
     /// A name or a channel that cannot be a column.
     pub fn new(scene: &Scene, model: &Model) -> Result<Recorder, SceneError> {
-        let interface = Interface::new(scene, model, Layout::Scalars)?;
-        Ok(Recorder {
-            variables: recorded(&interface).cloned().collect(),
-            channels: Channels::new(scene, model)?,
-            has_inputs: true,
-            row: Vec::new(),
-        })
+        Recorder::of(scene, model, true)
     }
 
     /// Those columns of a scene's runs that the lines determine: outputs and channels, without inputs and the elevation of the waves.
@@ -52,26 +32,39 @@ impl Recorder {
     /// # Errors
     /// As [`Recorder::new`].
     pub fn of_outputs(scene: &Scene, model: &Model) -> Result<Recorder, SceneError> {
-        let mut recorder = Recorder::new(scene, model)?;
-        recorder
-            .variables
-            .retain(|variable| variable.causality == Causality::Output);
-        recorder.has_inputs = false;
-        Ok(recorder)
+        Recorder::of(scene, model, false)
     }
 
-    /// Columns after the time.
-    pub fn columns(&self, model: &Model) -> Vec<Column> {
-        let mut all = columns(&self.variables);
+    fn of(scene: &Scene, model: &Model, has_inputs: bool) -> Result<Recorder, SceneError> {
+        let interface = Interface::new(scene, model, Layout::Scalars)?;
+        let is_kept = |variable: &&Variable| has_inputs || variable.causality == Causality::Output;
+        let variables: Vec<Variable> = recorded(&interface).filter(is_kept).cloned().collect();
+        let channels = Channels::new(scene, model)?;
+        let mut all = vec![Column::time()];
+        all.extend(columns(&variables));
         let elevation = "elevation of the surface at x = y = 0";
-        let waves = model.waves.as_ref().filter(|_| self.has_inputs);
+        let waves = model.waves.as_ref().filter(|_| has_inputs);
         all.extend(waves.map(|_| Column::new(ELEVATION, "m", elevation, Form::Real)));
-        all.extend(self.channels.columns());
-        all
+        all.extend(channels.columns());
+        Ok(Recorder {
+            variables,
+            channels,
+            has_inputs,
+            columns: all,
+            row: Vec::new(),
+        })
     }
 
-    /// Row of the time [s] and the values then, each in its column's unit.
-    pub fn row(&mut self, simulation: &Simulation, time: f64) -> &[f64] {
+    /// Columns, time first.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Returns the row of the time [s] and the values then, each in its column's unit.
+    ///
+    /// # Errors
+    /// A value that is not finite: the time, the column and a remedy.
+    pub fn row(&mut self, simulation: &Simulation, time: f64) -> Result<&[f64], String> {
         let (row, model) = (&mut self.row, simulation.model());
         row.clear();
         row.push(time);
@@ -88,7 +81,16 @@ impl Recorder {
         let waves = model.waves.as_ref().filter(|_| self.has_inputs);
         row.extend(waves.map(|waves| waves.elevation(0.0, 0.0, time)));
         row.extend(self.channels.values(simulation));
-        row
+        let mut values = self.columns.iter().zip(&self.row);
+        let is_result =
+            |column: &Column, value: f64| value.is_finite() || value.is_nan() && column.form == Form::Sparse;
+        match values.find(|(column, value)| !is_result(column, **value)) {
+            None => Ok(&self.row),
+            Some((column, value)) => Err(format!(
+                "at t = {time} s, {}: {value} {} is no result; try a smaller solver.time_step_max, and look at the motion",
+                column.name, column.unit
+            )),
+        }
     }
 }
 
@@ -106,9 +108,10 @@ pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
 /// Columns of these variables.
 pub fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Column> {
     let column = |variable: &Variable| {
-        let form = match variable.kind {
-            Kind::Float64 => Form::Real,
-            Kind::Int32 | Kind::Boolean => Form::Whole,
+        let form = match (variable.kind, &variable.binding) {
+            (Kind::Float64, Binding::Interface { .. }) => Form::Sparse,
+            (Kind::Float64, _) => Form::Real,
+            (Kind::Int32 | Kind::Boolean, _) => Form::Whole,
         };
         let (unit, description) = (variable.unit.name, variable.description.as_str());
         Column::new(&variable.name, unit, description, form)
@@ -119,7 +122,7 @@ pub fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Col
 /// Present value of an output, in its unit.
 fn output_of(variable: &Variable, simulation: &Simulation) -> f64 {
     let mut value = [f64::NAN];
-    // an output without a value is written as it is, not finite, and the table marks it
+    // an output without a value is not a number, and its cell is empty
     let _ = Interface::read(variable, simulation, &mut value);
     value[0]
 }

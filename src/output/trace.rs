@@ -140,8 +140,15 @@ impl RangeSum {
         }
     }
 
-    /// Adds a pair of time [s] and value.
+    /// Adds a pair of time [s] and value; a value that is not a number is left out.
     pub fn add(&mut self, [time, value]: [f64; 2]) {
+        if value.is_nan() {
+            return;
+        }
+        if self.origin.is_nan() {
+            *self = RangeSum::new([time, value]);
+            return;
+        }
         let [before, now] = [self.last[1] - self.origin, value - self.origin];
         let half = 0.5 * (time - self.last[0]);
         self.areas[0] += half * (before + now);

@@ -5,7 +5,8 @@ use super::notes::Note;
 use super::path::quoted;
 use super::table::{Acts, Table};
 use super::{
-    ForceOutput, Integrator, Line, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section, Solver,
+    ForceOutput, InitialShape, Integrator, Line, LineType, Point, PointKind, Reconstruction, Scene, Seabed,
+    Section, Solver,
 };
 
 impl Scene {
@@ -26,6 +27,12 @@ impl Scene {
             rules! { &mut notes, &at;
                 "" if moves && point.volume.is_none() && point.added_mass.is_some() =>
                     "it is a fraction of the displaced mass: without `volume` `added_mass` changes nothing";
+            }
+        }
+        for (i, line) in self.lines.iter().enumerate() {
+            rules! { &mut notes, &format!("lines[{i}]");
+                "" if self.is_quasi_static() && line.initial != InitialShape::Static =>
+                    "quasi-static: `initial` changes nothing";
             }
         }
         for (i, vessel) in self.vessels.iter().enumerate() {
@@ -145,7 +152,7 @@ impl Scene {
                 "beams push as they pull: `negative_tension` changes nothing";
             "" if meshed && solver.elements.is_some() =>
                 "all lines or their sections have `elements`, and here `elements` changes nothing";
-            "" if meshed && chosen && solver.tolerance != usual.tolerance =>
+            "" if (meshed || solver.elements.is_some()) && chosen && solver.tolerance != usual.tolerance =>
                 "elements and integrator are given, so that `tolerance` changes nothing";
             "" if (rests || meshed || solver.elements.is_some() || still) && solver.tolerance_of != usual.tolerance_of =>
                 "elements are not selected by trials with the scene's motion: `tolerance_of` changes nothing";

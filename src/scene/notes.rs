@@ -238,6 +238,22 @@ fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
 }
 
 fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
+    let seeds: Vec<Option<u64>> = waves
+        .seas
+        .iter()
+        .zip(0..)
+        .map(|(sea, index)| sea.phases(index))
+        .collect();
+    for (i, seed) in seeds.iter().enumerate() {
+        let same = seeds[..i]
+            .iter()
+            .position(|other| seed.is_some() && other == seed);
+        rules! { notes, "water.waves";
+            "[{i}]" if same.is_some() =>
+                "the seed is that of sea {}: their waves have the same phases and add up; give each spectrum a seed of its own",
+                same.unwrap_or_default();
+        }
+    }
     rules! { notes, "water.waves";
         "" if waves.ramp().is_none() =>
             "no `ramp`: lines at rest meet the full sea at the start, and a transient follows";

@@ -143,8 +143,14 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
 
 /// Takes rows from the units of a heading to SI units.
 fn in_units_of(heading: &str, rows: &mut [[f64; 2]]) -> Result<(), String> {
-    let [strain, tension] = units::bracketed(heading)[..] else {
-        return Ok(());
+    let found = units::bracketed(heading);
+    let [strain, tension] = found[..] else {
+        return match found.iter().any(|text| units::is_converted(text)) {
+            true => {
+                Err("a heading has a unit for each of its two columns, such as (-) (kN), or none".to_string())
+            }
+            false => Ok(()),
+        };
     };
     let factors = [
         units::factor(strain, Quantity::Number)?,
@@ -171,6 +177,16 @@ mod tests {
         std::fs::write(&path, "strain tension\n(-) (lbf)\n0 0\n1 2\n").unwrap();
         let unknown = read(&path).unwrap_err();
         assert!(unknown.contains("line 2: unknown unit \"lbf\""), "{unknown}");
+        for heading in ["strain tension[kN]", "strain [%] tension", "(%) (kN) (test)"] {
+            std::fs::write(&path, format!("{heading}\n0 0\n1 2\n")).unwrap();
+            let single = read(&path).unwrap_err();
+            assert!(
+                single.contains("line 1: a heading has a unit for each"),
+                "{single}"
+            );
+        }
+        std::fs::write(&path, "Polyester (wet)\nstrain (-) tension\n0 0\n1 2\n").unwrap();
+        assert_eq!(read(&path).unwrap(), [[0.0, 0.0], [1.0, 2.0]]);
         std::fs::write(&path, "0 0\n0.1 five\n").unwrap();
         let problem = read(&path).unwrap_err();
         std::fs::remove_file(&path).unwrap();

@@ -113,6 +113,12 @@ pub fn differ(one: &str, other: &str) -> bool {
     both.is_some_and(|(one, other)| one != other)
 }
 
+/// Returns whether a text is a unit other than an SI unit.
+pub(super) fn is_converted(text: &str) -> bool {
+    let mut quantities = HEADER_UNITS.iter().map(|(quantity, ..)| *quantity);
+    quantities.any(|quantity| factor(text, quantity).is_ok_and(|factor| factor != 1.0))
+}
+
 /// The groups in square and round brackets of a heading, such as the units in `y [km] / x [km]`.
 pub(super) fn bracketed(heading: &str) -> Vec<&str> {
     let groups = heading.split(['[', '(']).skip(1);

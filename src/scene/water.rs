@@ -106,7 +106,7 @@ table! {
         pub direction: Option<f64> => ANGLE,
         /// Exponent s of the spread cos²ˢ(½(θ − direction)) of a spectrum's directions [-]; one direction where absent.
         pub spreading: Option<f64> => within(0.0, 1000.0),
-        /// Seed of the frequencies, phases and directions of a spectrum's components [-]; 0 where absent.
+        /// Seed of the frequencies, phases and directions of a spectrum's components [-]; where absent, the place of the sea in the list, from 0.
         pub seed: Option<u64>,
         /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) of all seas [s]; none where absent.
         pub ramp: Option<f64> => positive(1e9),
@@ -160,6 +160,11 @@ impl Sea {
             Some(WaveComponents::Number(number)) => number,
             _ => COMPONENTS,
         }
+    }
+
+    /// Seed of a spectrum [-], at a place in the list of seas; `None` for other seas.
+    pub fn phases(&self, place: u64) -> Option<u64> {
+        self.spectrum.as_ref().map(|_| self.seed.unwrap_or(place))
     }
 
     /// Variance of the elevation [m²].

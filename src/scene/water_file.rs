@@ -83,13 +83,20 @@ fn text_of(path: &Path) -> Result<String, String> {
 /// Units of heights [m] and velocities [m/s], which stand in the last line of headings.
 fn profile_units(path: &Path, text: &str) -> Result<(f64, f64), String> {
     let heading = text.lines().nth(CURRENT_HEAD - 1).unwrap_or_default();
-    let [above, flow @ ..] = &units::bracketed(heading)[..] else {
-        return Ok((1.0, 1.0));
-    };
     let wrong = |problem: String| format!("{}, line {CURRENT_HEAD}: {problem}", path.display());
     let of = |unit: &str, quantity| units::factor(unit, quantity).map_err(wrong);
-    if flow.len() != 3 {
+    let found = units::bracketed(heading);
+    let [above, flow @ ..] = &found[..] else {
         return Ok((1.0, 1.0));
+    };
+    if flow.len() != 3 {
+        return match found.iter().any(|text| units::is_converted(text)) {
+            true => Err(wrong(
+                "a heading has a unit for each of its four columns, such as (m) (m/s) (m/s) (m/s), or none"
+                    .into(),
+            )),
+            false => Ok((1.0, 1.0)),
+        };
     }
     if flow.iter().any(|unit| *unit != flow[0]) {
         return Err(wrong(

@@ -16,7 +16,7 @@
 //!
 //! where F₀ is F' + C v + K x of a trial step from the present velocity at the mean acceleration of the last step. The neglected terms are of second order
 //! in the distance between this prediction and the motion, O(h³), except for the share of the load of the end that depends on its acceleration
-//! ([`reaction`]), O(h). A host that moves M, C and K to its own side, (m + M) a + C v + K x = f + F₀ with the Newmark or generalised-α relations between
+//! ([`LineEnd`](crate::dynamics::reaction::LineEnd)), O(h). A host that moves M, C and K to its own side, (m + M) a + C v + K x = f + F₀ with the Newmark or generalised-α relations between
 //! a, v and x, solves body and line together, as a Rosenbrock method solves a system; this is stable for any mass, without iterations or repeated steps, if
 //! its own integration is. The resulting position is then given for the true step. Interface conditions of this kind are Robin conditions (Badia, Nobile &
 //! Vergara (2008), J. Comput. Phys. 227, 7027-7051) and, where K is zero and C is Z, those of transmission-line modelling (Krus, Jansson & Palmberg (1991),
@@ -44,7 +44,6 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::Simulation;
 use super::prescribed::MotionSource;
-use crate::dynamics::reaction;
 use crate::model::{Body, End, Model, PointState};
 use crate::scene::Integrator;
 pub(super) use trial::StepStart;
@@ -159,14 +158,9 @@ impl Simulation {
 
     /// Mass [kg] of a point: of the ends of its lines and its own.
     fn point_mass(&self, point: usize) -> Matrix3<f64> {
-        let (model, state) = (&*self.model, &self.snapshot.state);
-        let at = state.points[point];
-        let of_line = |&(line, end): &(usize, End)| {
-            let (data, shape) = (&model.lines[line], &state.lines[line]);
-            let loads = self.loads_along(line);
-            reaction::end_mass(data, shape, end, &at, loads, model.solver.negative_tension)
-        };
-        let of_lines: Matrix3<f64> = model.points[point].attached.iter().map(of_line).sum();
+        let at = self.snapshot.state.points[point];
+        let of_line = |&(line, end): &(usize, End)| self.at_end(line, end, &at).mass();
+        let of_lines: Matrix3<f64> = self.model.points[point].attached.iter().map(of_line).sum();
         let pushed = |acceleration| {
             self.own_force(point, |state| PointState {
                 acceleration,

@@ -141,12 +141,8 @@ impl WaterFlow {
         let Some(at @ (line, _, node)) = self.beyond() else {
             return Ok(());
         };
-        Err(StepError {
-            time,
-            line: model.lines[line].name.clone(),
-            node,
-            cause: StepFailure::Input(self.refusal(model, at)),
-        })
+        let cause = StepFailure::Input(self.refusal(model, at));
+        Err(StepError::new(time, &model.lines[line], node, cause))
     }
 }
 

@@ -79,8 +79,8 @@ impl Inputs {
 pub struct BodyInput {
     /// Displacement from the reference position [m]; roll, pitch and yaw, added to those of the reference attitude [rad].
     pub displacement: [f64; 6],
-    /// Velocity of the origin [m/s] and angular velocity [rad/s], both in global axes. Absent components are derived from the displacements; the
-    /// rotation needs all three components.
+    /// Velocity of the origin [m/s] and angular velocity [rad/s], both in global axes. Absent components of the velocity are derived from the
+    /// displacements. So is the angular velocity if all of its components are absent; otherwise absent ones are 0.
     pub velocity: [Option<f64>; 6],
 }
 
@@ -92,16 +92,14 @@ impl BodyInput {
         (Vector3::new(x, y, z), [vx, vy, vz])
     }
 
-    /// Rates of the displacement and the angles of a vessel [m/s, rad/s]. Those of the angles need the whole angular velocity.
+    /// Rates of the displacement and the angles of a vessel [m/s, rad/s].
     pub(super) fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
-        let [vx, vy, vz, wx, wy, wz] = self.velocity;
+        let [vx, vy, vz, w @ ..] = self.velocity;
         let [_, _, _, roll, pitch, yaw] = self.displacement;
-        let turning = match (wx, wy, wz) {
-            (Some(x), Some(y), Some(z)) => {
-                angle_rates(attitude + Vector3::new(roll, pitch, yaw), Vector3::new(x, y, z))
-            }
-            _ => None,
-        };
+        let is_given = w.iter().any(Option::is_some);
+        let spin = Vector3::from(w.map(|component| component.unwrap_or(0.0)));
+        let turning = is_given.then(|| angle_rates(attitude + Vector3::new(roll, pitch, yaw), spin));
+        let turning = turning.flatten();
         let angle = |axis: usize| turning.map(|rates| rates[axis]);
         [vx, vy, vz, angle(0), angle(1), angle(2)]
     }

@@ -10,7 +10,7 @@ use super::{Simulation, Snapshot};
 use crate::dynamics::motion::{AxesPath, Clock, Extrapolation, Fading, HostPath, InputSample, VesselPath};
 use crate::dynamics::{StepError, StepFailure};
 use crate::math::unit::VectorUnit;
-use crate::model::{Line, Model, Point, Role};
+use crate::model::{Model, Point, Role};
 use crate::scene::Reconstruction;
 
 /// Paths of everything that a host moves, sampled at the same times.
@@ -131,8 +131,9 @@ impl Paths {
             match (snapshot.follows_scene, &winch.path) {
                 (true, Some(path)) => winch_state.follow(path, time, step),
                 _ => {
-                    winches::check(line, changes[index])
-                        .map_err(|reason| out_of_bounds(line, time, reason))?;
+                    let wrong =
+                        |reason| StepError::new(time, line, line.segment_count(), StepFailure::Winch(reason));
+                    winches::check(line, changes[index]).map_err(wrong)?;
                     winch_state.extend(winch.speed_max, [sample_time, changes[index]], extrapolation);
                 }
             }
@@ -178,15 +179,6 @@ impl NullaryFnOnce for Extend<'_> {
             let rates = input.rates(vessel.attitude);
             path.extend(before, self.extrapolation, input.displacement, rates);
         }
-    }
-}
-
-fn out_of_bounds(line: &Line, time: f64, reason: String) -> StepError {
-    StepError {
-        time,
-        line: line.name.clone(),
-        node: line.segment_count(),
-        cause: StepFailure::Winch(reason),
     }
 }
 

@@ -16,9 +16,10 @@ use crate::dynamics::Choice;
 use crate::dynamics::motion::HostPath;
 use crate::math::hermite::{QUINTIC_ERROR, Quintic};
 use crate::math::lanes::Lanes;
-use crate::model::{Derivatives, Frame, Kinematics, Model, Motion, Point, Pose, Role};
+use crate::model::{Body, Derivatives, Frame, Kinematics, Model, Motion, Point, Pose, Role};
 use crate::scene::Integrator;
 
+use super::inputs::Inputs;
 use super::paths::{Paths, is_coupled};
 
 /// Error of a bridge [m].
@@ -93,6 +94,27 @@ impl<'a> MotionSource<'a> {
         match self.vessel_motion(vessel) {
             Some(_) => data.frame_of_motion(pose),
             None => data.frame(pose),
+        }
+    }
+
+    /// Gives the displacements of all bodies at time `t` [s] as a host does.
+    pub(super) fn give(&self, t: f64, inputs: &mut Inputs) {
+        for (index, point) in self
+            .model
+            .points
+            .iter()
+            .enumerate()
+            .filter(|(_, point)| is_coupled(point))
+        {
+            let [x, y, z] = (self.point(index, t).position - point.reference).into();
+            inputs.body_mut(Body::Point(index)).displacement = [x, y, z, 0.0, 0.0, 0.0];
+        }
+        for (index, vessel) in self.model.vessels.iter().enumerate() {
+            let pose = self.pose(index, t);
+            inputs.body_mut(Body::Vessel(index)).displacement = match self.vessel_motion(index) {
+                Some(_) => vessel.pose_for_host(&pose, &self.frame(index, t)),
+                None => pose.value.into(),
+            };
         }
     }
 

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::coupling::InterfaceValues;
 use super::prescribed::MotionSource;
-use super::{Simulation, start};
+use super::{Simulation, Snapshot, start};
 use crate::dynamics::advance::Counters;
 use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::energy_balance::{Energy, EnergyBalance};
-use crate::dynamics::reaction;
+use crate::dynamics::reaction::{self, LineEnd};
 use crate::elements;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, ClosedForm, End, Line, LineState, Model, PointState, WaterAlong, joint};
@@ -204,10 +204,16 @@ impl Simulation {
         Some(stiffness)
     }
 
-    /// The mooring in equilibrium with a vessel moved along, or turned about, a global axis from the pose that is set [m, rad].
+    /// The mooring in equilibrium with all bodies where they are now, but for a vessel that is moved along, or turned about, a global axis [m, rad].
     fn at_rest_aside(&self, vessel: usize, axis: usize, way: f64) -> Option<Simulation> {
-        let mut aside = self.clone();
-        let mut pose = self.snapshot.inputs.body(Body::Vessel(vessel)).displacement;
+        let (mut aside, Snapshot { state, paths, .. }) = (self.clone(), &self.snapshot);
+        let inputs = &mut aside.snapshot.inputs;
+        let at = MotionSource::new(&self.model, paths, self.snapshot.follows_scene);
+        at.give(state.time, inputs);
+        for (change, winch) in inputs.length_changes.iter_mut().zip(&paths.winch_paths) {
+            *change = winch.path.at(state.time).value;
+        }
+        let mut pose = inputs.body(Body::Vessel(vessel)).displacement;
         if axis < 3 {
             pose[axis] += way;
         } else {
@@ -218,8 +224,10 @@ impl Simulation {
             (0..3).for_each(|angle| pose[3 + angle] += turn[angle]);
         }
         aside.set_pose(vessel, pose);
-        let time = self.snapshot.state.time;
-        aside.begin(time, false, start::Shapes::Equilibrium).ok()?;
+        aside.begin(state.time, false, start::Shapes::Equilibrium).ok()?;
+        for (line, now) in aside.snapshot.state.lines.iter_mut().zip(&state.lines) {
+            line.released = now.released;
+        }
         Some(aside)
     }
 
@@ -269,25 +277,33 @@ impl Simulation {
         (of_lines + self.own_force(point, |state| state)).into()
     }
 
-    /// Force of the mooring on a point as lumped-mass codes report it [N]: the sum over its lines of [`reaction::nodal_force`], and weight, buoyancy and
-    /// drag of the point, without inertia. It tends to [`Simulation::end_force`] as the mesh is refined.
+    /// Force on a point as lumped-mass codes report it [N]: the sum over its lines of [`Simulation::line_nodal_force`], and weight, buoyancy, drag and
+    /// seabed contact of the point, without inertia. On a point that is held it tends to [`Simulation::end_force`] as the mesh is refined; on a
+    /// free one, which has no support, it is the force that accelerates it.
     pub fn nodal_force(&self, point: usize) -> [f64; 3] {
-        let (model, state) = (&*self.model, &self.snapshot.state);
-        let at = self.point_as_it_acts(point);
-        let of_line = |&(line, end): &(usize, End)| {
-            let (data, shape) = (&model.lines[line], &state.lines[line]);
-            let loads = self.loads_along(line);
-            reaction::nodal_force(data, shape, end, &at, loads, model.solver.negative_tension)
-        };
-        let of_lines: Vector3<f64> = model.points[point].attached.iter().map(of_line).sum();
-        (of_lines + self.own_force(point, |state| state.without_acceleration())).into()
+        let lines = self.model.points[point].attached.iter();
+        let of_lines: Vector3<f64> = lines.map(|&(line, end)| self.line_nodal_force(line, end)).sum();
+        (of_lines + self.point_force(point, |state| state.without_acceleration())).into()
     }
 
-    /// Force of a point itself on its support [N], in the state to which `seen` maps its present one.
+    /// Force of the end node of a line on its point [N]: see [`LineEnd::nodal_force`].
+    pub fn line_nodal_force(&self, line: usize, end: End) -> Vector3<f64> {
+        let at = self.point_as_it_acts(self.model.lines[line].ends[end as usize]);
+        self.at_end(line, end, &at).nodal_force()
+    }
+
+    /// Force of a point itself on its support [N], in the state to which `seen` maps its present one. A free point has none.
     pub(super) fn own_force(&self, point: usize, seen: impl Fn(PointState) -> PointState) -> Vector3<f64> {
+        match self.model.points[point].free() {
+            Some(_) => Vector3::zeros(),
+            None => self.point_force(point, seen),
+        }
+    }
+
+    fn point_force(&self, point: usize, seen: impl Fn(PointState) -> PointState) -> Vector3<f64> {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let data = &model.points[point];
-        if data.own.is_none() && data.load.is_none() {
+        if data.body().is_none() && data.load.is_none() {
             return Vector3::zeros();
         }
         let time = state.time;
@@ -318,31 +334,38 @@ impl Simulation {
     }
 
     fn evaluate_end_force(&self, line: usize, end: End) -> Vector3<f64> {
-        let (model, state) = (&self.model, &self.snapshot.state);
-        let point = match end {
-            End::A => model.lines[line].ends[0],
-            End::B => model.lines[line].ends[1],
-        };
-        let negative = model.solver.negative_tension;
-        let point = self.point_as_it_acts(point);
-        reaction::end_force(
-            &model.lines[line],
-            &state.lines[line],
+        let point = self.point_as_it_acts(self.model.lines[line].ends[end as usize]);
+        self.at_end(line, end, &point).force()
+    }
+
+    /// A line at one of its ends, with its point in a state.
+    pub(super) fn at_end<'a>(&'a self, line: usize, end: End, point: &'a PointState) -> LineEnd<'a> {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let (water, moments) = self.loads_along(line);
+        LineEnd {
+            line: &model.lines[line],
+            state: &state.lines[line],
             end,
-            &point,
-            self.loads_along(line),
-            negative,
-        )
+            point,
+            water,
+            moments,
+            negative_tension: model.solver.negative_tension,
+        }
     }
 
     /// Size of the force at end A [N].
     pub fn tension_a(&self, line: usize) -> f64 {
-        self.line_end_force(line, End::A).norm()
+        self.tension_at(line, End::A)
     }
 
     /// Size of the force at end B [N].
     pub fn tension_b(&self, line: usize) -> f64 {
-        self.line_end_force(line, End::B).norm()
+        self.tension_at(line, End::B)
+    }
+
+    /// Size of the force at an end [N].
+    pub fn tension_at(&self, line: usize, end: End) -> f64 {
+        self.line_end_force(line, end).norm()
     }
 
     /// Greatest tension along a line [N].
@@ -412,7 +435,7 @@ impl Simulation {
             .collect()
     }
 
-    /// Tension of node `i` of a line as MoorDyn-C writes it [N], damping within the line included: at an end that of the end's segment,
+    /// Tension of node `i` of a line as `getNodeTen` of MoorDyn-C returns it [N], damping within the line included: at an end that of the end's segment,
     /// at an inner node half the magnitude of the vector sum of the two adjacent segments. [`Simulation::tension_a`] and
     /// [`Simulation::tension_b`] are the forces on the points at the ends, with the half segment's weight, drag and inertia.
     pub fn segment_tension(&self, line: usize, i: usize) -> f64 {

@@ -88,12 +88,8 @@ impl Scale {
             let mut points = (0..model.points.len()).filter(|&point| model.moves_with(point, body));
             let ends = points.find_map(|point| model.points[point].attached.first().copied());
             let (line, end) = ends.unwrap_or((0, End::A));
-            StepError {
-                time,
-                line: model.lines[line].name.clone(),
-                node: model.lines[line].end_node(end),
-                cause: StepFailure::Input(reason),
-            }
+            let line = &model.lines[line];
+            StepError::new(time, line, line.end_node(end), StepFailure::Input(reason))
         };
         self.check(model, inputs, length).map_err(refused)
     }

@@ -19,6 +19,8 @@ pub struct Watch {
     has_jumped: bool,
     has_noted_inputs: bool,
     tables: LeftTables,
+    /// Notes on keys that have no effect with the chosen integrators.
+    idle: Vec<Note>,
 }
 
 #[derive(Debug, Clone)]
@@ -45,6 +47,7 @@ impl Watch {
             has_jumped: false,
             has_noted_inputs: false,
             tables: LeftTables::new(scene),
+            idle: scene.idle_with(simulation.choices().map(|choice| choice.integrator)),
         }
     }
 
@@ -57,7 +60,7 @@ impl Watch {
 
     /// Notes on the present state that were not given before; nothing is allocated if there are none.
     pub fn look(&mut self, simulation: &Simulation) -> Vec<Note> {
-        let mut notes = Vec::new();
+        let mut notes = std::mem::take(&mut self.idle);
         for (index, watched) in self.lines.iter_mut().enumerate() {
             let now = ends(simulation, index);
             let before = std::mem::replace(&mut watched.ends, now);

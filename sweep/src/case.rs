@@ -121,14 +121,19 @@ impl Case {
         Ok(scene)
     }
 
-    /// Files that the scene names.
+    /// Files that the scene names, and the units beside motion files.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let mut names = Vec::new();
         let document = self.input.document.parse().map(Value::Table);
         file_names(&document.expect("a document that was written"), &mut names);
         let folder = folder_of(&self.input.base);
         let named = names.iter().map(|name| folder.join(name));
-        named.chain(self.input.drive.file.clone()).collect()
+        let files = named.chain(self.input.drive.file.clone());
+        let with_units = |file: PathBuf| {
+            let units = Some(file.with_extension("units.csv")).filter(|units| units.is_file());
+            [Some(file), units]
+        };
+        files.flat_map(with_units).flatten().collect()
     }
 }
 

@@ -9,7 +9,9 @@
 use std::sync::OnceLock;
 
 use moorline::discretisation::{self, finest};
-use moorline::scene::{Integrator, MotionPath, MotionRow, Scene, Threads, Waves};
+use moorline::scene::{
+    Integrator, MotionPath, MotionRow, Scene, Threads, TimeFunction, WaveComponents, Waves,
+};
 
 use crate::case::Input;
 
@@ -162,19 +164,31 @@ pub(crate) fn severity(scene: &Scene) -> Severity {
         add(of_motion(path, lever));
     }
     for sea in waves(scene).iter().flat_map(|waves| &waves.seas) {
-        let period = sea
-            .regular
-            .as_ref()
-            .map(|regular| regular.period)
-            .or(sea.peak_period);
+        let regular = sea.regular.as_ref().map(|regular| regular.period);
         let deviation = sea.variance().sqrt();
-        add(period.map_or([deviation, 0.0, 0.0], |period| of_sine(deviation, period)));
+        match &sea.components {
+            Some(WaveComponents::Rows(rows)) => {
+                let sines = rows
+                    .iter()
+                    .map(|[amplitude, period, ..]| of_sine(*amplitude, *period));
+                let squares = sines.fold([0.0; 3], |sum, sine| {
+                    std::array::from_fn(|i| sum[i] + 0.5 * sine[i] * sine[i])
+                });
+                add(squares.map(f64::sqrt));
+            }
+            _ => add(of_sine(
+                deviation,
+                regular.or(sea.peak_period).unwrap_or(f64::INFINITY),
+            )),
+        }
     }
     let current = scene.water.as_ref().and_then(|water| water.current.as_ref());
     if let Some(current) = current {
         let rows = current.profile.iter().flatten().map(|row| row[1].hypot(row[2]));
         let speeds = rows.chain(current.velocity.map(|[x, y, z]| x.hypot(y).hypot(z)));
-        add([0.0, speeds.fold(0.0, f64::max), 0.0]);
+        let factors = current.factor.as_ref().map_or(vec![1.0], TimeFunction::corners);
+        let factor = factors.into_iter().map(f64::abs).fold(0.0, f64::max);
+        add([0.0, factor * speeds.fold(0.0, f64::max), 0.0]);
     }
     sum
 }
@@ -205,6 +219,7 @@ fn of_motion(path: &MotionPath, lever: f64) -> Severity {
             .sqrt()
     };
     let mut before: Option<MotionRow> = None;
+    sum[0] = rows.first().map_or(0.0, size);
     for pair in rows.windows(2) {
         let step = pair[1][0] - pair[0][0];
         let rate: MotionRow = std::array::from_fn(|i| (pair[1][i] - pair[0][i]) / step);
@@ -308,5 +323,31 @@ mod tests {
         let cases: Vec<_> = severities.into_iter().zip(&inputs).collect();
         let kind = Kind::of(&cases);
         assert_eq!(kind.extremes, inputs[..2]);
+    }
+
+    #[test]
+    fn rows_of_components_and_a_current_with_a_factor_are_as_severe_as_what_they_stand_for() {
+        let of = |water: &str| {
+            severity(&scene(|scene| {
+                let water: moorline::scene::Water = moorline::scene::part(water).unwrap();
+                (scene.water, scene.seabed) = (Some(water), None);
+            }))
+        };
+        let same = |one: Severity, other: Severity| {
+            one.iter()
+                .zip(other)
+                .all(|(a, b)| (a - b).abs() < 1e-12 * b.abs())
+        };
+        let rows = of("density = 1025.0\nwaves.components = [[2.0, 6.0, 0.0, 0.0]]");
+        let regular = of("density = 1025.0\nwaves.regular = { amplitude = 2.0, period = 6.0 }");
+        assert!(
+            same(rows, regular) && rows[2] > of("density = 1025.0")[2],
+            "{rows:?} {regular:?}"
+        );
+        let factor = of(
+            "density = 1025.0\ncurrent = { velocity = [0.5, 0.0, 0.0], factor = { ramp = [0.0, 0.0, 9.0, 3.0] } }",
+        );
+        let faster = of("density = 1025.0\ncurrent = { velocity = [1.5, 0.0, 0.0] }");
+        assert!(same(factor, faster), "{factor:?} {faster:?}");
     }
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use moorline::output::OutputError;
 use moorline::output::record::Column;
-use moorline::output::recorder::{Recorder, check_finite};
+use moorline::output::recorder::Recorder;
 use moorline::output::table::WholeTable;
 use moorline::output::times::Times;
 use moorline::output::trace::RangeSum;
@@ -114,7 +114,6 @@ struct Run {
     times: Times,
     simulation: Simulation,
     recorder: Recorder,
-    columns: Vec<Column>,
     /// Places of the outputs in a row.
     places: Vec<usize>,
     sums: Vec<RangeSum>,
@@ -134,19 +133,14 @@ impl Run {
             Some(_) => Recorder::new(scene, simulation.model()).map_err(failed)?,
             None => outputs.clone(),
         };
-        let mut columns = vec![Column::time()];
-        columns.extend(recorder.columns(simulation.model()));
-        let place = |output: Column| columns.iter().position(|column| column.name == output.name);
-        let places = outputs
-            .columns(simulation.model())
-            .into_iter()
-            .filter_map(place)
-            .collect();
+        let columns = recorder.columns();
+        let place = |output: &Column| columns.iter().position(|column| column.name == output.name);
+        let places = outputs.columns()[1..].iter().filter_map(place).collect();
         let table = series.map(|folder| {
             let format = scene.output.format.unwrap_or(Format::Parquet);
             let ending = if format == Format::Csv { "csv" } else { "parquet" };
             let path = folder.join(format!("case-{:06}.{ending}", case.number));
-            WholeTable::create(&path, format, &columns, scene.output.digits)
+            WholeTable::create(&path, format, columns, scene.output.digits)
         });
         let mut run = Run {
             from: case.from,
@@ -154,7 +148,6 @@ impl Run {
             watch: Watch::new(scene, &simulation),
             simulation,
             recorder,
-            columns,
             places,
             sums: Vec::new(),
             table: table.transpose()?,
@@ -189,10 +182,7 @@ impl Run {
         if !counts && self.table.is_none() {
             return Ok(());
         }
-        let row = self.recorder.row(&self.simulation, time);
-        if index > 0 {
-            check_finite(&self.columns, row).map_err(failed)?;
-        }
+        let row = self.recorder.row(&self.simulation, time).map_err(failed)?;
         if let Some(table) = &mut self.table {
             table.row(row)?;
         }
@@ -213,9 +203,9 @@ impl Run {
         if let Some(table) = self.table.take() {
             table.finish()?;
         }
-        let quantities = self.places.iter().map(|&place| Quantity {
-            name: self.columns[place].name.clone(),
-            unit: self.columns[place].unit.clone(),
+        let quantities = self.places.iter().map(|&place| {
+            let Column { name, unit, .. } = self.recorder.columns()[place].clone();
+            Quantity { name, unit }
         });
         let figures = self.sums.iter().map(|sum| {
             let range = sum.range();

@@ -263,6 +263,9 @@ fn the_folder_of_another_sweep_is_refused() {
     assert!(refusal(&cases(), true).contains("other options"));
     folder.write("cases/a.csv", "time,x,y,z\n0,0,0,0\n1,0.2,0,0\n");
     assert!(refusal(&cases(), false).contains("other content"));
+    folder.write("cases/a.csv", "time,x,y,z\n0,0,0,0\n1,0.1,0,0\n");
+    folder.write("cases/a.units.csv", "name,unit\nx,ft\n");
+    assert!(refusal(&cases(), false).contains("other content"));
     folder.write(
         "cases/cases.toml",
         "lines.line1.length = [14.2, 14.4]\nmotion.fairlead.file = \"a.csv\"\n",

@@ -251,6 +251,24 @@ fn barge() -> Scene {
 }
 
 #[test]
+fn one_component_of_the_angular_velocity_is_enough() {
+    let turned = |rates: [Option<f64>; 3]| {
+        let mut simulation = Simulation::new(&barge()).unwrap();
+        for k in 0..10 {
+            let yaw = 0.02 * (1.0 - (0.3 * f64::from(k)).cos());
+            let [x, y, z] = rates.map(|rate| rate.map(|rate| rate * 0.06 * (0.3 * f64::from(k)).sin()));
+            let body = Body::Vessel(0);
+            simulation.set_body(body, [0.0, 0.0, 0.0, 0.0, 0.0, yaw], [None, None, None, x, y, z]);
+            simulation.advance(0.1).unwrap();
+        }
+        simulation.vessel_force(0)
+    };
+    let alone = turned([None, None, Some(1.0)]);
+    assert_eq!(alone, turned([Some(0.0), Some(0.0), Some(1.0)]));
+    assert_ne!(alone, turned([None; 3]));
+}
+
+#[test]
 fn the_derivatives_of_a_vessel_are_those_of_its_inputs() {
     let step = 0.02;
     let mut simulation = Simulation::new(&barge()).unwrap();

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::common::{agm, assert_order, at_reference, continue_from, draft, gap, greatest, statics};
-use moorline::dynamics::implicit::{self, SPECTRAL_RADIUS, Scheme, Span};
+use moorline::dynamics::implicit::{self, Driving, SPECTRAL_RADIUS, Scheme, Span};
 use moorline::dynamics::quasi_static;
 use moorline::elements::{Counters, Workspace};
 use moorline::model::{Kinematics, Model, State};
@@ -52,7 +52,11 @@ fn run(
     };
     for number in 0..model.networks.len() {
         implicit::start(model, number, &mut state, held, 0.0, &mut work);
-        total += implicit::advance(model, number, &mut state, held, span, &scheme, &mut work).unwrap();
+        let driving = Driving {
+            kinematics: held,
+            scheme: &scheme,
+        };
+        total += implicit::advance(model, number, &mut state, driving, span, &mut work, |_| {}).unwrap();
     }
     (state, total)
 }
@@ -230,7 +234,11 @@ fn fall(model: &Model, scheme: Scheme, steps: usize) -> Fall {
             end,
             step_max: 0.01,
         };
-        implicit::advance(model, 0, &mut state, &held, span, &scheme, &mut work).unwrap();
+        let driving = Driving {
+            kinematics: &held,
+            scheme: &scheme,
+        };
+        implicit::advance(model, 0, &mut state, driving, span, &mut work, |_| {}).unwrap();
         energy(model, &state)
     };
     Fall {
@@ -362,7 +370,11 @@ fn a_step_that_fails_leaves_the_state_as_it_was_and_says_where() {
         end: 1.0,
         step_max: 0.1,
     };
-    let error = implicit::advance(&model, 0, &mut state, &broken, span, &scheme, &mut work).unwrap_err();
+    let driving = Driving {
+        kinematics: &broken,
+        scheme: &scheme,
+    };
+    let error = implicit::advance(&model, 0, &mut state, driving, span, &mut work, |_| {}).unwrap_err();
     assert_eq!(state, before);
     assert!((error.time - 0.55).abs() < 1e-3, "{error}");
     assert!(error.to_string().contains("line \"line\""), "{error}");

@@ -11,8 +11,8 @@ use std::f64::consts::{PI, TAU};
 
 use crate::common::*;
 use approx::assert_relative_eq;
-use moorline::model::End;
-use moorline::scene::{Integrator, LineModel, RegularWave, Scene, Sea, WaveComponents, Waves};
+use moorline::model::{End, Model};
+use moorline::scene::{Integrator, LineModel, Note, RegularWave, Scene, Sea, WaveComponents, Waves};
 use moorline::simulation::Simulation;
 use nalgebra::{Rotation3, Vector3};
 
@@ -506,4 +506,30 @@ fn the_energy_balance_closes_where_lines_pierce_the_surface_of_waves() {
         });
         assert!(errors[1] < 2e-3, "{integrator:?}: {errors:?}");
     }
+}
+
+#[test]
+fn spectra_without_a_seed_are_different_seas() {
+    let sea = "spectrum = 'jonswap', significant_height = 3.0, peak_period = 8.0";
+    let waves = |seas: &str| {
+        let keys = format!(
+            "water = {{ density = 1025.0, waves = {seas} }}\nline_types.rope = {{ mass = 1.0, diameter = 0.02, axial_stiffness = 1e4 }}"
+        );
+        draft(keys)
+            .fixed("a", [0.0; 3])
+            .coupled("b", [9.0, 0.0, 0.0])
+            .line("l", ["a", "b"], "rope", 10.0, 4)
+            .scene()
+    };
+    let height = |scene: &Scene, t: f64| Model::new(scene).unwrap().waves.unwrap().elevation(0.0, 0.0, t);
+    let [one, both] = [
+        format!("{{ {sea} }}"),
+        format!("[{{ {sea} }}, {{ {sea}, direction = 1.57 }}]"),
+    ];
+    let alone = height(&waves(&one), 10.0);
+    assert!((height(&waves(&both), 10.0) / alone - 2.0).abs() > 0.01);
+    let same = waves(&format!("[{{ {sea} }}, {{ {sea}, direction = 1.57, seed = 0 }}]"));
+    let note = |note: &&Note| note.at == "water.waves[1]" && note.text.contains("the seed is that of sea 0");
+    assert_eq!(same.notes().iter().filter(note).count(), 1);
+    assert_eq!(waves(&both).notes().iter().filter(note).count(), 0);
 }

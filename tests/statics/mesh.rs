@@ -65,7 +65,7 @@ fn the_mesh_is_described_with_its_reasons() {
     );
     assert_eq!(
         words(&shipped("bridle"))[0],
-        "leg_port: 3 elements of 8.333 m, for a target error of 2 %, in proportion to the longest line that it is tied to"
+        "leg_port: 3 elements of 8.333 m, by rules for a target error of 2 %, in proportion to the longest line that it is tied to"
     );
     let cable = &words(&open(bent_cable()))[0];
     println!("{cable}");

@@ -4,7 +4,7 @@
 use crate::common::*;
 use moorline::elements::Workspace;
 use moorline::model::{Body, End, Model, State};
-use moorline::scene::{Reconstruction, Scene, Strain};
+use moorline::scene::{InitialShape, Note, PointKind, Reconstruction, Scene, Strain, part};
 use moorline::simulation::Simulation;
 use moorline::statics::catenary::{self, Catenary, FlatSeabed};
 use moorline::statics::{catenary_network, equilibrium};
@@ -506,4 +506,26 @@ fn a_free_point_feels_a_current_that_its_lines_do_not() {
     assert!((knot.x + push).abs() < 1e-6 * push, "{knot}");
     let (error, _) = imbalance_of(&bridle_in_current(), 2, 3.0, 1);
     assert!(error < 0.02, "{error:e}");
+}
+
+#[test]
+fn a_quasi_static_line_is_in_equilibrium_from_the_start_whatever_its_initial_shape() {
+    let mut scene = moored();
+    let force = start(&scene).end_force(1);
+    scene.lines[0].initial = InitialShape::Straight;
+    assert_eq!(start(&scene).end_force(1), force);
+    let note = |note: &Note| note.at == "lines[0]" && note.text == "quasi-static: `initial` changes nothing";
+    assert!(scene.notes().iter().any(note));
+}
+
+#[test]
+fn the_equilibrium_of_a_scene_has_its_prescribed_points_at_their_reference_positions() {
+    let still = moored();
+    let mut moving = still.clone();
+    moving.points[1].kind = PointKind::Prescribed;
+    moving.points[1].motion = Some(part("x = [[-5.0, 9.0, 1.5708]]").unwrap());
+    let [still, moving] = [still, moving].map(|scene| Simulation::at_rest(&scene).unwrap());
+    assert_eq!(moving.end_force(1), still.end_force(1));
+    let catenary = moving.catenary(0).unwrap().tension_b();
+    assert!((moving.tension_b(0) / catenary - 1.0).abs() < 0.01);
 }

@@ -3,7 +3,7 @@
 use crate::common::{Draft, draft, greatest, start};
 use approx::assert_relative_eq;
 use moorline::math::attitude::angle_rates;
-use moorline::scene::Scene;
+use moorline::scene::{MotionPath, Scene, part};
 use moorline::simulation::Simulation;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
@@ -361,4 +361,31 @@ fn elements_converge_to_the_stiffness_of_the_closed_form() {
         errors[0] < 0.08 && errors[1] < 0.015 && errors[2] < 0.001,
         "{errors:?}"
     );
+}
+
+#[test]
+fn the_stiffness_in_a_current_is_that_of_the_present_pose_whoever_moves_the_vessel() {
+    let mut scene = OC3.scene(12, "integrator = 'quasi_static'");
+    scene.water.as_mut().unwrap().current = Some(part("velocity = [1.0, 0.2, 0.0]").unwrap());
+    let pose = [8.0, 2.0, -1.0, 0.02, -0.05, 0.1];
+    let rows = [[0.0; 6], pose].into_iter().zip([0.0, 4.0]);
+    let rows = rows.map(|(pose, time)| std::array::from_fn(|i| if i == 0 { time } else { pose[i - 1] }));
+    scene
+        .motion
+        .insert("platform".to_string(), MotionPath::Table(rows.collect()));
+    let wanted = matrix(posed(&scene, pose).vessel_stiffness(0).unwrap());
+    let at_reference = matrix(posed(&scene, [0.0; 6]).vessel_stiffness(0).unwrap());
+    assert!(difference(&at_reference, &wanted) > 0.1);
+    let mut following = start(&scene);
+    following.follow_scene().unwrap();
+    let mut hosted = start(&scene);
+    hosted.set_pose(0, pose);
+    for _ in 0..5 {
+        following.advance(1.0).unwrap();
+        hosted.advance(1.0).unwrap();
+    }
+    for simulation in [following, hosted] {
+        let found = matrix(simulation.vessel_stiffness(0).unwrap());
+        assert!(difference(&found, &wanted) < 1e-6, "{found} {wanted}");
+    }
 }

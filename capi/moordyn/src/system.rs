@@ -365,9 +365,9 @@ unsafe fn step(
     };
     // SAFETY: two numbers, by the caller's promise.
     let [at, step] = unsafe { [*edge::one(t)?, *edge::one(dt)?] };
-    let stepped = system.step(x, xd, at, step)?;
+    let end = system.step(x, xd, at, step)?;
     // SAFETY: by the caller's promise; positions and velocities are not used any more.
     system.forces(unsafe { edge::slice_mut(f, count) }?)?;
     // SAFETY: a number, by the caller's promise.
-    unsafe { edge::put(t, stepped.time) }
+    unsafe { edge::put(t, end) }
 }

@@ -336,11 +336,11 @@ impl Host {
         words.resize(words.len().max(3), 0);
         let at = self.below(words.len());
         match self.below(4) {
-            0 if at != 1 => words[at] ^= 1 << self.below(64), // the second word is their number
+            0 if at != 0 => words[at] ^= 1 << self.below(64), // the first word is their number
             1 => return unsafe { MoorDyn_Deserialize(handle, null()) }, // SAFETY: null is refused
             _ => {}
         }
-        // SAFETY: as many words as the second says.
+        // SAFETY: as many words as the first says.
         unsafe { MoorDyn_Deserialize(handle, words.as_ptr()) }
     }
 

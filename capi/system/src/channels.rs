@@ -61,7 +61,7 @@ struct Table {
 }
 
 impl Table {
-    fn create(path: PathBuf, names: &[String], units: &[String]) -> Outcome<Table> {
+    fn create(deck: &Deck, path: PathBuf, names: &[String], units: &[String]) -> Outcome<Table> {
         let file = File::create(&path).map_err(|error| refusal(&path, &error))?;
         let mut table = Table {
             out: BufWriter::new(file),
@@ -70,7 +70,13 @@ impl Table {
             path,
         };
         table.head("Time", names)?;
-        table.head("(s)", units)?;
+        if deck
+            .lists
+            .option(&["WRITEUNITS"])
+            .is_none_or(|value| value.trim() != "0")
+        {
+            table.head("(s)", units)?;
+        }
         Ok(table)
     }
 
@@ -126,7 +132,6 @@ fn push_scientific(value: f64, line: &mut String) {
 #[derive(Debug)]
 pub struct Files {
     interval: f64,
-    last: Option<f64>,
     main: Option<(Channels, Table)>,
     lines: Vec<(usize, Vec<Group>, Table)>,
 }
@@ -144,7 +149,6 @@ impl Files {
         let interval = deck.lists.option(&["DTOUT"]).and_then(|text| text.parse().ok());
         let mut files = Files {
             interval: interval.unwrap_or(0.0),
-            last: None,
             main: None,
             lines: Vec::new(),
         };
@@ -158,28 +162,21 @@ impl Files {
             let path = with_ending(deck, &format!("_Line{}.out", row.number));
             files
                 .lines
-                .push((index, groups, Table::create(path, &names, &units)?));
+                .push((index, groups, Table::create(deck, path, &names, &units)?));
         }
         let is_empty = files.main.is_none() && files.lines.is_empty();
         Ok((!is_empty).then_some(files))
     }
 
-    /// Writes a row where the interval since the last one is over.
+    /// Writes the row of a time [s] where an interval ended within the last step [s]. A step that the host repeats is written again, as by MoorDyn.
     ///
     /// # Errors
     /// The operating system refuses.
-    pub fn row(&mut self, time: f64, simulation: &Simulation) -> Outcome {
-        let due = self.last.unwrap_or(0.0) + (1.0 - EARLY) * self.interval;
-        let went_back = self.last.is_some_and(|last| time < last);
-        if time < due && !went_back {
+    pub fn row(&mut self, [time, step]: [f64; 2], simulation: &Simulation) -> Outcome {
+        let ended = |time: f64| (time / self.interval + EARLY).floor();
+        if self.interval > 0.0 && ended(time) == ended(time - step) {
             return Ok(());
         }
-        let steps = (time / self.interval + EARLY).floor();
-        self.last = Some(if steps.is_finite() {
-            steps * self.interval
-        } else {
-            time
-        });
         if let Some((channels, table)) = &mut self.main {
             table.row(time, channels.values(simulation))?;
         }
@@ -206,7 +203,7 @@ fn main_table(deck: &Deck, simulation: &Simulation) -> Outcome<Option<(Channels,
     let columns = || channels.columns();
     let names: Vec<String> = columns().map(|column| column.name).collect();
     let units: Vec<String> = columns().map(|column| column.unit).collect();
-    let table = Table::create(with_ending(deck, ".out"), &names, &units)?;
+    let table = Table::create(deck, with_ending(deck, ".out"), &names, &units)?;
     Ok(Some((channels, table)))
 }
 

@@ -98,12 +98,6 @@ impl Deck {
         let is_moved = self.lists.bodies.get(row).filter(moved).is_some();
         is_moved.then(|| &self.coupled[before.filter(moved).count()])
     }
-
-    /// The coupled object of a point of the scene.
-    pub fn coupled_point(&self, point: usize) -> Option<&Coupled> {
-        let mut coupled = self.coupled.iter();
-        coupled.find(|coupled| coupled.body == Some(Body::Point(point)))
-    }
 }
 
 /// Refuses a deck whose objects a host would count differently from the scene.

@@ -7,8 +7,8 @@ use moorline::physics::morison;
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
-use crate::failure::{Code, Failure, Outcome};
-use crate::objects::{node_mass, rows, tangent};
+use crate::failure::{Failure, Outcome};
+use crate::objects::{node_mass, row, rows, tangent};
 use crate::system::System;
 
 /// Quantity of a node, a vector in global axes.
@@ -219,11 +219,7 @@ impl System {
     /// # Errors
     /// No such line.
     pub fn line(&self, line: usize) -> Outcome<&moorline_decks::LineRow> {
-        let lines = &self.deck.lists.lines;
-        lines.get(line).ok_or_else(|| {
-            let message = format!("there is no line {}: the deck has {}", line + 1, lines.len());
-            Failure::new(Code::InvalidInput, message)
-        })
+        row(&self.deck.lists.lines, line, "line")
     }
 
     /// Quantity of a node of a line [m, m/s, N].

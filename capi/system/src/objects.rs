@@ -34,7 +34,7 @@ pub struct BodyState {
 pub type BodyMass = [[f64; 6]; 6];
 
 /// The row of an object, or a refusal.
-fn row<'a, T>(rows: &'a [T], index: usize, what: &str) -> Outcome<&'a T> {
+pub(crate) fn row<'a, T>(rows: &'a [T], index: usize, what: &str) -> Outcome<&'a T> {
     rows.get(index).ok_or_else(|| {
         let message = format!("there is no {what} {}: the deck has {}", index + 1, rows.len());
         Failure::new(Code::InvalidInput, message)

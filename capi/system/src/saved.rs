@@ -20,8 +20,8 @@ const MARK: [u8; WORD] = *b"moorlin3";
 pub const HEAD: usize = 2;
 const WORD: usize = size_of::<u64>();
 
-/// A state as it is read.
-#[derive(Debug, Deserialize)]
+/// A state as it is written.
+#[derive(Debug, Serialize, Deserialize)]
 struct Body {
     version: String,
     scene: [u8; 32],
@@ -29,17 +29,6 @@ struct Body {
     motion: [Vec<f64>; 3],
     ahead: f64,
     snapshot: Snapshot,
-}
-
-/// A state as it is written: as [`Body`], without copies.
-#[derive(Debug, Serialize)]
-struct BodyView<'a> {
-    version: &'a str,
-    scene: [u8; 32],
-    start: &'a Start,
-    motion: &'a [Vec<f64>; 3],
-    ahead: f64,
-    snapshot: &'a Snapshot,
 }
 
 fn damaged() -> Failure {
@@ -82,13 +71,13 @@ impl System {
     }
 
     fn sealed(&self) -> Outcome<Vec<u8>> {
-        let body = BodyView {
-            version: env!("CARGO_PKG_VERSION"),
+        let body = Body {
+            version: env!("CARGO_PKG_VERSION").to_string(),
             scene: self.scene_sum,
-            start: &self.start,
-            motion: &self.motion,
+            start: self.start.clone(),
+            motion: self.motion.clone(),
             ahead: self.ahead,
-            snapshot: self.simulation()?.snapshot(),
+            snapshot: self.simulation()?.snapshot().clone(),
         };
         Ok(sealed::seal(&MARK, &body))
     }

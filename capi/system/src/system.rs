@@ -74,13 +74,6 @@ pub struct System {
     has_warned_of_time: bool,
 }
 
-/// Result of a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stepped {
-    /// Time at the end of the step [s].
-    pub time: f64,
-}
-
 impl System {
     /// Reads a deck, with choices from the environment and messages to `log`.
     ///
@@ -130,7 +123,7 @@ impl System {
         self.motion = [x.to_vec(), xd.to_vec(), vec![0.0; x.len()]];
         self.files = None;
         self.open_files()?;
-        self.write_channels(0.0)?;
+        self.write_channels([0.0, f64::INFINITY])?;
         for choice in self.simulation.iter().flat_map(Simulation::choices) {
             let text = format!("integrator {:?}, {}", choice.integrator, choice.in_words());
             self.log.write(MESSAGE, &text);
@@ -233,7 +226,7 @@ impl System {
     ///
     /// # Errors
     /// Arguments that cannot be used, or a step that fails; the state is then that before the call.
-    pub fn step(&mut self, x: &[f64], xd: &[f64], t: f64, dt: f64) -> Outcome<Stepped> {
+    pub fn step(&mut self, x: &[f64], xd: &[f64], t: f64, dt: f64) -> Outcome<f64> {
         self.check_motion(x, xd)?;
         if !t.is_finite() || !dt.is_finite() || dt < 0.0 {
             return Err(Failure::value(format!(
@@ -242,7 +235,7 @@ impl System {
         }
         self.simulation()?;
         if dt == 0.0 {
-            return Ok(Stepped { time: t });
+            return Ok(t);
         }
         self.follow_clock(t)?;
         self.set_motion(x, xd, dt);
@@ -260,8 +253,8 @@ impl System {
         rate.extend_from_slice(xd);
         self.log_watch();
         let time = t + dt;
-        self.write_channels(time)?;
-        Ok(Stepped { time })
+        self.write_channels([time, dt])?;
+        Ok(time)
     }
 
     /// Logs notes on the present state, each once, with environment variables in place of scene keys.
@@ -288,7 +281,12 @@ impl System {
                 time: t,
                 ..self.start.clone()
             };
-            return self.begin(start);
+            let inputs = self.simulation()?.inputs().clone();
+            self.begin(start)?;
+            if let Some(simulation) = &mut self.simulation {
+                simulation.set_inputs(&inputs); // lines that were broken off before
+            }
+            return Ok(());
         }
         if moves {
             return Err(Failure::value(format!(
@@ -398,9 +396,9 @@ impl System {
         Ok(())
     }
 
-    fn write_channels(&mut self, time: f64) -> Outcome {
+    fn write_channels(&mut self, [time, step]: [f64; 2]) -> Outcome {
         match (&mut self.files, &self.simulation) {
-            (Some(files), Some(simulation)) => files.row(time, simulation),
+            (Some(files), Some(simulation)) => files.row([time, step], simulation),
             _ => Ok(()),
         }
     }

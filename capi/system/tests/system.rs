@@ -395,8 +395,8 @@ fn arguments_that_cannot_be_used_leave_the_state() {
 #[test]
 fn the_host_may_begin_at_any_time() {
     let mut case = started();
-    let stepped = case.system.step(&PLACE, &[0.0; 9], 100.0, 0.1).unwrap();
-    assert_relative_eq!(stepped.time, 100.1, max_relative = 1e-12);
+    let end = case.system.step(&PLACE, &[0.0; 9], 100.0, 0.1).unwrap();
+    assert_relative_eq!(end, 100.1, max_relative = 1e-12);
     assert_relative_eq!(case.system.time().unwrap(), 100.1, max_relative = 1e-12);
 }
 
@@ -444,4 +444,61 @@ fn samples_too_few_for_a_path_that_jumps_are_noted_with_the_variable_that_sets_t
     ] {
         assert_eq!(log.matches(words).count(), 1, "{log}");
     }
+}
+
+#[test]
+fn a_line_that_breaks_off_before_the_first_step_stays_off_where_the_host_begins_later() {
+    let (folder, path) = deck(&DECK.replace("60 WtrDpth", "60 WtrDpth\n7 WaveKin"));
+    std::fs::write(
+        folder.path().join("wave_frequencies.txt"),
+        "0.0 0.0 0.0\n0.6 0.0 0.5\n",
+    )
+    .unwrap();
+    let mut system = System::create(&path, Settings::default(), Log::from_level(NONE)).unwrap();
+    system.start(&PLACE, &[0.0; 9], false).unwrap();
+    system.break_line(1, 2).unwrap();
+    system.step(&PLACE, &[0.0; 9], 5.0, 0.1).unwrap();
+    assert_eq!(forces(&system)[6], 0.0);
+}
+
+#[test]
+fn a_step_that_the_host_repeats_is_written_again_as_by_moordyn() {
+    let channels = "--- OUTPUTS ---\nFairTen3\n--- OPTIONS ---\n0.1 dtOut\n0 WriteUnits";
+    let (folder, path) = deck(&DECK.replace("--- OPTIONS ---", channels));
+    let mut system = System::create(&path, Settings::default(), Log::from_level(NONE)).unwrap();
+    system.start(&PLACE, &[0.0; 9], false).unwrap();
+    let (mut place, mut last) = (PLACE, Vec::new());
+    for k in 0..3 {
+        let state = system.serialize().unwrap();
+        let mut rate = [0.0; 9];
+        rate[6] = -2.0;
+        system.step(&place, &rate, 0.1 * f64::from(k), 0.1).unwrap();
+        system.deserialize(&state).unwrap();
+        rate[6] = -0.5;
+        system.step(&place, &rate, 0.1 * f64::from(k), 0.1).unwrap();
+        place[6] -= 0.05;
+        let [x, _, z] = [6, 7, 8].map(|axis| forces(&system)[axis]);
+        last.push(x.hypot(z));
+    }
+    drop(system);
+    let table = std::fs::read_to_string(folder.path().join("deck.out")).unwrap();
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|row| row.split_whitespace().map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    assert_eq!(times, [0.0, 0.1, 0.1, 0.2, 0.2, 0.3, 0.3]);
+    for (k, tension) in last.into_iter().enumerate() {
+        assert_relative_eq!(rows[2 * k + 2][1], tension, max_relative = 1e-6);
+        assert!((rows[2 * k + 1][1] / tension - 1.0).abs() > 1e-3);
+    }
+}
+
+#[test]
+fn the_force_on_a_free_point_at_rest_is_zero_with_its_own_weight_and_the_seabed() {
+    let case = started();
+    let force = case.system.point_force(4).unwrap();
+    let weight = (500.0 - 0.1 * 1025.0) * 9.81;
+    assert!(force.iter().all(|part| part.abs() < 1e-4 * weight), "{force:?}");
 }

@@ -217,6 +217,19 @@ fn check_writes_the_elements_of_sections_too() {
 }
 
 #[test]
+fn check_writes_one_name_of_the_integrator_and_the_line_ends_of_the_file() {
+    let scene = ROPE_AND_CHAINS.replace("solver.tolerance", "solver.dynamics = \"auto\"\nsolver.tolerance");
+    let folder = folder_with(&[("scene.toml", &scene.replace('\n', "\r\n"))]);
+    folder.shows("check scene.toml --write", &["solver.integrator = "]);
+    let held = folder.read("scene.toml");
+    assert!(
+        !held.contains("dynamics") && !held.replace("\r\n", "").contains('\n'),
+        "{held}"
+    );
+    folder.shows("check scene.toml --write", &["scene.toml is unchanged"]);
+}
+
+#[test]
 fn check_writes_no_deck() {
     let folder = folder_with(&[("lines.txt", VERSION_1)]);
     folder.refused("check lines.txt --write", &["--write", "moorline convert"]);

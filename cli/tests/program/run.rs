@@ -112,12 +112,54 @@ fn a_run_whose_inputs_mean_the_end_of_a_step_is_told_the_motion_there() {
 }
 
 #[test]
-fn a_communication_step_sets_the_rows() {
+fn a_communication_step_sets_the_rows_and_is_checked_as_their_interval() {
     let folder = folder();
-    folder.done("run scene.toml -o out --communication-step 0.3");
+    let said = folder.remarks("run scene.toml -o out --communication-step 0.3");
     let (_, rows) = table(&folder.path("out/results.csv"));
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(times, [0.0, 0.3, 0.6, 3.0 * 0.3, 1.0]);
+    let note =
+        "note: --communication-step: output.interval: the duration of 1 s is not a whole number of intervals";
+    assert_says(&said, &[note]);
+    for (step, problem) in [
+        ("2", "longer than the duration of 1 s"),
+        ("1e-9", "more than 1e7 steps"),
+    ] {
+        let command = format!("run scene.toml -o out --communication-step {step}");
+        folder.refused(&command, &["--communication-step: ", problem]);
+    }
+}
+
+#[test]
+fn the_winch_of_a_scene_pays_out_in_communication_steps_too() {
+    let winch = "name = \"line1\"\nwinch = { end = \"b\", length_max = 1.0, path = { ramp = [0.0, 0.0, 1.0, 0.2] } }";
+    let scene = SCENE.replace("name = \"line1\"", winch);
+    let (header, [exact, host]) = exact_and_host(&scene, 0.1);
+    let [length, sag] = ["line1.length_change", "line1.sag"].map(|name| column(&header, name));
+    let first = exact[0][sag];
+    let [exact, host] = [&exact, &host].map(|rows| rows.last().unwrap());
+    assert_eq!([exact[length], host[length]], [0.2; 2]);
+    // the last step of the host knows the length at its start
+    let share = (host[sag] - first) / (exact[sag] - first);
+    assert!((share - 1.0).abs() < 0.2, "{share}");
+}
+
+#[test]
+fn notes_on_a_duration_are_those_of_the_duration_of_the_command_line() {
+    let folder = folder();
+    let said = folder.remarks("run scene.toml -o out --duration 0.25");
+    assert_says(
+        &said,
+        &["the duration of 0.25 s is not a whole number of intervals"],
+    );
+    folder.write("odd.toml", SCENE.replace("duration = 1.0", "duration = 1.03"));
+    assert!(folder.remarks("check odd.toml").is_empty());
+    folder.shows(
+        "check odd.toml",
+        &["the duration of 1.03 s is not a whole number"],
+    );
+    let said = folder.remarks("run odd.toml -o out --duration 0.5");
+    assert!(!said.contains("whole number"), "{said}");
 }
 
 #[test]

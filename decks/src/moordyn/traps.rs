@@ -115,7 +115,7 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     let numbers = &deck.options.numbers;
     if let Some(damping) = numbers.get(&Meaning::FrictionDamping) {
         let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a \
-                    line at rest viscoelastic";
+                    line at rest creep";
         findings.remark(damping, text);
     }
     if let Some(scale) = numbers.get(&Meaning::StaticFriction)

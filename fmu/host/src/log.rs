@@ -84,13 +84,8 @@ unsafe extern "C" fn logger(
 ) {
     // SAFETY: as in `log_message`. The argument is read only where the format is "%s", which promises a text there.
     unsafe {
-        let log = &*environment.cast::<Log>();
-        let format = text(format);
-        log.push(LogMessage {
-            status: Status::from_c(status),
-            category: text(category),
-            text: if format == "%s" { text(argument) } else { format },
-        });
+        let message = if text(format) == "%s" { argument } else { format };
+        log_message(environment, status, category, message);
     }
 }
 
@@ -105,12 +100,7 @@ unsafe extern "C" fn logger(
 ) {
     // SAFETY: as in `log_message`.
     unsafe {
-        let log = &*environment.cast::<Log>();
-        log.push(LogMessage {
-            status: Status::from_c(status),
-            category: text(category),
-            text: text(format),
-        });
+        log_message(environment, status, category, format);
     }
 }
 

@@ -72,33 +72,30 @@ impl Instance {
         Ok(())
     }
 
-    /// Reads integers.
-    pub(crate) fn get_integers(&mut self, references: &[u32], values: &mut [i32]) -> Outcome {
+    /// Reads integers or truth values, each made of the number that stands for it.
+    pub(crate) fn get_as<T>(
+        &mut self,
+        kind: Kind,
+        references: &[u32],
+        values: &mut [T],
+        made: impl Fn(f64) -> T,
+    ) -> Outcome {
         let mut numbers = vec![0.0; values.len()];
-        self.get(Kind::Int32, references, &mut numbers)?;
+        self.get(kind, references, &mut numbers)?;
         for (value, number) in values.iter_mut().zip(numbers) {
-            *value = number as i32;
+            *value = made(number);
         }
         Ok(())
     }
 
-    /// Sets integers.
-    pub(crate) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Outcome {
-        let numbers: Vec<f64> = values.iter().map(|&value| f64::from(value)).collect();
-        self.set(Kind::Int32, references, &numbers)
-    }
-
-    /// Reads truth values.
-    pub(crate) fn get_booleans(&mut self, references: &[u32], count: usize) -> Result<Vec<bool>, Refusal> {
-        let mut numbers = vec![0.0; count];
-        self.get(Kind::Boolean, references, &mut numbers)?;
-        Ok(numbers.into_iter().map(|number| number != 0.0).collect())
-    }
-
-    /// Sets truth values.
-    pub(crate) fn set_booleans(&mut self, references: &[u32], values: impl Iterator<Item = bool>) -> Outcome {
-        let numbers: Vec<f64> = values.map(|value| f64::from(u8::from(value))).collect();
-        self.set(Kind::Boolean, references, &numbers)
+    /// Sets integers or truth values by the numbers that stand for them.
+    pub(crate) fn set_from(
+        &mut self,
+        kind: Kind,
+        references: &[u32],
+        numbers: impl Iterator<Item = f64>,
+    ) -> Outcome {
+        self.set(kind, references, &numbers.collect::<Vec<f64>>())
     }
 
     fn asks_for_results(&self, references: &[u32]) -> bool {

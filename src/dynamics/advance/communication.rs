@@ -34,16 +34,12 @@ pub(super) fn within_guard(
         return Ok(());
     }
     let step = passed / count as f64;
-    Err(StepError {
-        time,
-        line: model.lines[0].name.clone(),
-        node: 0,
-        cause: StepFailure::TooManySteps {
-            length,
-            step,
-            count: length / step,
-        },
-    })
+    let cause = StepFailure::TooManySteps {
+        length,
+        step,
+        count: length / step,
+    };
+    Err(StepError::new(time, &model.lines[0], 0, cause))
 }
 
 /// An integrator and its scratch.
@@ -260,7 +256,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
             kinematics: self.held,
             scheme,
         };
-        let done = implicit::advance_observed(model, number, next, held, span, work, count)?;
+        let done = implicit::advance(model, number, next, held, span, work, count)?;
         let counters = Counters {
             substeps: done.steps,
             solves: done.solves,
@@ -296,12 +292,12 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
                 Err(failure) => stuck = failure,
             }
         }
-        Err(StepError {
-            time: self.start,
-            line: model.lines[index].name.clone(),
-            node: stuck.node,
-            cause: stuck.reason.into(),
-        })
+        Err(StepError::new(
+            self.start,
+            &model.lines[index],
+            stuck.node,
+            stuck.reason,
+        ))
     }
 
     #[inline(never)]
@@ -358,25 +354,16 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
 
     #[cold]
     fn too_many(&self, line: usize, step_max: f64, count: f64) -> StepError {
-        StepError {
-            time: self.start,
-            line: self.model.lines[line].name.clone(),
-            node: 0,
-            cause: StepFailure::TooManySteps {
-                length: self.length,
-                step: step_max,
-                count,
-            },
-        }
+        let cause = StepFailure::TooManySteps {
+            length: self.length,
+            step: step_max,
+            count,
+        };
+        StepError::new(self.start, &self.model.lines[line], 0, cause)
     }
 
     #[cold]
     fn diverged(&self, line: usize, node: usize) -> StepError {
-        StepError {
-            time: self.start,
-            line: self.model.lines[line].name.clone(),
-            node,
-            cause: StepFailure::Unbounded,
-        }
+        StepError::new(self.start, &self.model.lines[line], node, StepFailure::Unbounded)
     }
 }

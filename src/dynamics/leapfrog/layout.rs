@@ -406,7 +406,7 @@ impl Layout {
             strain(half.dot(half).sqrt()),
             strain(chord.dot(chord) * inverse_l),
         ];
-        let viscoelastic = self.viscoelastic.as_mut().expect("this line creeps");
+        let viscoelastic = self.viscoelastic.as_mut().expect("this line is viscoelastic");
         let relaxed = viscoelastic.advance(at, strains, step);
         Relaxed {
             taken: relaxed.taken * inverse.recip(),

@@ -298,7 +298,7 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
     let mut reasons = Vec::new();
     match line.elements.or(scene.solver.elements) {
         None => reasons.push(format!(
-            "for a target error of {}",
+            "by rules for a target error of {}",
             percent(scene.solver.tolerance)
         )),
         Some(_) if is_in_proportion => {}

@@ -9,13 +9,15 @@ use crate::scene::{Scene, Sea, WaveComponents};
 /// The waves of a scene, where it has some.
 pub(super) fn waves(scene: &Scene) -> Option<Waves> {
     let waves = scene.water.as_ref()?.waves.as_ref()?;
-    let components: Vec<Component> = waves.seas.iter().flat_map(components).collect();
+    let seas = waves.seas.iter().zip(0..);
+    let components: Vec<Component> = seas.flat_map(|(sea, place)| components(sea, place)).collect();
     let depth = scene.seabed.as_ref().map(|seabed| seabed.depth);
     let depth = depth.filter(|depth| *depth > 0.0);
     Some(Waves::new(&components, depth, waves.ramp(), scene.gravity))
 }
 
-fn components(sea: &Sea) -> Vec<Component> {
+/// Components of the sea at a place in the list.
+fn components(sea: &Sea, place: u64) -> Vec<Component> {
     if let Some(regular) = &sea.regular {
         return vec![Component {
             amplitude: regular.half_height().unwrap_or_default(),
@@ -40,5 +42,5 @@ fn components(sea: &Sea) -> Vec<Component> {
         direction: sea.direction.unwrap_or_default(),
         spreading: sea.spreading,
     };
-    spectrum.draw(sea.number() as usize, sea.seed.unwrap_or_default())
+    spectrum.draw(sea.number() as usize, sea.phases(place).unwrap_or_default())
 }

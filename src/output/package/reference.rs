@@ -4,12 +4,9 @@
 //! `…Experiments.xsd`: a manifest that gives each file a role, and an experiment with stimuli and references as tables. A host sets the
 //! inputs of the row at t before the step from t.
 
-use std::collections::BTreeMap;
-
 use csv::Writer;
 
 use crate::interface::{Binding, Causality, Interface, Variable};
-use crate::model::Body;
 use crate::output::recorder::{input_of, recorded};
 use crate::output::times::Times;
 use crate::output::xml::{document, empty, number, within};
@@ -141,18 +138,8 @@ impl Run<'_> {
     /// Sets the inputs of a time [s], displacements alone.
     fn set_inputs(&mut self, time: f64) {
         let row = self.input_row(time);
-        let mut poses = BTreeMap::<Body, [f64; 6]>::new();
         for (variable, value) in self.inputs.variables.iter().zip(&row[1..]) {
-            match variable.binding {
-                Binding::Displacement { body, axis } => {
-                    poses.entry(body).or_default()[axis] = *value;
-                }
-                Binding::LengthChange { line } => self.simulation.set_length_change(line, *value),
-                _ => {}
-            }
-        }
-        for (body, pose) in poses {
-            self.simulation.set_body(body, pose, [None; 6]);
+            variable.set_input(self.simulation.inputs_mut(), std::slice::from_ref(value));
         }
     }
 

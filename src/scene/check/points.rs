@@ -2,6 +2,7 @@
 
 use super::{Findings, below, check_names, quantity, rules, unknown};
 use crate::scene::names::Names;
+use crate::scene::notes::reference_position;
 use crate::scene::path::quoted;
 use crate::scene::table::{Choice, Table};
 use crate::scene::{LineType, Point, PointKind, Scene, Section};
@@ -22,10 +23,9 @@ pub(super) fn check(scene: &Scene, names: &Names, findings: &mut Findings) {
 
 fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
     let Some(seabed) = &scene.seabed else { return };
-    if point.on.is_some() {
-        return; // in the vessel's frame
-    }
-    let z = point.position[2];
+    let Some([_, _, z]) = reference_position(scene, point) else {
+        return;
+    };
     // Positions typed with few digits may miss the seabed by a rounding.
     let rounding = 1e-9 * seabed.depth.abs().max(1.0);
     rules! { findings, at;

@@ -71,7 +71,11 @@ impl AxialLine {
     #[inline(always)]
     fn viscoelastic_springs(&mut self, at: usize) -> Springs {
         let strain = self.layout.strain(at);
-        let viscoelastic = self.layout.viscoelastic.as_mut().expect("this line creeps");
+        let viscoelastic = self
+            .layout
+            .viscoelastic
+            .as_mut()
+            .expect("this line is viscoelastic");
         viscoelastic.strain.store(strain, at);
         let now = viscoelastic.elastic(at, strain);
         let inverse = self.layout.inverse_length.load(at);
