@@ -1,4 +1,5 @@
-//! Cost of each piece of physics: one scene, with one feature after another taken out of it; and the cost of laws that take more than a plain line does.
+//! Cost of each physical feature: one scene, with one feature after another removed; and the cost of laws that are more expensive than those of a
+//! plain line.
 
 mod common;
 
@@ -11,10 +12,10 @@ fn main() {
     }
 }
 
-/// Changes of a scene by name.
+/// Named changes of a scene.
 type Changes = Vec<(&'static str, Box<dyn Fn(&mut Scene)>)>;
 
-/// One law after another that takes more than a plain line does.
+/// Measures laws that are more expensive than those of a plain line, one after another.
 fn other_laws(integrator: Integrator) {
     let plain = || {
         let mut scene = common::scene("oc3_catenary");
@@ -66,7 +67,7 @@ fn other_seabeds() -> Changes {
     ]
 }
 
-/// Ropes that are not springs in proportion to strain, and one that may come out of the water.
+/// Ropes whose tension is not proportional to strain, and one that may come out of the water.
 fn other_ropes() -> Changes {
     let rope = |change: fn(&mut LineType)| -> Box<dyn Fn(&mut Scene)> {
         Box::new(move |scene| scene.line_types.values_mut().for_each(change))
@@ -103,7 +104,7 @@ fn other_ropes() -> Changes {
     ]
 }
 
-/// One piece of physics after another taken out.
+/// Measures the scene with one feature after another removed.
 fn taken_out() {
     let full = || {
         let mut scene = common::scene("oc3_catenary");
@@ -129,7 +130,7 @@ fn taken_out() {
         });
     });
     let dry = |scene: &mut Scene| {
-        let weight = 698.0; // as in water: the shape stays
+        let weight = 698.0; // as in water, so that the shape does not change
         scene.water = None;
         chain(scene, &|line| line.weight = Some(weight));
     };

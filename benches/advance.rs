@@ -1,4 +1,4 @@
-//! Cost of a communication step compared with the kernel: ns per advance against elements, internal steps and who moves the fairlead, and ns per
+//! Cost of a communication step compared with the kernel: ns per advance by elements, internal steps and source of the fairlead motion, and ns per
 //! read of all outputs.
 
 mod common;
@@ -10,7 +10,7 @@ use moorline::model::Body;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 
-/// Repetitions of which the fastest counts.
+/// Number of repetitions; the fastest counts.
 const REPETITIONS: usize = 30;
 /// Time before the timed steps, for the ramp to pass [s].
 const WARM_UP: f64 = 30.0;
@@ -20,18 +20,18 @@ const STEPS: usize = 400;
 /// Source of the motion of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Drive {
-    /// The scene's own motion.
+    /// Motion of the scene.
     Scene,
-    /// A host that gives displacements.
+    /// Displacements set by a host.
     Displacements,
-    /// A host that gives displacements and velocities.
+    /// Displacements and velocities set by a host.
     Velocities,
 }
 
 /// Input of a host for a body at a time: displacements [m, rad] and velocities [m/s, rad/s].
 type Said = ([f64; 6], [Option<f64>; 6]);
 
-/// A smooth motion at time `t` [s].
+/// Smooth motion at time `t` [s].
 fn said(drive: Drive, t: f64) -> Said {
     let frequencies = [0.63, 0.5, 0.79, 0.6, 0.55, 0.1];
     let amplitudes = [6.0, 2.0, 2.0, 0.02, 0.03, 0.01];
@@ -41,7 +41,7 @@ fn said(drive: Drive, t: f64) -> Said {
     (place, velocity)
 }
 
-/// A simulation past its start-up, with the bodies that a host moves.
+/// Simulation past its start-up, with the bodies that a host moves.
 fn warm(scene: &Scene, drive: Drive, step: f64) -> (Simulation, Vec<Body>) {
     let mut simulation = Simulation::new(scene).expect("an equilibrium");
     if drive == Drive::Scene {
@@ -70,7 +70,7 @@ fn warm(scene: &Scene, drive: Drive, step: f64) -> (Simulation, Vec<Body>) {
     (simulation, bodies)
 }
 
-/// Least time of a communication step of `step` [s], in [ns], and its internal steps.
+/// Minimum time of a communication step of `step` [s], in [ns], and its number of internal steps.
 fn advance(scene: &Scene, drive: Drive, step: f64) -> (f64, f64) {
     let (mut simulation, bodies) = warm(scene, drive, step);
     let start = simulation.snapshot().clone();
@@ -95,7 +95,7 @@ fn advance(scene: &Scene, drive: Drive, step: f64) -> (f64, f64) {
     (1e9 * best / STEPS as f64, substeps as f64 / STEPS as f64)
 }
 
-/// Least time to read all outputs once [ns], and how many there are.
+/// Minimum time to read all outputs once [ns], and their number.
 fn outputs(scene: &Scene) -> (f64, usize) {
     let (simulation, _) = warm(scene, Drive::Velocities, 0.05);
     let model = simulation.model();
@@ -118,7 +118,7 @@ fn outputs(scene: &Scene) -> (f64, usize) {
     (1e9 * best, variables.len())
 }
 
-/// The taut line with `elements`.
+/// Taut line with `elements`.
 fn taut(elements: usize) -> Scene {
     let mut scene = common::scene("taut_polyester");
     scene.solver.integrator = Integrator::Leapfrog;
@@ -126,7 +126,7 @@ fn taut(elements: usize) -> Scene {
     scene
 }
 
-/// The taut line with `elements`, tensions implicit, in internal steps of at most `longest` [s].
+/// Taut line with `elements` and implicit tensions, in internal steps of at most `longest` [s].
 fn taut_implicit(elements: usize, longest: f64) -> Scene {
     let mut scene = taut(elements);
     scene.solver.integrator = Integrator::AxialImplicit;
@@ -134,7 +134,7 @@ fn taut_implicit(elements: usize, longest: f64) -> Scene {
     scene
 }
 
-/// Twelve lines of a semi-submersible, in waves or without.
+/// Twelve lines of a semi-submersible, with or without waves.
 fn semi(waves: bool) -> Scene {
     let mut scene = common::scene("storm_moored_semi");
     scene.solver.integrator = Integrator::Leapfrog;

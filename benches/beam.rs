@@ -1,7 +1,7 @@
 //! Cost of a step of beams of different kinds: free flight in a plane and in space, a driven power cable in water with a part on the seabed, and
 //! a short stiff arm. All are without the energy balance.
 //!
-//! `cargo bench --bench beam` prints time and factorised tangents. `-- KIND STEPS` takes this number of steps of one kind and prints nothing, for a
+//! `cargo bench --bench beam` prints time and factorised tangents. `-- KIND STEPS` runs this number of steps of one kind and prints nothing, for a
 //! profiler or to count instructions.
 
 mod common;
@@ -15,10 +15,10 @@ use moorline::simulation::Simulation;
 const KINDS: [&str; 4] = ["flight", "flight in space", "power cable", "stiff arm"];
 /// Steps before the timed ones, and timed ones [-].
 const STEPS: [usize; 2] = [25, 75];
-/// Repetitions of which the fastest counts.
+/// Number of repetitions; the fastest counts.
 const REPETITIONS: usize = 40;
 
-/// A steel rod of 2 m, clamped to a point that shakes it, with a clump at its end.
+/// Steel rod of 2 m, clamped to a point that shakes it, with a clump at its end.
 const STIFF_ARM: &str = r#"
 title = "stiff arm"
 
@@ -72,7 +72,7 @@ fn scene(kind: &str) -> Scene {
     scene
 }
 
-/// The shipped cable as a beam that is all but stiff against shear.
+/// The scene `power_cable` as a beam that is nearly rigid in shear.
 fn power_cable() -> Scene {
     let mut scene = common::scene("power_cable");
     for line_type in scene.line_types.values_mut() {

@@ -1,4 +1,4 @@
-//! Time of one catenary solve, by class of line: solving alone, no shape read.
+//! Time of one catenary solve by class of line, without reading the shape.
 
 use moorline::statics::catenary::{FlatSeabed, Section, solve};
 
@@ -9,7 +9,7 @@ fn main() {
 /// Height of end B over end A [m].
 const RISE: f64 = 250.0;
 
-/// A class of line: its name, sections, span [m], seabed.
+/// Class of line: name, sections, span [m], seabed.
 struct Case {
     name: &'static str,
     sections: Vec<Section>,

@@ -1,11 +1,11 @@
-//! Instructions of fixed steps, counted by valgrind, against a table: other programs on the machine hardly change them.
+//! Instruction counts of fixed steps by valgrind, compared with a table; other programs on the machine hardly affect them.
 //!
-//! `cargo bench --bench instructions` prints the changes, and fails where steps of a scene take over 3 % more than the table says.
-//! `-- --write` makes the table anew. It holds for every x86-64 processor with AVX2, whose counts agree within 0.3 %; elsewhere, and where
-//! there is no valgrind, nothing is claimed.
+//! `cargo bench --bench instructions` prints the changes, and fails if the steps of a scene take over 3 % more than in the table. `-- --write` writes
+//! a new table. The table applies to every x86-64 processor with AVX2, whose counts agree within 0.3 %; on other processors and without valgrind,
+//! nothing is compared.
 //!
-//! Valgrind runs this program itself with the name of a scene and a number of steps. The difference of two runs of different length is the
-//! cost of the steps between them, without the start.
+//! Valgrind runs this program itself with the name of a scene and a number of steps. The difference between two runs of different length is the cost
+//! of the steps between them, without the start.
 
 mod common;
 
@@ -21,12 +21,12 @@ const TABLE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/benches/tables/x86-64-avx2.instructions.csv"
 );
-/// Growth that is reported [-].
+/// Growth beyond which the bench fails [-].
 const ALLOWED: f64 = 0.03;
 /// Communication steps of the short and the long run [-].
 const STEPS: [usize; 2] = [20, 120];
 
-/// Scenes, which between them use every integrator but the quasi-static one.
+/// Scenes that together use every integrator except the quasi-static one.
 const SCENES: [&str; 8] = [
     "oc3_catenary",
     "oc4_chain",
@@ -55,7 +55,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Steps a scene by its output interval with its own motion.
+/// Steps a scene by its output interval, with the motion of the scene.
 fn step(name: &str, count: usize) {
     let scene = common::scene(name);
     let mut simulation = Simulation::new(&scene).expect("an equilibrium");
@@ -65,7 +65,7 @@ fn step(name: &str, count: usize) {
     }
 }
 
-/// Instructions that valgrind counts in a run; none where there is no valgrind.
+/// Instructions that valgrind counts in a run; `None` without valgrind.
 fn counted(scene: &str, steps: usize) -> Option<u64> {
     let program = env::current_exe().ok()?;
     let run = Command::new("valgrind")
@@ -85,7 +85,7 @@ fn counted(scene: &str, steps: usize) -> Option<u64> {
     count.parse().ok()
 }
 
-/// Whether the table holds for this processor.
+/// Returns whether the table applies to this processor.
 fn held() -> bool {
     #[cfg(target_arch = "x86_64")]
     return is_x86_feature_detected!("avx2");
@@ -93,7 +93,7 @@ fn held() -> bool {
     return false;
 }
 
-/// Instructions of a communication step of every scene; none where they cannot be counted as those of the table.
+/// Instructions of a communication step of every scene; `None` if they cannot be counted as those of the table.
 fn counts() -> Option<Vec<(&'static str, u64)>> {
     if !held() {
         return None;

@@ -1,5 +1,5 @@
-//! Cost of many lines: static equilibrium and a step of the generalised-α integrator of nets of free points; and what a line costs a step among
-//! few and among many others.
+//! Cost of many lines: static equilibrium and a step of the generalised-α integrator for nets of free points; and the cost of a step per line in
+//! small and large systems.
 
 mod common;
 #[path = "../tests/common/copies.rs"]
@@ -17,7 +17,7 @@ use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::Simulation;
 use moorline::statics::{catenary_network, equilibrium};
 
-/// Repetitions of which the fastest counts.
+/// Number of repetitions; the fastest counts.
 const REPETITIONS: usize = 7;
 /// Elements of a rope.
 const ELEMENTS: usize = 3;
@@ -26,7 +26,7 @@ const STEP: f64 = 0.02;
 /// Steps before the timed ones, and timed ones.
 const STEPS: [usize; 2] = [50, 10];
 
-/// Least time of a call [ms].
+/// Minimum time of a call [ms].
 fn least(mut call: impl FnMut()) -> f64 {
     let run = |_| {
         let clock = Instant::now();
@@ -44,7 +44,7 @@ fn alone(lines: usize) -> Scene {
     scene
 }
 
-/// Time of a line and communication step [µs].
+/// Time per line and communication step [µs].
 fn line_step(scene: &Scene, follows_scene: bool) -> f64 {
     let mut simulation = Simulation::new(scene).expect("an equilibrium");
     if follows_scene {

@@ -1,4 +1,4 @@
-//! Time of a row of 30 columns in the tables of a run, by format: from the numbers to the file, with ranges and histories of the record.
+//! Time to write a row of 30 columns to the tables of a run, by format, including ranges and histories of the record.
 
 use moorline::output::files::RunFiles;
 use moorline::output::record::{Column, Form, Frame, Record};
@@ -19,7 +19,7 @@ fn columns() -> Vec<Column> {
     (1..COLUMNS).map(column).collect()
 }
 
-/// Rows of numbers with all of their digits, of the sizes of displacements and forces.
+/// Rows of numbers with full precision, in the magnitudes of displacements and forces.
 fn rows() -> Vec<[f64; COLUMNS]> {
     let size = [1.0, 0.1, 1e6, 1e6, 100.0];
     let row = |i: usize| {

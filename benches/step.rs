@@ -1,8 +1,8 @@
-//! Cost of an internal step: of the kernels alone, with the best vectors of the machine and in the portable build, compared with the time that the roots
-//! and quotients of the explicit one alone take; and of whole communication steps by both leapfrogs.
+//! Cost of an internal step of the kernels alone, with the best vectors of the machine and in the portable build, compared with the time of the
+//! square roots and divisions of the explicit kernel; and cost of whole communication steps by both leapfrogs.
 //!
-//! `-- PART`, one of divider, explicit, axial, compared and whole, measures that part alone; `-- --write` measures all and makes the table
-//! of this machine, `benches/tables/<processor>.step.csv`.
+//! `-- PART`, one of divider, explicit, axial, compared and whole, measures only that part; `-- --write` measures all parts and writes the table of
+//! this machine, `benches/tables/<processor>.step.csv`.
 
 mod common;
 
@@ -24,26 +24,25 @@ use pulp::NullaryFnOnce;
 
 const SCENES: [&str; 4] = ["oc3_catenary", "oc4_chain", "taut_polyester", "lindahl_fast"];
 const ELEMENTS: [usize; 6] = [10, 20, 28, 40, 80, 160];
-/// Elements of the axial-implicit kernel alone, and its steps in an advance.
+/// Elements of the axial-implicit kernel alone, and its steps per advance.
 const ELEMENTS_AXIAL: [usize; 7] = [5, 10, 20, 40, 48, 80, 160];
 const STEPS_AXIAL: [usize; 2] = [1, 10];
-/// Axial-implicit runs, without an energy balance, by which the public scenes are compared with other codes: scene, elements, step and communication
-/// step [s].
+/// Axial-implicit runs, without an energy balance, that compare the public scenes with other codes: scene, elements, step and communication step [s].
 const COMPARED: [(&str, usize, f64, f64); 4] = [
     ("lindahl_fast", 47, 0.05 / 7.0, 0.05),
     ("taut_polyester", 5, 0.5, 0.5),
     ("taut_polyester", 10, 0.25, 0.5),
     ("taut_polyester", 8, 0.25, 0.5),
 ];
-/// Lines of a system, which take turns.
+/// Lines of a system, which are stepped in turn.
 const LINES: usize = 12;
-/// Steps that a line takes in its turn.
+/// Steps of a line in its turn.
 const TURN: usize = 8;
-/// Turns that are timed together, and how often that is done; the fastest counts.
+/// Turns that are timed together, and the number of repetitions; the fastest counts.
 const TURNS: usize = 200;
 const REPETITIONS: usize = 60;
 
-/// Measures a part, and writes the result into the table.
+/// Function that measures a part and writes the result into the table.
 type Part = fn(&mut String);
 
 fn main() -> ExitCode {
@@ -72,7 +71,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Three roots and three quotients for every four numbers, as many as the explicit kernel has for four nodes on the seabed.
+/// Three square roots and three divisions per four numbers, as in the explicit kernel for four nodes on the seabed.
 struct Divide<'a> {
     of: &'a [[Lanes; 3]],
     into: &'a mut [Lanes],
@@ -91,7 +90,7 @@ impl NullaryFnOnce for Divide<'_> {
     }
 }
 
-/// Lower bound of the kernel's time.
+/// Measures a lower bound of the time of the kernel.
 fn divider(table: &mut String) {
     let numbers: Vec<[Lanes; 3]> = (1..=64)
         .map(|k| [1.0, 2.0, 3.0].map(|a| Lanes::splat(a + f64::from(k))))
@@ -118,12 +117,12 @@ fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
     scene
 }
 
-/// A mesh with an energy balance, and without one: what a table calls it, and whether it has one.
+/// Mesh with and without an energy balance: suffix of its name in the table, and whether it has the balance.
 fn with_and_without(elements: usize) -> [(usize, (&'static str, bool)); 2] {
     [("", true), (" without balance", false)].map(|kind| (elements, kind))
 }
 
-/// A scene one communication step after its start.
+/// Simulation of a scene, one communication step after its start.
 fn stepped(name: &str, integrator: Integrator, elements: usize, balance: bool) -> Simulation {
     let mut scene = meshed(name, integrator, elements);
     scene.output.energy_balance = balance;
@@ -162,7 +161,7 @@ fn note_kernel(
     .expect("a String takes all");
 }
 
-/// The explicit kernel alone.
+/// Measures the explicit kernel alone.
 fn kernels(table: &mut String) {
     kernel_heading("explicit alone", "lines");
     for name in SCENES {
@@ -179,7 +178,7 @@ fn kernels(table: &mut String) {
     }
 }
 
-/// The axial-implicit kernel alone, with its preparation and hand-over in an advance.
+/// Measures the axial-implicit kernel alone, with its preparation and hand-over in an advance.
 fn axial_kernels(table: &mut String) {
     kernel_heading("axial-implicit", "steps");
     for name in SCENES {
@@ -197,7 +196,7 @@ fn axial_kernels(table: &mut String) {
     }
 }
 
-/// Motion to and fro by 1 m in 10 s, as cheap as the path between two communication points.
+/// Back-and-forth motion by 1 m in 10 s, as cheap as the path between two communication points.
 fn sway(state: &State) -> impl Fn(usize, f64) -> Kinematics + '_ {
     |point, t| {
         let u = (0.1 * (t - state.time)).fract();
@@ -211,7 +210,7 @@ fn sway(state: &State) -> impl Fn(usize, f64) -> Kinematics + '_ {
     }
 }
 
-/// Time of a step [ns] of a line's axial-implicit kernel where an advance takes `count`, with the fairlead swaying.
+/// Time of a step [ns] of the axial-implicit kernel of a line, with `count` steps per advance and a swaying fairlead.
 fn axial_cost(model: &Model, state: &State, size: f64, count: usize, portable: bool) -> f64 {
     let mut work = loaded::<AxialImplicit>(model, state, portable);
     let (mut end, held) = (state.clone(), sway(state));
@@ -236,7 +235,7 @@ fn axial_cost(model: &Model, state: &State, size: f64, count: usize, portable: b
     1e9 * best / (advances * count) as f64
 }
 
-/// A leapfrog that holds a state.
+/// Leapfrog with a loaded state.
 fn loaded<K: Kernel>(model: &Model, state: &State, portable: bool) -> LeapfrogNetwork<K> {
     let mut work = LeapfrogNetwork::new(model, &model.networks[0]).expect("one strain measure");
     work.set_portable(portable);
@@ -244,7 +243,7 @@ fn loaded<K: Kernel>(model: &Model, state: &State, portable: bool) -> LeapfrogNe
     work
 }
 
-/// Time of a step of one line [ns] where `lines` alike take turns, with the fairlead swaying.
+/// Time of a step of one line [ns] if `lines` equal lines are stepped in turn, with a swaying fairlead.
 fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bool) -> f64 {
     let work = |_| loaded::<Explicit>(model, state, portable);
     let mut works: Vec<LeapfrogNetwork<Explicit>> = (0..lines).map(work).collect();
@@ -273,7 +272,7 @@ fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bo
     1e9 * best / (TURNS / lines * lines * TURN) as f64
 }
 
-/// Whole communication steps of the runs that are compared with other codes.
+/// Measures whole communication steps of the runs that are compared with other codes.
 fn compared(table: &mut String) {
     println!(
         "\n{:<16} {:>5} {:>8} {:>8} {:>14} {:>11} {:>12}",
@@ -298,7 +297,7 @@ fn compared(table: &mut String) {
     }
 }
 
-/// Whole communication steps.
+/// Measures whole communication steps.
 fn communication(table: &mut String) {
     println!(
         "\n{:<16} {:<15} {:>5} {:>10} {:>14} {:>12} {:>10}",

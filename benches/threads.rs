@@ -1,5 +1,5 @@
-//! Gain by threads: µs per communication step of systems of many lines on one thread, on two, and on as many as the solver chooses; all
-//! in turns, so that what else the machine does falls on all of them.
+//! Speed-up by threads: µs per communication step of systems of many lines on one thread, on two, and on the number that the solver chooses. They are
+//! measured in turn, so that other load on the machine affects all of them.
 
 mod common;
 #[path = "../tests/common/copies.rs"]
@@ -10,7 +10,7 @@ use std::time::Instant;
 use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::Simulation;
 
-/// Rounds of which the fastest counts.
+/// Number of rounds; the fastest counts.
 const ROUNDS: usize = 200;
 /// Time before the timed steps, for the ramp to pass [s].
 const WARM_UP: f64 = 70.0;
@@ -19,7 +19,7 @@ const STEP: f64 = 0.05;
 /// Timed communication steps of a round.
 const STEPS: usize = 20;
 
-/// The semi-submersible with twelve lines of a number of elements, in waves or without.
+/// Semi-submersible with twelve lines of `elements` each, with or without waves.
 fn semi(elements: usize, waves: bool) -> Scene {
     let mut scene = common::scene("storm_moored_semi");
     scene.solver.integrator = Integrator::Leapfrog;
@@ -35,7 +35,7 @@ fn farm(elements: usize, waves: bool) -> Scene {
     copies::copies(&semi(elements, waves), 5, 0, 3000.0)
 }
 
-/// A simulation past its start-up, on a number of threads.
+/// Simulation past its start-up, on a number of threads.
 fn warm(scene: &Scene, threads: Threads) -> Simulation {
     let mut scene = scene.clone();
     scene.solver.threads = threads;
@@ -47,7 +47,7 @@ fn warm(scene: &Scene, threads: Threads) -> Simulation {
     simulation
 }
 
-/// Time of a step [µs]: the least of all rounds.
+/// Minimum of `best` and the time of a step in another round [µs].
 fn time(simulation: &mut Simulation, best: f64) -> f64 {
     let clock = Instant::now();
     for _ in 0..STEPS {

@@ -1,4 +1,4 @@
-//! Time of a tridiagonal solve: folded into four lanes, with the machine's best vectors and with portable ones, against Thomas's
+//! Time of a tridiagonal solve, striped over four lanes, with the best vectors of the machine and with portable ones, compared with Thomas's
 //! elimination and its variant from both ends.
 
 use std::hint::black_box;
@@ -11,11 +11,11 @@ use moorline::math::striping::Striping;
 use moorline::math::unit::VectorUnit;
 use pulp::NullaryFnOnce;
 
-/// Repetitions of which the fastest counts, and solves of each.
+/// Number of repetitions, of which the fastest counts, and of solves in each.
 const REPETITIONS: usize = 300;
 const SOLVES: usize = 200;
 
-/// A folded system and scratch for its solution.
+/// Striped system and workspace for its solution.
 struct Folded {
     equations: Vec<Equations>,
     eliminated: Vec<Eliminated>,
@@ -75,7 +75,7 @@ impl NullaryFnOnce for Solve<'_> {
     }
 }
 
-/// A system in the order of its equations.
+/// System in the order of its equations.
 struct System {
     lower: Vec<f64>,
     diagonal: Vec<f64>,
@@ -103,7 +103,7 @@ fn thomas(system: &System, pivot: &mut [f64], x: &mut [f64]) {
     }
 }
 
-/// [`thomas`] from both ends at once; for an even number of equations, four at least.
+/// [`thomas`] from both ends at once; for an even number of equations, at least four.
 fn twisted(system: &System, pivot: &mut [f64], x: &mut [f64]) {
     let count = x.len();
     let (lower, upper) = (&system.lower[..count], &system.upper[..count]);
@@ -137,7 +137,7 @@ fn twisted(system: &System, pivot: &mut [f64], x: &mut [f64]) {
     }
 }
 
-/// Least time of a solve [ns].
+/// Minimum time of a solve [ns].
 fn time(mut solve: impl FnMut()) -> f64 {
     let run = |_| {
         let clock = Instant::now();

@@ -1,11 +1,11 @@
-//! A sweep over load cases: the 30 conditions of an experiment on a chain in a tank, run on all processors at once and compared with
-//! the forces that were measured.
+//! A sweep over load cases: the 30 conditions of an experiment on a chain in a tank, run in parallel on all processors and compared with the measured
+//! forces.
 //!
-//! The chain's upper end goes round a circle; slack and snapping once in every turn where the circle is wide and the period short.
-//! Every case is the scene `scenes/bergdahl_chain.toml`, which names the experiment and its parameters, with another circle:
-//! twelve turns, of which the first three grow and the last five count. The mean of their greatest forces is compared.
+//! The upper end of the chain moves round a circle; where the circle is wide and the period short, the chain slackens and snaps once per turn. Every
+//! case is the scene `scenes/bergdahl_chain.toml`, which names the experiment and its parameters, with another circle: twelve turns, of which the
+//! first three grow and the last five count. The mean of their maximum forces is compared.
 //!
-//! `cargo run --release --example chain_experiment` prints the table, and writes the figure `chain_experiment.svg` where a folder is given:
+//! `cargo run --release --example chain_experiment` prints the table, and writes the figure `chain_experiment.svg` if a folder is given:
 //! `cargo run --release --example chain_experiment -- FOLDER`
 
 use std::error::Error;
@@ -21,43 +21,43 @@ use moorline::simulation::Simulation;
 const SCENE: &str = include_str!("../scenes/bergdahl_chain.toml");
 const MEASURED: &str = include_str!("../tests/reference/bergdahl_2016.csv");
 
-/// Turns of a case [-].
+/// Number of turns of a case [-].
 const TURNS: usize = 12;
-/// Turns over which the motion grows [-].
+/// Number of turns over which the motion grows [-].
 const TURNS_GROWING: f64 = 3.0;
-/// Last turns, whose greatest forces count [-].
+/// Number of last turns whose maximum forces count [-].
 const TURNS_COUNTED: usize = 5;
-/// Samples of the force in a turn [-].
+/// Number of force samples per turn [-].
 const SAMPLES: usize = 200;
 
-/// A condition of the experiment and its force.
+/// Condition of the experiment with its force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
     /// Period of a turn [s].
     pub period: f64,
     /// Radius of the circle [m].
     pub radius: f64,
-    /// Mean greatest force of the turns, measured [N].
+    /// Mean of the maximum forces of the turns, measured [N].
     pub measured: f64,
 }
 
-/// Distances of the computed forces of all cases from the measured ones.
+/// Errors of the computed forces of all cases relative to the measured ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
-    /// Root of the mean square [N].
+    /// Root mean square error [N].
     pub rms: f64,
-    /// Mean of the sizes over the measured forces [-].
+    /// Mean of the error magnitudes relative to the measured forces [-].
     pub mean_relative: f64,
-    /// Mean [N].
+    /// Mean error [N].
     pub bias: f64,
-    /// Greatest size over the measured force [-].
+    /// Maximum error magnitude relative to the measured force [-].
     pub greatest_relative: f64,
 }
 
-/// The conditions of the experiment.
+/// Conditions of the experiment.
 ///
 /// # Errors
-/// A row that is none.
+/// Fails if a row is not a condition.
 pub fn cases() -> Result<Vec<Case>, Box<dyn Error + Send + Sync>> {
     let rows = MEASURED.lines().filter(|line| !line.starts_with('#'));
     rows.skip(1)
@@ -75,18 +75,18 @@ pub fn cases() -> Result<Vec<Case>, Box<dyn Error + Send + Sync>> {
         .collect()
 }
 
-/// The scene that all cases share.
+/// Scene that all cases share.
 ///
 /// # Errors
-/// A mistake in the scene.
+/// Fails if the scene is not valid.
 pub fn scene() -> Result<Scene, Box<dyn Error + Send + Sync>> {
     Ok(Scene::from_toml(SCENE)?)
 }
 
-/// Mean greatest force of the counted turns of a case [N].
+/// Mean of the maximum forces of the counted turns of a case [N].
 ///
 /// # Errors
-/// A scene that is wrong, an equilibrium or a step that was not found.
+/// Fails if the scene is not valid, or if an equilibrium or a step is not found.
 pub fn force(scene: &Scene, case: &Case) -> Result<f64, Box<dyn Error + Send + Sync>> {
     let circle = HarmonicMotion {
         x: vec![vec![case.radius, case.period]],
@@ -111,10 +111,10 @@ pub fn force(scene: &Scene, case: &Case) -> Result<f64, Box<dyn Error + Send + S
     Ok(counted.iter().sum::<f64>() / TURNS_COUNTED as f64)
 }
 
-/// The forces of all cases [N], computed on all processors: whoever is free takes the next.
+/// Forces of all cases [N], computed on all processors; a free thread takes the next case.
 ///
 /// # Errors
-/// The first case that failed.
+/// Fails with the error of the first case that fails.
 pub fn sweep(scene: &Scene, cases: &[Case]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
     let next = AtomicUsize::new(0);
     let work = || {
@@ -158,7 +158,7 @@ pub fn errors(cases: &[Case], forces: &[f64]) -> Errors {
     }
 }
 
-/// Computed against measured, a series for each period.
+/// Figure of computed against measured forces, with a series for each period.
 fn figure(cases: &[Case], forces: &[f64]) -> Option<String> {
     let mut series: Vec<Series> = Vec::new();
     for (case, force) in cases.iter().zip(forces) {

@@ -4,10 +4,10 @@
 //!   anchor ●══════╲___ stern ▇▇▇▇▇▇ bow ___╱══════● anchor        M x'' + C x' = F(t),  F the mooring's force along x
 //! ```
 //!
-//! The body belongs to the host, which integrates it by the semi-implicit Euler method: the force at t gives the new
-//! velocity, the new velocity the new place. The mooring receives the places of the fairleads at t and steps to t + h; between the
-//! two, their path is smooth. Released 6 m off its rest, the body swings with the period that the
-//! mooring's static stiffness predicts, and the drag on the chains damps it.
+//! The body belongs to the host, which integrates it by the semi-implicit Euler method: the force at t gives the new velocity, and the new velocity
+//! gives the new position. The mooring receives the positions of the fairleads at t and steps to t + h; the path in between is smooth. Released 6 m
+//! from its position of rest, the body oscillates with the period that follows from the static stiffness of the mooring, and the drag on the chains
+//! damps it.
 //!
 //! `cargo run --release --example couple_with_a_host_code`
 
@@ -69,7 +69,7 @@ to = "stern"
 sections = [{ type = "chain", length = 450.0, elements = 40 }]
 "#;
 
-/// Mass of the body with its added mass in surge [kg].
+/// Mass of the body, including its added mass in surge [kg].
 const MASS: f64 = 4.0e6;
 /// Linear damping of the body [N s/m].
 const DAMPING: f64 = 1.0e4;
@@ -80,7 +80,7 @@ const STEP: f64 = 0.1;
 /// Duration [s].
 const DURATION: f64 = 400.0;
 
-/// The mooring as the host sees it: one surge in, one force out.
+/// Mooring with the interface that the host uses: one surge in, one force out.
 struct Mooring {
     simulation: Simulation,
     fairleads: [usize; 2],
@@ -129,7 +129,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stiffness = (mooring.static_force(-1.0)? - mooring.static_force(1.0)?) / 2.0; // [N/m]
     let mut force = mooring.static_force(RELEASE)?;
     let (mut surge, mut velocity) = (RELEASE, 0.0);
-    let mut upward = Vec::new(); // when the body passes the middle on its way to positive surge [s]
+    let mut upward = Vec::new(); // times at which the body passes the middle towards positive surge [s]
     println!(
         "{:>7} {:>9} {:>11} {:>13} {:>14} {:>15}",
         "t [s]", "surge [m]", "force [kN]", "velocity [m/s]", "ahead T [kN]", "astern T [kN]"

@@ -3,9 +3,8 @@
 //! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table and therefore always agree. The value
 //! reference of a variable is its position in the table, counted from 1.
 //!
-//! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
-//! solver's outputs, the calculated parameters, the parameters, the flow of the water where a host gives it, and the profiles where the
-//! scene requests them. Releases and winches have their rows between vessels and lines.
+//! The table contains, in this order: inputs and forces of every coupled point and of every vessel, releases and winches, outputs of every line, the
+//! solver's outputs, the calculated parameters, the parameters, the water flow if a host gives it, and the profiles if the scene requests them.
 
 mod coupling;
 mod dependencies;
@@ -35,10 +34,10 @@ const NO_BALANCE: &str = "the scene asks for no energy balance (`energy_balance`
 /// Reason why a variable has no value.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoValue {
-    /// It is not defined in this configuration: the message.
+    /// Undefined in this configuration, with the message.
     #[error("{0}")]
     Undefined(String),
-    /// It is not finite: the message.
+    /// Not finite, with the message.
     #[error("{0}")]
     NotFinite(String),
 }
@@ -52,24 +51,24 @@ impl From<NoValue> for String {
 /// Role of a variable, named as in FMI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
-    /// The host sets it before every step.
+    /// Set by the host before every step.
     Input,
-    /// The host reads it.
+    /// Read by the host.
     Output,
     /// Follows from the parameters at initialization.
     CalculatedParameter,
-    /// The host may set it before the simulation starts.
+    /// Settable by the host before the simulation starts.
     Parameter,
 }
 
 /// Times at which a variable may change, named as in FMI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
-    /// Not after initialization.
+    /// Does not change after initialization.
     Fixed,
-    /// From step to step.
+    /// Changes from step to step.
     Discrete,
-    /// With time.
+    /// Changes with time.
     Continuous,
 }
 
@@ -158,7 +157,7 @@ units! {
 }
 
 impl Unit {
-    /// Base units with a non-zero exponent, and these exponents.
+    /// Returns the base units with non-zero exponents, and these exponents.
     pub(crate) fn exponents(&self) -> Vec<(&'static str, String)> {
         let exponents = [("kg", self.kg), ("m", self.m), ("s", self.s), ("rad", self.rad)];
         let present = exponents.into_iter().filter(|(_, exponent)| *exponent != 0);
@@ -167,7 +166,7 @@ impl Unit {
             .collect()
     }
 
-    /// Unit from its notation in a doc comment or the scene format, such as `N m²`; dimensionless if it is unknown.
+    /// Returns the unit for a notation in a doc comment or the scene format, such as `N m²`; dimensionless if it is unknown.
     fn of_scene(text: &str) -> Unit {
         let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
         let found = Unit::ALL.iter().find(|unit| unit.name == name);
@@ -194,7 +193,7 @@ pub enum Binding {
     },
     /// Force of all lines on a coupled point or a vessel [N], and moment on a vessel [N m].
     EndForce {
-        /// The point or vessel that the lines pull at.
+        /// The point or vessel on which the lines pull.
         body: Body,
         /// Axis, 0 to 5.
         axis: usize,
@@ -229,7 +228,7 @@ pub enum Binding {
         /// The node; all nodes if absent.
         node: Option<usize>,
     },
-    /// Coordinate of the position at which the next flow is due, for a node of a line or for all nodes from end A to end B [m].
+    /// Coordinate of the position for which the next flow must be given, at a node of a line or at all nodes from end A to end B [m].
     FlowPlace {
         /// The line.
         line: usize,
@@ -276,7 +275,7 @@ pub enum InterfaceQuantity {
 }
 
 impl InterfaceQuantity {
-    /// Returns whether the quantity follows from the coming step.
+    /// Returns whether the quantity depends on the coming step.
     fn is_of_a_step(self) -> bool {
         !matches!(self, InterfaceQuantity::Mass | InterfaceQuantity::StaticStiffness)
     }
@@ -295,7 +294,7 @@ pub enum ProfileQuantity {
     Moment,
 }
 
-/// Form of profiles.
+/// Representation of profiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// As one scalar for each value (FMI 2.0, CSV).
@@ -323,10 +322,10 @@ pub struct Variable {
     pub dimension: Option<usize>,
     /// Value before the host sets one; inputs and parameters have one.
     pub start: Option<f64>,
-    /// Least and greatest value, in its unit; none where the type alone limits it.
+    /// Least and greatest value, in its unit; `None` where only the type limits it.
     pub range: [Option<f64>; 2],
-    /// Value references that it depends on during initialization; outputs and calculated parameters only. After initialization, outputs change only with a
-    /// step and so depend on nothing that is set between two steps.
+    /// Value references of the variables on which it depends during initialization; outputs and calculated parameters only. After initialization,
+    /// outputs change only in a step and therefore do not depend on values set between two steps.
     pub initial_dependencies: Vec<u32>,
     /// Quantity that it gets or sets.
     pub binding: Binding,
@@ -358,7 +357,7 @@ impl Interface {
     /// Builds the table of a scene.
     ///
     /// # Errors
-    /// Two variables of one name.
+    /// Two variables have the same name.
     pub fn new(scene: &Scene, model: &Model, layout: Layout) -> Result<Interface, SceneError> {
         let mut variables = Vec::new();
         for (index, point) in scene.points.iter().enumerate() {
@@ -403,15 +402,15 @@ impl Interface {
         })
     }
 
-    /// The inputs before a host sets any.
+    /// Inputs before the host sets any.
     pub fn inputs(&self) -> &Inputs {
         &self.inputs
     }
 
-    /// Refuses a model whose numbers of nodes differ from those of the table, which parameters may cause.
+    /// Refuses a model whose numbers of nodes differ from those of the table. Parameters may change these numbers.
     ///
     /// # Errors
-    /// The first line with another number of nodes.
+    /// Names the first line whose number of nodes differs.
     pub fn check_nodes(&self, model: &Model) -> Result<(), String> {
         for variable in &self.variables {
             let (line, count, fits) = match variable.binding {
@@ -437,7 +436,7 @@ impl Interface {
         Ok(())
     }
 
-    /// Rows in their order.
+    /// Rows of the table, in order.
     pub fn variables(&self) -> &[Variable] {
         &self.variables
     }
@@ -461,10 +460,10 @@ impl Interface {
             .filter(|variable| variable.causality == Causality::Output)
     }
 
-    /// Writes the values of a variable that is no parameter; `values` has its size.
+    /// Writes the values of a variable other than a parameter to `values`, which has the length [`Variable::size`].
     ///
     /// # Errors
-    /// A line whose closed-form catenary does not exist, a body without impedance; a value that is not finite.
+    /// The closed-form catenary of a line or the impedance of a body does not exist, or a value is not finite.
     pub fn read(variable: &Variable, simulation: &Simulation, values: &mut [f64]) -> Result<(), NoValue> {
         assert_eq!(values.len(), variable.size(), "one place for each value");
         match variable.binding {
@@ -524,7 +523,7 @@ mod tests {
     use super::*;
     use crate::draft::draft;
 
-    /// A line of two sections from a driven point to a free one, which hangs on another line, and a span between two driven points.
+    /// Two-section line from a coupled point to a free point that hangs on another line, and a span between two coupled points.
     fn scene() -> Scene {
         let upper = [("wire", 5.0, None), ("rope", 4.0, Some(4))];
         draft(

@@ -7,22 +7,22 @@
 //! M = M_n I + (M_t − M_n) t tᵀ,                                        t along the line
 //! ```
 //!
-//! Where lines have bending stiffness, every node is a joint as well: −∂/∂x_i of Σ ½ (EI/l̄) |κb|² is added, κb being the discrete
-//! curvature between the unit vectors of two segments ([`physics::bending`]). Lines may be geometrically exact beams instead, with
-//! shear, torsion and rotary inertia ([`physics::section`]). Points may ride on vessels that a host moves.
+//! If a line has bending stiffness, every node is also a joint: −∂/∂x_i of Σ ½ (EI/l̄) |κb|² is added, where κb is the discrete curvature between the
+//! unit vectors of two adjacent segments ([`physics::bending`]). A line may instead be a geometrically exact beam with shear, torsion and rotary
+//! inertia ([`physics::section`]). Points may be carried by vessels that a host moves.
 //!
 //! SI units throughout. z points up, z = 0 is the still water level, the seabed lies at z = −depth. Lines run from end A (the
 //! anchor) to end B (the fairlead), and arc length counts unstretched metres from A. Forces at points are those that the
 //! mooring applies to the point's support.
 //!
-//! Layers point one way, each using those before it:
+//! Each layer uses only the layers before it:
 //!
 //! ```text
 //! math, physics, scene, model, elements, statics, dynamics, simulation, discretisation, interface, output
 //! ```
 //!
-//! Above the library stand the packages of the workspace: `moorline-decks` reads the input files of other programs,
-//! `moorline-accuracy` measures speed against error, `moorline-cli` is the program, `moorline-fmu` the library inside FMUs.
+//! The packages of the workspace use the library: `moorline-decks` reads the input files of other programs, `moorline-accuracy` measures speed
+//! against error, `moorline-cli` is the program, and `moorline-fmu` is the library inside FMUs.
 //!
 //! ```
 //! use moorline::scene::Scene;
@@ -78,7 +78,7 @@ pub mod simulation;
 pub mod statics;
 
 #[cfg(test)]
-extern crate self as moorline; // tests build scenes and compare texts as those in `tests` do
+extern crate self as moorline; // `draft` and `text` are files of the outer tests and refer to the crate by its name
 #[cfg(test)]
 #[expect(unreachable_pub, reason = "a file of the outer tests")]
 #[path = "../tests/common/draft.rs"]

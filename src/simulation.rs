@@ -1,4 +1,4 @@
-//! One mooring, driven by a host, the command line, a test or a benchmark: model, state and scratch behind one facade.
+//! Simulation of one mooring, driven by a host, the command line, a test or a benchmark: model, state and workspaces behind one facade.
 //!
 //! A scene is discretised, its static equilibrium is solved, and [`Simulation::advance`] then steps from one communication point to the next. Coupled
 //! points follow the displacements of [`Simulation::set_displacement`], or the scene's motion after [`Simulation::follow_scene`].
@@ -45,10 +45,10 @@ pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
 pub use watch::Watch;
 
-/// Shortest step that is integrated [s]. A host that ends its last step at the end of its run may request a step as short as the rounding of its clock,
-/// some 1e-14 s. Over steps shorter than this limit, accelerations and strain rates would be rounding of coordinates: the fairlead force of a chain 800 m
-/// long would be off by thousandths of its value in a step of 1e-7 s and by five times its value in one of 1e-9 s. Such steps are integrated together with
-/// the next one.
+/// Shortest step that is integrated [s]. A host that ends its last step at the end of its run may request a step as short as the rounding of its
+/// clock, about 1e-14 s. In steps shorter than this limit, rounding of the coordinates would dominate accelerations and strain rates: the fairlead
+/// force of a chain 800 m long would be off by thousandths of its value in a step of 1e-7 s and by five times its value in one of 1e-9 s. Such steps
+/// are integrated together with the next one.
 const STEP_MIN: f64 = 1e-6;
 
 /// Reason why a simulation could not be built.
@@ -62,7 +62,7 @@ pub enum Error {
     Statics(#[from] StaticsError),
 }
 
-/// Everything that changes in a simulation. Restoring it replays the simulation bit for bit.
+/// Everything that changes in a simulation. A run continued from a restored snapshot is identical to the last bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     state: State,
@@ -70,21 +70,21 @@ pub struct Snapshot {
     paths: Box<Paths>,
     follows_scene: bool,
     counters: Counters,
-    /// Stored where the scene requests it.
+    /// Present if the scene requests it.
     balance: Option<EnergyBalance>,
     start_time: f64,
     input_record: InputRecord,
-    /// Flow of the water that the host gave for the last step, where the next one needs it.
+    /// Water flow that a host gave for the last step, stored if the next step needs it.
     flow_before: WaterFlow,
     /// Time by which the host is ahead of the state, less than [`STEP_MIN`] [s].
     ahead: f64,
     /// Length of the last step [s]; 0 before the first.
     last_step: f64,
-    /// Start of the last step, where the scene requests derivatives.
+    /// Start of the last step, stored if the scene requests derivatives.
     begun: Option<Box<StepStart>>,
 }
 
-/// Mooring in time.
+/// Simulation of a mooring in time.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     model: Arc<Model>,
@@ -92,30 +92,30 @@ pub struct Simulation {
     work: Integrators,
     /// Paths of the present step.
     paths: Box<Paths>,
-    /// Flow of the water over the present step, where a host gives it.
+    /// Water flow over the present step, if a host gives it.
     next_flow: Option<WaveSpans>,
     extrapolation: Extrapolation,
     prescribed: PrescribedMotion,
     reactions: Reactions,
     scale: Scale,
-    /// Record of inputs with the sample of the present step.
+    /// Input record including the sample of the present step.
     next_record: InputRecord,
     moved_lines: Vec<MovedLine>,
     catenaries: Vec<Option<Catenary>>,
 }
 
 impl Simulation {
-    /// Builds the discrete model of a scene and solves its static equilibrium at the reference positions. The mesh is that of
-    /// [`Model::new`]: no discretisation is tried here (see `discretisation::select`).
+    /// Builds the discrete model of a scene and solves its static equilibrium at the reference positions. The mesh is that of [`Model::new`]: no
+    /// convergence trials are run (see `discretisation::select`).
     ///
     /// # Errors
-    /// Mistakes in the scene, or an equilibrium that does not exist.
+    /// The scene is invalid, or no static equilibrium is found.
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
         Simulation::start(Model::new(scene)?, start::Shapes::AsGiven)
     }
 
-    /// Builds the discrete model of a scene and solves its static equilibrium alone: the result of [`Simulation::new`] and then
-    /// [`Simulation::in_equilibrium`].
+    /// Builds the discrete model of a scene and solves its static equilibrium without initial shapes, motion and waves. The result equals that of
+    /// [`Simulation::new`] followed by [`Simulation::in_equilibrium`].
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -152,10 +152,10 @@ impl Simulation {
         })
     }
 
-    /// This mooring in static equilibrium at its reference positions, without initial shapes, motion and waves.
+    /// Returns this mooring in static equilibrium at its reference positions, without initial shapes, motion and waves.
     ///
     /// # Errors
-    /// An equilibrium that does not exist.
+    /// No static equilibrium is found.
     pub fn in_equilibrium(&self) -> Result<Simulation, Error> {
         let mut still = self.clone();
         still.snapshot.inputs = Inputs::new(&self.model);
@@ -177,7 +177,7 @@ impl Simulation {
         self.begin(self.time(), true, start::Shapes::AsGiven)
     }
 
-    /// Restarts at rest, at a start time [s] and the displacements set so far.
+    /// Restarts at rest at a start time [s], with the displacements set so far.
     ///
     /// # Errors
     /// As for [`Simulation::new`]; the simulation is then unchanged.
@@ -201,7 +201,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The model.
+    /// Model of the mooring.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -216,7 +216,7 @@ impl Simulation {
         &self.snapshot.state
     }
 
-    /// All that changes.
+    /// Everything that changes in the simulation.
     pub fn snapshot(&self) -> &Snapshot {
         &self.snapshot
     }
@@ -237,7 +237,7 @@ impl Simulation {
         self.work.choices()
     }
 
-    /// Integrators with their step limits in sentences, with the names of the lines where their networks differ.
+    /// Describes the integrators and their step limits in sentences, with the names of the lines where networks differ.
     pub fn choices_in_words(&self) -> Vec<String> {
         let mut kinds: Vec<(String, Vec<&str>)> = Vec::new();
         for (choice, network) in self.choices().zip(&self.model.networks) {
@@ -260,16 +260,16 @@ impl Simulation {
             .collect()
     }
 
-    /// Number of threads that share communication steps of a given length [s], with the reason.
+    /// Number of threads used in communication steps of a given length [s], in words with the reason.
     pub fn threads_in_words(&self, length: f64) -> String {
         self.work.threads_in_words(length)
     }
 
-    /// Steps from the present time to `step` [s] later. A step of 0 s does nothing. Steps of less than a microsecond
-    /// leave the state unchanged until they add up to one.
+    /// Steps from the present time to `step` [s] later. A step of 0 s does nothing. Steps shorter than a microsecond leave the state unchanged until
+    /// they add up to a microsecond.
     ///
     /// # Errors
-    /// The state is unchanged.
+    /// The step fails or an input exceeds its limits; the state is then unchanged.
     pub fn advance(&mut self, step: f64) -> Result<(), StepError> {
         if step <= 0.0 {
             return Ok(());
@@ -381,7 +381,7 @@ impl Simulation {
     }
 }
 
-/// Removes waves, a host's flow of the water and initial shapes, for an equilibrium.
+/// Removes waves, a host's water flow and initial shapes before an equilibrium is solved.
 fn make_still(model: &mut Model) {
     (model.waves, model.host_flow) = (None, false);
     for point in &mut model.points {
@@ -389,7 +389,7 @@ fn make_still(model: &mut Model) {
             *motion = Motion::none();
         }
     }
-    // the initial shape of a beam may be its moment-free shape, and the search for its equilibrium starts from it
+    // the initial shape of a beam may be its moment-free shape, and its equilibrium iteration starts from it
     for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
         line.initial = InitialShape::Static;
     }
@@ -399,7 +399,7 @@ fn make_still(model: &mut Model) {
 mod tests {
     use super::*;
 
-    /// Drives a line for one second, in steps of a length [s].
+    /// Drives a line for one second in steps of a given length [s].
     fn driven(simulation: &mut Simulation, step: f64) {
         let count = (1.0 / step).round() as usize;
         for _ in 0..count {

@@ -1,4 +1,4 @@
-//! Reference values of the public scenes, with their work. `tests/reference/golden.csv` names their origin.
+//! Reference values of the public scenes, with their work. `tests/reference/golden.csv` states their origin.
 //!
 //! A change of these numbers is a change of results or of cost: write the file again with `cargo test --test golden
 //! -- --ignored write_the_reference_values` and give the reason in the commit.
@@ -11,9 +11,9 @@ use common::*;
 use moorline::model::End;
 use moorline::scene::Integrator;
 
-/// Allowed relative difference between machines: tensions of a run that is smooth [-].
+/// Greatest relative difference of tensions between machines in a smooth run [-].
 const TOLERANCE: f64 = 1e-6;
-/// Duration of the runs at full and at model scale [s]: before the first slackening, so that round-off does not grow.
+/// Durations of the runs at full and at model scale [s]: before the first slackening, so that rounding errors do not grow.
 const DURATIONS: [f64; 2] = [6.0, 2.0];
 
 const INTEGRATORS: [(&str, Integrator); 4] = [
@@ -23,7 +23,7 @@ const INTEGRATORS: [(&str, Integrator); 4] = [
     ("generalised_alpha", Integrator::GeneralisedAlpha),
 ];
 
-/// A name, and numbers.
+/// A name and its numbers.
 type Row = (String, Vec<f64>);
 
 const HEADER: &str = "scene,integrator,tension_b_static,tension_a_static,sag,laid_length,tension_b,middle_x,middle_z,substeps,solves";
@@ -85,7 +85,7 @@ fn the_public_scenes_give_the_values_they_gave_before_for_the_same_work() {
         assert_eq!(name, reference_name);
         let (solves, reference_solves) = (found[8], reference[8]);
         assert_eq!(found[7], reference[7], "{name}: internal steps");
-        // a pass more or less is round-off; one in a hundred is a change
+        // one iteration more or less is rounding; one in a hundred is a change
         assert!(
             (solves - reference_solves).abs() <= 0.01 * reference_solves,
             "{name}: {solves} solves, {reference_solves} before"

@@ -1,8 +1,8 @@
 //! Work of the shipped scenes at their default settings: elements, linear solves of the equilibrium, internal steps, solves of the motion.
-//! `tests/reference/work.csv` holds the earlier counts. Counters do not depend on the machine, so that a change shows
-//! its cost.
+//! `tests/reference/work.csv` contains the earlier counts. Counts do not depend on the machine, so a change in cost
+//! is visible.
 //!
-//! For an intended change the table is written again, so that the commit shows the difference with its reason:
+//! After an intended change, write the table again, so that the commit shows the difference with its reason:
 //!
 //! ```text
 //! cargo test --test guard -- --ignored write_the_table_of_work
@@ -19,15 +19,15 @@ use moorline::elements::Workspace;
 use moorline::simulation::Simulation;
 use moorline::statics::equilibrium;
 
-/// Longest run [s].
+/// Maximum duration of a run [s].
 const SPAN: f64 = 20.0;
-/// Iterations that rounding on another machine may add or save, of all [-].
+/// Fraction of iterations that rounding on another machine may add or save [-].
 const ROUNDING: f64 = 0.01;
 
 /// Columns after the scene's name.
 const COLUMNS: [&str; 5] = ["elements", "statics", "steps", "substeps", "solves"];
 
-/// The work of a scene, by column.
+/// Work of a scene, by column.
 #[derive(Debug, Clone, PartialEq)]
 struct Work {
     scene: String,
@@ -55,7 +55,7 @@ impl Work {
         }
     }
 
-    /// Columns that differ by more than rounding.
+    /// Returns the columns that differ by more than rounding.
     fn differences(&self, before: &Work) -> Vec<String> {
         let pairs = COLUMNS.iter().zip(self.counts.iter().zip(&before.counts));
         pairs
@@ -85,7 +85,7 @@ impl fmt::Display for Work {
     }
 }
 
-/// Linear solves of the equilibrium at the reference positions [-]; none for lines whose shapes are given.
+/// Number of linear solves of the equilibrium at the reference positions [-]; zero for lines with given shapes.
 fn statics(simulation: &Simulation) -> usize {
     let model = simulation.model();
     let mut work = Workspace::new(model);

@@ -1,4 +1,4 @@
-//! Natural modes of networks: closed forms, and the lowest modes of large ones against all of them.
+//! Natural modes of networks: closed forms, and the lowest modes of large networks against the full spectrum.
 
 mod common;
 #[path = "common/net.rs"]
@@ -13,7 +13,7 @@ use moorline::scene::Scene;
 use moorline::simulation::Simulation;
 use moorline::statics::modes::{Modes, ModesError};
 
-/// A flat net without gravity or water, its ropes of one element drawn to 10 m from 9.5 m.
+/// A flat net without gravity or water; its ropes have one element, stretched from 9.5 m to 10 m.
 fn taut_net(count: usize) -> Scene {
     let mut scene = net::net(count, 1);
     (scene.gravity, scene.water) = (0.0, None);
@@ -26,7 +26,7 @@ fn taut_net(count: usize) -> Scene {
     scene
 }
 
-/// Between straight ropes under the tension T, a long each, masses m vibrate across their plane with ω² = T/(m a) (4 − 2 cos p − 2 cos q),
+/// Between straight ropes of length a under tension T, masses m vibrate normal to their plane with ω² = T/(m a) (4 − 2 cos p − 2 cos q),
 /// p and q multiples of π/(N + 1).
 #[test]
 fn a_taut_net_has_the_frequencies_of_its_masses_between_springs() {
@@ -65,7 +65,7 @@ fn the_lowest_modes_of_a_large_net_and_of_a_stiff_fine_line_are_those_that_all_m
         for (found, exact) in lowest.frequencies.iter().zip(&all.frequencies) {
             assert!((found / exact - 1.0).abs() < tolerance, "{found} {exact}");
         }
-        // modes of unit modal mass that are alone at their frequency are the same but for their sign
+        // modes of unit modal mass with a distinct frequency are equal except for their sign
         if scene.lines.len() > 1 {
             let shapes = [&all, &lowest].map(|modes| modes.shape(0, 30));
             let size = |k: usize| greatest(shapes[k].iter().map(|shape| shape.norm()));

@@ -1,4 +1,4 @@
-//! Slips of units are noted, each by the key it concerns; scenes that are right are silent.
+//! Errors in units are noted with the key concerned; correct scenes give no notes.
 
 mod common;
 
@@ -9,10 +9,10 @@ use common::{assert_answers, assert_says, draft};
 use moorline::scene::{Scene, load};
 use moorline::simulation::{Simulation, Watch};
 
-/// An ordinary mooring: chain and rope, a vessel, waves, motion.
+/// A typical mooring: chain and rope, a vessel, waves, motion.
 const SCENE: &str = include_str!("scenes/platform.toml");
 
-/// The notes on a text, each with its line.
+/// The notes on a text, each with its line number.
 fn noted(text: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
@@ -30,7 +30,7 @@ fn forty_slips_of_units_are_each_noted_by_key_line_and_what_is_usual() {
     assert_answers(SCENE, include_str!("scenes/slips_of_units.txt"), noted);
 }
 
-/// Every scene that is shipped, and that of the README.
+/// Every shipped scene, and that of the README.
 fn shipped() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = fs::read_dir(root.join("scenes")).unwrap();
@@ -145,7 +145,7 @@ fn a_line_that_its_tension_at_rest_breaks_is_noted_at_the_start() {
     assert_eq!(noted("1.0e8"), []);
 }
 
-/// A rope of 10 m between two points in the dry, with these keys of the scene.
+/// A 10 m rope between two points in air, with these keys of the scene.
 fn rope(elements: usize, keys: &str) -> Scene {
     draft(format!(
         "line_types.rope = {{ mass = 0.2, axial_stiffness = 2505.0 }}\n{keys}"

@@ -1,6 +1,6 @@
-//! The manners of the house that a compiler does not check: layers, length of functions, units, no loose ends.
+//! Rules of the house that the compiler does not check: layers, length of functions, units, no loose ends.
 //!
-//! Rules read tokens, so they see no types; each names file and line.
+//! The rules operate on tokens, without types; each violation is reported with file and line.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,10 +8,10 @@ use std::sync::LazyLock;
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 
-/// Longest function, in lines.
+/// Maximum number of lines of a function [-].
 const FUNCTION_LINES_MAX: usize = 70;
 
-/// The layers from the ground up: each may use those before it.
+/// Layers from the lowest up: each may use those before it.
 const LAYERS: [&str; 11] = [
     "math",
     "physics",
@@ -26,8 +26,8 @@ const LAYERS: [&str; 11] = [
     "output",
 ];
 
-/// Packages of the workspace, each with those it may use: the library uses none; the program and the code of an FMU
-/// are on top.
+/// Packages of the workspace, each with those that it may use: the library uses none; the program and the code of an FMU
+/// are at the top.
 const PACKAGES: [(&str, &[&str]); 13] = [
     (".", &[]),
     ("accuracy", &["moorline", "moorline-host"]),
@@ -77,7 +77,7 @@ struct Source {
     /// Path from the root of the repository, with forward slashes.
     path: String,
     text: String,
-    /// Tokens of the text: comments are none but for those that document, which are attributes.
+    /// Tokens of the text. Comments are not tokens, except doc comments, which are attributes.
     tokens: Vec<Token>,
 }
 
@@ -117,23 +117,23 @@ impl Source {
         self.path.starts_with(&format!("{folder}/"))
     }
 
-    /// Text of a token, or nothing beyond the last.
+    /// Text of a token; empty beyond the last one.
     fn at(&self, index: usize) -> &str {
         self.tokens.get(index).map_or("", |token| &token.text)
     }
 
-    /// Places of a word or sign.
+    /// Indices of a word or sign.
     fn places(&self, word: &str) -> impl Iterator<Item = usize> {
         (0..self.tokens.len()).filter(move |i| self.tokens[*i].text == word)
     }
 
-    /// Lines in which a macro is called, with its name.
+    /// Lines in which a macro is called, with the macro's name.
     fn calls(&self, name: &str) -> impl Iterator<Item = (usize, String)> {
         let calls = self.places(name).filter(|i| self.at(i + 1) == "!");
         calls.map(move |i| (self.tokens[i].line, format!("{name}!")))
     }
 
-    /// Bracket that closes the one at a token.
+    /// Index of the bracket that closes the one at `open`.
     fn closing(&self, open: usize) -> usize {
         let mut depth = 0;
         let closes = |i: &usize| {
@@ -147,7 +147,7 @@ impl Source {
         (open..self.tokens.len()).find(closes).expect("a closing bracket")
     }
 
-    /// The brace or semicolon at which the head of a function ends.
+    /// Index of the brace or semicolon that ends the head of a function.
     fn head_end(&self, start: usize) -> usize {
         let mut at = start;
         while !["{", ";", ""].contains(&self.at(at)) {
@@ -160,7 +160,7 @@ impl Source {
         at
     }
 
-    /// First and last line of every function with a body; a type such as `fn(f64) -> f64` has no name.
+    /// First and last line of every function with a body; a type such as `fn(f64) -> f64` has no name and is skipped.
     fn functions(&self) -> impl Iterator<Item = [usize; 2]> {
         let named = self.places("fn").filter(|i| is_name(self.at(i + 1)));
         let bodies = named.map(|start| (start, self.head_end(start)));
@@ -196,7 +196,7 @@ impl Source {
         used
     }
 
-    /// Documentation of the item that begins at a token; other attributes do not matter.
+    /// Documentation of the item that begins at a token; other attributes are skipped.
     fn documentation(&self, item: usize) -> String {
         let (mut at, mut lines) = (item, String::new());
         while at > 0 && self.at(at - 1) == "]" {
@@ -212,7 +212,7 @@ impl Source {
         lines
     }
 
-    /// Public fields and functions that carry an f64 in the open: token and name.
+    /// Public fields and functions whose type contains f64: token index and name.
     fn public_numbers(&self) -> Vec<(usize, &str)> {
         let mut found = Vec::new();
         for at in self.places("pub") {
@@ -256,7 +256,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Files of the repository with one of these extensions, without the output of builds and tools.
+/// Files of the repository with one of these extensions, without output of builds and tools.
 fn files(folder: &Path, extensions: &[&str], found: &mut Vec<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
@@ -298,7 +298,7 @@ fn assert_none(complaints: &[String], rule: &str) {
     assert!(complaints.is_empty(), "{rule}\n  {}", complaints.join("\n  "));
 }
 
-/// Claims that no source breaks a rule; `breaks` finds the lines that do, with words about each.
+/// Asserts that no source breaks a rule; `breaks` returns the lines that do, with a description.
 fn assert_kept(rule: &str, breaks: impl Fn(&Source) -> Vec<(usize, String)>) {
     let of = |source: &'static Source| {
         let broken = breaks(source).into_iter();
@@ -307,7 +307,7 @@ fn assert_kept(rule: &str, breaks: impl Fn(&Source) -> Vec<(usize, String)>) {
     assert_none(&SOURCES.iter().flat_map(of).collect::<Vec<_>>(), rule);
 }
 
-/// The layer a file of the library belongs to.
+/// The layer to which a file of the library belongs.
 fn layer_of(path: &str) -> Option<usize> {
     let inside = path.strip_prefix("src/")?;
     let name = inside.split(['/', '.']).next()?;
@@ -320,7 +320,7 @@ fn layers_use_only_the_layers_below_them() {
         let Some(layer) = layer_of(&source.path) else {
             return Vec::new();
         };
-        // the scene uses no law
+        // the scene does not use laws
         let forbidden = |used: usize| used > layer || (LAYERS[layer], LAYERS[used]) == ("scene", "physics");
         let used = source
             .layers_used()
@@ -331,7 +331,7 @@ fn layers_use_only_the_layers_below_them() {
     });
 }
 
-/// Names of the dependencies of a manifest, development ones included.
+/// Names of the dependencies in a manifest, including development dependencies.
 fn dependencies(manifest: &str) -> Vec<&str> {
     let mut inside = false;
     let mut names = Vec::new();
@@ -377,7 +377,7 @@ fn a_function_fits_a_screen() {
     });
 }
 
-/// Returns true where a doc comment names a unit in brackets, such as `[m]`; links to items in backticks are none.
+/// Returns whether a doc comment contains a unit in brackets, such as `[m]`; links to items in backticks do not count.
 fn says_a_unit(doc: &str) -> bool {
     doc.split('[').skip(1).any(|inside| {
         let unit = inside.split(']').next().unwrap_or("");
@@ -466,7 +466,7 @@ fn nothing_is_left_to_be_done() {
     });
 }
 
-/// Laws by a part of their code that no other file has: law, fingerprint, home. Blanks do not count.
+/// Laws identified by a part of their code that only their own file contains: law, fingerprint, file. Blanks are ignored.
 const FINGERPRINTS: [(&str, &str, &str); 9] = [
     ("area of a circle", "0.25*PI", "math/circle.rs"),
     ("second moment of area, of EI", "/64.0", "math/circle.rs"),
@@ -523,7 +523,7 @@ fn each_law_is_written_in_one_file() {
     assert_none(&complaints, "one law, one home");
 }
 
-/// Folders that exist on somebody's machine only.
+/// Folders that exist only on individual machines.
 const MACHINE_FOLDERS: [&str; 5] = [
     concat!("/ho", "me/"),
     concat!("/ro", "ot/"),
@@ -546,7 +546,7 @@ fn no_file_names_a_folder_of_one_machine() {
         };
         for (number, line) in text.lines().enumerate() {
             for folder in MACHINE_FOLDERS {
-                // Inside a longer path or address it is some other folder.
+                // Inside a longer path or address it is a different folder.
                 let alone = |at: usize| {
                     let before = line[..at].chars().next_back();
                     before.is_none_or(|c| !c.is_alphanumeric() && !"._-}$~".contains(c))

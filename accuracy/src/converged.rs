@@ -1,10 +1,9 @@
 //! Converged solution of a scene, and its distance from convergence.
 //!
-//! Meshes are refined step by step, and the one closest to the mesh before it is taken; their distance is its
-//! uncertainty. Under a well-posed law that is the finest. Where damping acts in compression a slack line without
-//! bending stiffness is ill posed: its short waves grow, and meshes beyond some fineness diverge again. A seabed
-//! softened with the mesh and one as given have the same limit and converge to it at different rates; the better of
-//! the two is used.
+//! Meshes are refined step by step. The mesh closest to its predecessor is selected, and their distance is its uncertainty. Under a well-posed law,
+//! this is the finest mesh. If damping acts in compression, a slack line without bending stiffness is ill posed: its short waves grow, and meshes
+//! beyond a certain fineness diverge again. A seabed softened with the mesh and one as given have the same limit and converge to it at different
+//! rates; the better of the two is used.
 
 use moorline::scene::Scene;
 
@@ -18,12 +17,12 @@ use crate::{StudyError, judge};
 pub(crate) struct Converged {
     pub setting: Setting,
     pub fine: Timed,
-    /// Distance from the mesh before.
+    /// Distance from the previous mesh.
     pub uncertainty: Errors,
     judge: Judge,
 }
 
-/// A sequence of settings on its way.
+/// Sequence of settings, run one by one.
 struct Sequence {
     rest: std::vec::IntoIter<Setting>,
     before: Option<Timed>,
@@ -31,7 +30,7 @@ struct Sequence {
 }
 
 impl Converged {
-    /// Finds it by the first applicable family of settings.
+    /// Finds the converged solution with the first applicable family of settings.
     pub(crate) fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
         let name = || name.to_string();
         let mut reason = String::new();
@@ -56,7 +55,7 @@ impl Converged {
     }
 }
 
-/// The best of a family: two meshes of every sequence, then the rest of the better one. `None` where nothing moves.
+/// Runs two meshes of every sequence of a family, then the rest of the best sequence; returns the best solution. `None` if nothing moves.
 fn followed(scene: &Scene, family: Vec<Vec<Setting>>) -> Result<Option<Converged>, String> {
     let mut reason = String::new();
     let mut sequences: Vec<Sequence> = Vec::new();
@@ -79,13 +78,13 @@ fn followed(scene: &Scene, family: Vec<Vec<Setting>>) -> Result<Option<Converged
     let Some(mut sequence) = better else {
         return Err(reason);
     };
-    // A mesh too fine to run leaves the ones before it.
+    // If a mesh is too fine to run, the coarser ones remain.
     while sequence.rest.len() > 0 && sequence.refine(scene).is_ok() {}
     Ok(sequence.best)
 }
 
 impl Sequence {
-    /// Runs the next setting and keeps it if it lies closer to its forerunner than any before.
+    /// Runs the next setting and keeps the result if it is closer to its predecessor than any earlier one.
     fn refine(&mut self, scene: &Scene) -> Result<(), String> {
         let Some(setting) = self.rest.next() else {
             return Ok(());

@@ -1,9 +1,9 @@
 //! Errors of histories against those of a converged solution.
 //!
-//! Over the window, of the line where it is worst; tensions are those at the driven ends of lines that have one:
+//! Each error is evaluated over the window, for the line where it is greatest. Tensions are those at the driven ends of lines that have one:
 //!
 //! * RMS: √⟨(T − T_ref)²⟩ over the standard deviation of T_ref;
-//! * low-passed: the same of both tensions behind a zero-phase filter ([`moorline::math::low_pass`]);
+//! * low-passed: the same for both tensions after a zero-phase filter ([`moorline::math::low_pass`]);
 //! * peak: |max T − max T_ref| over the range of T_ref;
 //! * position: √⟨|r − r_ref|²⟩ of the point half-way along the line over the standard deviation of its motion.
 
@@ -13,9 +13,9 @@ use nalgebra::Vector3;
 /// Quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Metric {
-    /// Tension at the driven end, every sample.
+    /// Tension at the driven end, at every sample.
     Rms,
-    /// The same without its fast part.
+    /// Low-passed tension at the driven end.
     LowPassed,
     /// Greatest tension.
     Peak,
@@ -24,7 +24,7 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// All, in the order of [`Errors`].
+    /// All metrics, in the order of [`Errors`].
     pub const ALL: [Metric; 4] = [Metric::Rms, Metric::LowPassed, Metric::Peak, Metric::Position];
 
     /// Name in words.
@@ -62,7 +62,7 @@ pub struct Histories {
 pub struct Judge {
     /// Interval of the samples [s].
     pub interval: f64,
-    /// First sample that counts.
+    /// Index of the first sample that is compared.
     pub from: usize,
     /// Cut-off of the low-passed tension [Hz].
     pub cut_off: f64,
@@ -73,24 +73,24 @@ pub struct Judge {
 pub struct Errors([f64; 4]);
 
 impl Errors {
-    /// The same error [-] in all respects.
+    /// Returns the same error [-] for all metrics.
     pub fn all(error: f64) -> Errors {
         Errors([error; 4])
     }
 
-    /// Errors [-] in the order of [`Metric::ALL`].
+    /// Returns the errors [-] in the order of [`Metric::ALL`].
     pub(crate) fn new(errors: [f64; 4]) -> Errors {
         Errors(errors)
     }
 
-    /// The error in one respect [-].
+    /// Error by a metric [-].
     pub fn of(&self, metric: Metric) -> f64 {
         self.0[metric as usize]
     }
 }
 
 impl Judge {
-    /// Errors of histories against those of a reference; not finite where a history is not, or has another length.
+    /// Errors of histories against those of a reference; infinite if a history is not finite or has another length.
     pub fn errors(&self, histories: &Histories, reference: &Histories) -> Errors {
         let tensions = || histories.tension.iter().zip(&reference.tension);
         let middles = histories.middle.iter().zip(&reference.middle);
@@ -103,9 +103,8 @@ impl Judge {
         ])
     }
 
-    /// Uncertainty of a solution, from its distance to one on another mesh. Two greatest tensions may agree by chance
-    /// where the histories do not: the uncertainty of the peak is at least that of the whole tension, its RMS
-    /// distance over its range.
+    /// Uncertainty of a solution, from its distance to one on another mesh. Two greatest tensions may agree by chance although the histories do not.
+    /// The uncertainty of the peak is therefore at least the RMS distance of the tension over its range.
     pub fn uncertainty(&self, coarse: &Histories, fine: &Histories) -> Errors {
         let mut errors = self.errors(coarse, fine);
         let tensions = coarse.tension.iter().zip(&fine.tension);
@@ -182,7 +181,7 @@ mod tests {
         cut_off: 0.5,
     };
 
-    /// Ten periods of 4 s in the window: a tension about 10 N of this amplitude [N], and a ripple of 2.5 Hz.
+    /// Ten periods of 4 s in the window: a tension that varies about 10 N with this amplitude [N], and a ripple of 2.5 Hz.
     fn histories(amplitude: f64, ripple: f64) -> Histories {
         let sample = |i: usize| {
             let t = 0.1 * i as f64;
@@ -219,7 +218,7 @@ mod tests {
         let (one, other) = (histories(-1.0, 0.0), histories(1.0, 0.0));
         assert!(JUDGE.errors(&one, &other).of(Metric::Peak) < 1e-12);
         let uncertainty = JUDGE.uncertainty(&one, &other);
-        // apart by 2 sin: √2 of the range 2
+        // the difference is 2 sin: its RMS is √2, over a range of 2
         let wanted = 0.5 * 2f64.sqrt();
         assert_relative_eq!(uncertainty.of(Metric::Peak), wanted, max_relative = 1e-9);
         assert_relative_eq!(uncertainty.of(Metric::Rms), 2.0, max_relative = 1e-9);

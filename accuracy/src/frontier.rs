@@ -1,4 +1,4 @@
-//! Speed against error of a scene: cost over error, a chart for each way to measure the error.
+//! Figures of speed against error: cost over error, with a chart for each metric.
 
 use moorline::output::figures::axis::Axis;
 use moorline::output::figures::chart::{Chart, Curve, Stroke, grid_svg};
@@ -6,26 +6,26 @@ use moorline::output::figures::{DARK, WIDTH, colour};
 
 use crate::{Code, INTEGRATORS, Metric, Study};
 
-/// The peers in the order of their colours, the same in every chart.
+/// Peers in the order of their colours, which are the same in every chart.
 const PEERS: [&str; 2] = ["MoorDyn", "CableDyn"];
-/// Errors beyond this part of the signal are left out: such a run shows nothing [-].
+/// Greatest error that is drawn, relative to the signal [-]: runs with greater errors are meaningless.
 const ERROR_MAX: f64 = 0.5;
-/// Errors below this part of the converged solution's uncertainty are drawn there [-].
+/// Least error that is drawn, relative to the converged solution's uncertainty [-].
 const WITHIN: f64 = 0.4;
-/// The same where all is certain: errors are drawn from here on [-].
+/// Least error that is drawn, for any uncertainty [-].
 const ERROR_MIN: f64 = 2e-4;
-/// Levels at which moorline and the better peer are set against each other [-].
+/// Error levels at which moorline is compared with the better peer [-].
 const LEVELS: [f64; 2] = [0.03, 0.01];
 /// Size of a chart, without title [px].
 const SIZE: [u32; 2] = [WIDTH / 2, 300];
 
-/// The figure of a study: a chart for each way to measure the error.
+/// Figure of a study, with a chart for each metric.
 pub fn figure(study: &Study) -> String {
     let charts = Metric::ALL.map(|metric| chart(study, metric, true));
     grid(charts.into())
 }
 
-/// Tension and position of several studies offline.
+/// Figure of tension and position errors of several offline studies.
 pub fn overview(studies: &[Study]) -> String {
     let offline = studies.iter().filter(|study| study.host_step.is_none());
     let charts = offline.flat_map(|study| {
@@ -34,7 +34,7 @@ pub fn overview(studies: &[Study]) -> String {
     grid(charts.collect())
 }
 
-/// Tension of several studies in hosts; `None` where there is none.
+/// Figure of tension errors of several studies in hosts; `None` if there are none.
 pub fn in_host(studies: &[Study]) -> Option<String> {
     let hosted = studies.iter().filter(|study| study.host_step.is_some());
     let charts: Vec<_> = hosted
@@ -43,7 +43,7 @@ pub fn in_host(studies: &[Study]) -> Option<String> {
     (!charts.is_empty()).then(|| grid(charts))
 }
 
-/// Charts in two columns below one legend, which names every kind of curve once.
+/// Charts in two columns below a common legend, which names every kind of curve once.
 fn grid(charts: Vec<(Chart, Vec<Curve>)>) -> String {
     let mut legend: Vec<Curve> = Vec::new();
     let mut drawn = Vec::new();
@@ -58,7 +58,7 @@ fn grid(charts: Vec<(Chart, Vec<Curve>)>) -> String {
     grid_svg(&legend, &drawn, 2)
 }
 
-/// The chart of a metric, and its curves for a legend; single runs only where there is room.
+/// Chart of a metric, and its curves for a legend; `runs_too` includes single runs.
 fn chart(study: &Study, metric: Metric, runs_too: bool) -> (Chart, Vec<Curve>) {
     let mut curves = curves(study, metric, runs_too);
     curves.retain(|curve| !curve.points.is_empty());
@@ -140,7 +140,7 @@ fn duel(study: &Study, metric: Metric, level: f64) -> Option<Curve> {
     Some(Curve::new(points, DARK, Stroke::Fine).labelled(labels))
 }
 
-/// A ratio [-] in two digits.
+/// Text of a ratio [-] with about two digits.
 fn times(ratio: f64) -> String {
     match ratio {
         r if r < 1.0 => format!("{r:.2}"),
@@ -156,7 +156,7 @@ fn shown_runs(study: &Study, metric: Metric, code: &Code) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Staircase of a frontier: the least cost of an error.
+/// Staircase of a frontier: the least cost at every error.
 fn frontier(study: &Study, metric: Metric, codes: impl Fn(&Code) -> bool) -> Vec<[f64; 2]> {
     let runs = study.frontier(metric, codes);
     let runs = runs.into_iter().filter(|run| run.errors.of(metric) <= ERROR_MAX);

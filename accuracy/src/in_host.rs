@@ -1,7 +1,7 @@
 //! Default settings in a host: the FMU of the scene, driven through the C interface of FMI 2.0.
 //!
-//! Before every communication step the host sets the displacements of its bodies, but no velocities; after it, it reads the forces on them.
-//! Histories are taken from the same simulation outside the FMU with the same inputs: the two agree bit for bit.
+//! Before every communication step the host sets the displacements of its bodies, but no velocities; after it, it reads the forces on them. Histories
+//! are taken from the same simulation outside the FMU with the same inputs: the two agree bit for bit.
 
 use std::hint::black_box;
 
@@ -68,14 +68,14 @@ impl Hosted {
         })
     }
 
-    /// Processor time over simulated time [-], the median of a few passes.
+    /// Processor time over simulated time [-]: the median of a few passes.
     pub(crate) fn cost(&self) -> Result<f64, String> {
         let steps = self.displacements.len() / self.inputs.len();
         let pass = || self.pass().map_err(|error| error.to_string());
         median(pass).map(|time| time / (self.step * steps as f64))
     }
 
-    /// Steps a new instance to the end; processor time of this thread [s], without that of the start.
+    /// Steps a new instance to the end; returns the processor time of this thread without initialization [s].
     fn pass(&self) -> Result<f64, HostError> {
         let rows = self.displacements.chunks_exact(self.inputs.len());
         let mut slave = self.fmu.instantiate("mooring", false)?;
@@ -97,8 +97,8 @@ impl Hosted {
 }
 
 impl Study {
-    /// Runs the scenes with default settings, one for each of [`TOLERANCES`], in a host of a communication step [s]; returns their FMUs in the order of
-    /// [`How::InHost`].
+    /// Runs the scenes with default settings, one for each of [`TOLERANCES`], in a host with a communication step [s]; returns their FMUs in the
+    /// order of [`How::InHost`].
     pub(crate) fn run_in_host(
         &mut self,
         (scenes, step): (&[Scene], f64),
@@ -130,7 +130,7 @@ impl Study {
     }
 }
 
-/// Runs a scene in a host of a communication step [s], and times its FMU.
+/// Runs a scene in a host with a communication step [s], and times its FMU.
 fn run(scene: &Scene, step: f64, package: &Package<'_>) -> Result<(Timed, Hosted), String> {
     let trial = Trial::in_steps(scene, step)?;
     let hosted = Hosted::new(package(scene)?, scene, &trial)?;

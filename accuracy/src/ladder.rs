@@ -1,53 +1,54 @@
-//! The settings that a scene is tried with.
+//! Settings with which a scene is run.
 
 use moorline::discretisation;
 use moorline::scene::{ContactLaw, Integrator, Reconstruction, Scene, Threads};
 
-/// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
-/// step, so that a mesh a little finer may take one step more, and one a little coarser waste none. The leapfrogs take four nodes at a
-/// time, so finer meshes have an odd number of elements, every other one as many as make whole fours of nodes.
+/// Elements of the longest line in cheap explicit runs [-]. They are close together: an explicit step must divide the communication step, so that a
+/// slightly finer mesh may need one more step, and a slightly coarser one may make full use of its steps. The leapfrogs process four nodes at a time,
+/// so finer meshes have odd numbers of elements, and every other one has a number of nodes divisible by four.
 const ELEMENTS: [usize; 29] = [
     3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31, 33, 35, 39, 43, 47, 51, 55, 59,
     63,
 ];
 /// Elements of the longest line in costlier explicit runs [-].
 const ELEMENTS_FINE: [usize; 7] = [71, 79, 95, 111, 159, 227, 319];
-/// Elements of the longest line, tensions implicit [-]: as close together as those that peers are tried with.
+/// Elements of the longest line in axial-implicit runs [-]: as close together as those of the peers.
 const ELEMENTS_AXIAL: [usize; 28] = [
     3, 4, 5, 6, 7, 8, 9, 11, 13, 15, 19, 23, 27, 31, 35, 39, 43, 47, 55, 63, 71, 79, 87, 95, 103, 111, 135,
     159,
 ];
-/// Elements of the longest line, fully implicit [-].
+/// Elements of the longest line in fully implicit runs [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
-/// Elements of the longest line, without dynamics [-].
+/// Elements of the longest line in quasi-static runs [-].
 const ELEMENTS_STATIC: [usize; 4] = [10, 20, 40, 80];
-/// The same of converged solutions [-].
+/// Elements of the longest line in converged quasi-static solutions [-].
 const CONVERGED_ELEMENTS_STATIC: [usize; 3] = [80, 160, 320];
-/// Steps to the shortest period, tensions implicit [-].
+/// Axial-implicit steps per shortest period [-].
 const STEPS_AXIAL: [f64; 20] = [
     5.0, 5.7, 6.1, 6.6, 7.3, 8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0, 160.0,
     320.0, 640.0,
 ];
-/// Steps to the shortest period, fully implicit [-].
+/// Fully implicit steps per shortest period [-].
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
-/// Communication steps over the interval of the output that explicit runs are tried with [-].
+/// Communication steps of explicit runs, in intervals of the output [-].
 const COMMUNICATIONS: [usize; 10] = [1, 2, 3, 4, 8, 10, 13, 16, 20, 28];
-/// Elements up to which explicit runs are tried with more than the first of the communication steps [-]: the cost of
-/// a communication step is negligible on finer meshes.
+/// Greatest number of elements with which explicit runs use more than the first of the communication steps [-]: the cost of a communication step is
+/// negligible on finer meshes.
 const COMMUNICATING_ELEMENTS: usize = 32;
-/// Communication steps to the shortest period, at least [-]: the motion in between is a cubic, and histories are read by cubics.
+/// Least number of communication steps per shortest period [-]: between them the motion is a cubic, and histories are interpolated by cubics.
 const COMMUNICATIONS_PER_PERIOD: f64 = 5.0;
 /// Target errors of default settings [-].
 pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 /// Communication steps of the hosts [s].
 pub const HOST_STEPS: [f64; 2] = [0.05, 0.01];
-/// Elements of the longest line in converged solutions, the coarser of which measure the convergence of the finer [-].
+/// Elements of the longest line in converged solutions [-]; the coarser ones measure the convergence of the finer ones.
 const CONVERGED_ELEMENTS: [usize; 3] = [320, 640, 1280];
-/// The same under the peers' law: the short waves of a slack line grow under it, the faster the finer the mesh [-].
+/// Elements of the longest line in converged solutions under the peers' law [-], in which the short waves of a slack line grow, faster on finer
+/// meshes.
 const CONVERGED_ELEMENTS_PEERS: [usize; 3] = [160, 320, 640];
-/// Steps to the shortest period in the converged solution, tensions implicit [-].
+/// Axial-implicit steps per shortest period in the converged solution [-].
 const CONVERGED_STEPS_AXIAL: f64 = 8000.0;
-/// Steps to the shortest period in the converged solution, where it needs a fully implicit integrator [-].
+/// Steps per shortest period in a converged solution that needs a fully implicit integrator [-].
 const CONVERGED_STEPS: f64 = 4000.0;
 /// Elements of the longest line of a converged solution that needs a fully implicit integrator [-].
 const CONVERGED_ELEMENTS_IMPLICIT: usize = 320;
@@ -55,22 +56,22 @@ const CONVERGED_ELEMENTS_IMPLICIT: usize = 320;
 /// One way to solve a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
-    /// Elements of the longest line, others in proportion; chosen by the tool where absent.
+    /// Elements of the longest line, others in proportion; `None` if the tool selects them.
     pub elements: Option<usize>,
     /// Integrator.
     pub integrator: Integrator,
     /// Longest internal step [s].
     pub time_step_max: Option<f64>,
-    /// Target error [-] that default settings are found for; the rest is then absent.
+    /// Target error of default settings [-]; elements and step are then absent.
     pub tolerance: Option<f64>,
-    /// Intervals of the output from one communication point to the next [-].
+    /// Communication step, in intervals of the output [-].
     pub communication: usize,
-    /// Contact law of the seabed; that of the scene where absent.
+    /// Contact law of the seabed; that of the scene if absent.
     pub contact: Option<ContactLaw>,
 }
 
 impl Setting {
-    /// A mesh and an integrator; the longest internal step [s] is the scene's where absent.
+    /// Returns a setting of mesh and integrator; the longest internal step [s] is the scene's if absent.
     pub fn new(elements: usize, integrator: Integrator, time_step_max: Option<f64>) -> Setting {
         Setting {
             elements: Some(elements),
@@ -82,7 +83,7 @@ impl Setting {
         }
     }
 
-    /// Default settings for a target error [-].
+    /// Returns default settings for a target error [-].
     pub fn by_default(tolerance: f64) -> Setting {
         Setting {
             elements: None,
@@ -94,8 +95,8 @@ impl Setting {
         }
     }
 
-    /// The scene with this setting in place of its mesh, integrator and step. Default settings are found by convergence trials, as in
-    /// `moorline run` and `fmu`; with any other setting a host gives the motion at the end of a step, as it does to other codes.
+    /// Returns the scene with this setting instead of its mesh, integrator and step. Default settings are found by convergence trials, as in
+    /// `moorline run` and `fmu`. With any other setting, a host gives the motion at the end of a step, as it does to the other codes.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         let length = |line: &moorline::scene::Line| -> f64 {
@@ -109,9 +110,9 @@ impl Setting {
             });
         }
         scene.solver.integrator = self.integrator;
-        // A missing step is limited by the integrator's rules only.
+        // Without a step, the setting keeps the limit of the scene.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
-        // Processor time is that of one thread, as that of other codes.
+        // Processor time is that of one thread, as for the other codes.
         scene.solver.threads = Threads::Number(1);
         if let (Some(seabed), Some(contact)) = (&mut scene.seabed, self.contact) {
             seabed.contact = contact;
@@ -124,7 +125,7 @@ impl Setting {
         scene
     }
 
-    /// The same with communication points so far apart [intervals of the output].
+    /// Returns the setting with a communication step [intervals of the output].
     fn communicating(self, communication: usize) -> Setting {
         Setting {
             communication,
@@ -132,7 +133,7 @@ impl Setting {
         }
     }
 
-    /// The same on a seabed with exactly the scene's coefficients.
+    /// Returns the setting on a seabed with exactly the scene's coefficients.
     pub fn on_seabed_as_given(self) -> Setting {
         Setting {
             contact: Some(ContactLaw::AsGiven),
@@ -141,7 +142,7 @@ impl Setting {
     }
 }
 
-/// Ladder of a scene whose motion has this shortest period [s].
+/// Settings for a scene whose motion has this shortest period [s].
 pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     if is_quasi_static(scene) {
         return ELEMENTS_STATIC.map(quasi_static).into();
@@ -171,7 +172,7 @@ pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     settings
 }
 
-/// Returns whether a scene is quasi-static: dynamics is then no measure of it.
+/// Returns whether a scene is quasi-static: it is then not compared with dynamics.
 pub(crate) fn is_quasi_static(scene: &Scene) -> bool {
     scene.solver.integrator == Integrator::QuasiStatic
 }
@@ -222,8 +223,7 @@ fn explicit(period: f64, interval: f64) -> impl Iterator<Item = Setting> {
     })
 }
 
-/// Communication step [intervals] and internal step [s] that come nearest to a wanted internal step [s] from below, one a multiple of
-/// the other.
+/// Communication step [intervals] and internal step [s] closest to a wanted internal step [s] from below, one a multiple of the other.
 fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
     const ROUNDING: f64 = 1e-9;
     if wanted >= interval {
@@ -234,8 +234,8 @@ fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
     }
 }
 
-/// Families of settings for a converged solution, in the order they are tried: the first that applies to the scene is taken. Each holds one or
-/// more sequences of finer and finer settings, the best of which is followed to its end: a seabed may be softened with the mesh, or have the
+/// Families of settings for a converged solution, in the order in which they are tried: the first that applies to the scene is used. Each contains
+/// one or more sequences of increasingly fine settings, the best of which is run to its end: a seabed may be softened with the mesh, or have the
 /// scene's own coefficients.
 pub(crate) fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
     if is_quasi_static(scene) {

@@ -1,14 +1,12 @@
-//! Speed against error: a scene run with a ladder of meshes, integrators and steps, each judged against a converged solution.
+//! Speed against error: a scene is run with many meshes, integrators and steps, and each run is compared with a converged solution.
 //!
-//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline
-//! is driven like the peers: a host gives position and velocity of the fairlead, one communication step after the
-//! other. The runs that the verdicts name are timed in several rounds, own and peers' alternately. Errors are those
-//! of [`errors`], over the second half
-//! of the run. The converged solution is the best of a sequence of fine meshes, its uncertainty the distance from the one of half its
-//! resolution: nothing below that is a statement.
+//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven like the peers: a host
+//! gives position and velocity of the fairlead in every communication step. The runs that the verdicts name are timed in several rounds, moorline's
+//! and the peers' alternately. Errors are those of [`errors`], over the second half of the run. The converged solution is the best of a sequence of
+//! fine meshes, and its uncertainty is the distance from the one with half its resolution: smaller errors are not meaningful.
 //!
-//! With peers, all codes solve the peers' equations, damping that acts in compression too
-//! ([`moorline::scene::Solver::negative_tension`]); and none keeps an energy balance.
+//! With peers, all codes solve the peers' equations, in which damping also acts in compression ([`moorline::scene::Solver::negative_tension`]), and
+//! none computes an energy balance.
 
 #![forbid(unsafe_code)]
 
@@ -38,7 +36,7 @@ pub use slow::Slow;
 use timed::{Timed, Trial, run};
 pub use verdict::{Duel, LEVELS, Verdict};
 
-/// moorline's integrators that have a ladder.
+/// Integrators of moorline that are studied.
 pub const INTEGRATORS: [Integrator; 4] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
@@ -71,14 +69,14 @@ impl Code {
         }
     }
 
-    /// The code of a name; a peer where it is none of moorline's.
+    /// Returns the code with this name; a peer if it is not one of moorline's.
     pub fn named(name: &str) -> Code {
         let own = INTEGRATORS.into_iter().chain([Integrator::Beam]).map(Code::Own);
         let found = own.chain([Code::ByDefault]).find(|code| code.name() == name);
         found.unwrap_or_else(|| Code::Peer(name.to_string()))
     }
 
-    /// Returns whether it is moorline.
+    /// Returns whether the code is moorline.
     pub fn is_own(&self) -> bool {
         !matches!(self, Code::Peer(_))
     }
@@ -93,11 +91,11 @@ pub struct Run {
     pub label: String,
     /// Processor time over simulated time [-], the least of its timings.
     pub cost: f64,
-    /// Against the converged solution.
+    /// Errors against the converged solution.
     pub errors: Errors,
     /// Target error of moorline's default settings [-].
     pub tolerance: Option<f64>,
-    /// Elements of a peer with the settings that its decks come with [-].
+    /// Elements of a peer with the settings of its decks [-].
     pub deck: Option<usize>,
     /// All timings.
     costs: Vec<f64>,
@@ -108,11 +106,11 @@ pub struct Run {
 #[derive(Debug, Clone, PartialEq)]
 enum How {
     Own(Setting),
-    /// By its number among the FMUs in a host.
+    /// By its index among the FMUs in a host.
     InHost(usize),
-    /// By its number in the peers' ladder.
+    /// By its index among the runs planned for the peers.
     Peer(usize),
-    /// Not at all: it was read from a table.
+    /// Not possible: the run was read from a table.
     Read,
 }
 
@@ -130,14 +128,14 @@ impl Run {
         }
     }
 
-    /// Least and greatest of its timings [-].
+    /// Least and greatest of the timings, over simulated time [-].
     pub fn spread(&self) -> [f64; 2] {
         let ends = |[least, greatest]: [f64; 2], cost: &f64| [least.min(*cost), greatest.max(*cost)];
         self.costs.iter().fold([self.cost; 2], ends)
     }
 }
 
-/// A run that gave no result, and why.
+/// Run without a result, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failed {
     /// Code, mesh and step.
@@ -153,21 +151,21 @@ pub struct Study {
     pub name: String,
     /// Title of the scene.
     pub title: String,
-    /// Communication step of the host [s]; offline where absent.
+    /// Communication step of the host [s]; `None` for an offline study.
     pub host_step: Option<f64>,
-    /// Damping acts in compression, the peers' law.
+    /// True if damping acts in compression, as in the peers' law.
     pub negative_tension: bool,
-    /// The scene has a seabed.
+    /// True if the scene has a seabed.
     pub on_seabed: bool,
     /// Mesh and step of the converged solution, in words.
     pub converged: String,
-    /// Distance from a solution of half its resolution.
+    /// Distance of the converged solution from one with half its resolution.
     pub uncertainty: Errors,
     /// All runs.
     pub runs: Vec<Run>,
     /// Runs without a result.
     pub failed: Vec<Failed>,
-    /// The quasi-static mode in the scene's motion and slower ones.
+    /// Errors of the quasi-static mode in the scene's motion and slower ones.
     pub slow: Vec<Slow>,
 }
 
@@ -182,7 +180,7 @@ pub enum StudyError {
         /// Message of the last attempt.
         reason: String,
     },
-    /// Nothing happens in it.
+    /// Nothing moves in the scene.
     #[error("{name}: nothing moves in it, so that there is no error of a history to judge; give it a motion")]
     AtRest {
         /// The scene.
@@ -227,7 +225,7 @@ pub fn study(
         (place, case.count(place) + of_peers)
     });
     let counts: Vec<(Option<f64>, usize)> = counts.collect();
-    // The converged solution and its judge cost much, and so does timing again.
+    // The converged solution takes much of the time, and so does repeated timing.
     let mut before = case.settings.len() / 4;
     let with_rounds = |runs: usize| runs + runs / 8 + 1;
     let total = before + counts.iter().map(|(_, runs)| with_rounds(*runs)).sum::<usize>();
@@ -250,28 +248,28 @@ pub fn study(
     Ok(studies)
 }
 
-/// What all studies of a scene share.
+/// Data that all studies of a scene share.
 struct Case<'a> {
     scene: Scene,
-    /// The ladder offline.
+    /// Settings of the offline study.
     settings: Vec<Setting>,
     package: Option<&'a Package<'a>>,
 }
 
 impl Case<'_> {
-    /// None for the offline study, then the communication step of each host [s].
+    /// Returns `None` for the offline study, then the communication step of each host [s].
     fn places(&self) -> impl Iterator<Item = Option<f64>> + use<'_> {
         let hosts = HOST_STEPS.into_iter().filter(|_| self.package.is_some());
         std::iter::once(None).chain(hosts.map(Some))
     }
 
-    /// The scene with default settings for every tolerance, chosen with the communication step of the host [s] as its interval.
+    /// Returns the scene with default settings for every tolerance, selected with the communication step of the host [s] as its interval.
     fn by_default(&self, step: f64) -> [Scene; TOLERANCES.len()] {
         let mut stated = self.scene.clone();
         stated.output.interval = step;
         TOLERANCES.map(|tolerance| {
             let mut chosen = Setting::by_default(tolerance).apply(&stated);
-            chosen.output.interval = self.scene.output.interval; // that of the samples
+            chosen.output.interval = self.scene.output.interval; // interval of the samples
             chosen
         })
     }
@@ -282,7 +280,7 @@ impl Case<'_> {
     }
 }
 
-/// Distance of the converged solution of a scene from one of half its resolution.
+/// Distance of the converged solution of a scene from one with half its resolution.
 ///
 /// # Errors
 /// There is no converged solution.
@@ -291,7 +289,7 @@ pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
 }
 
 impl Study {
-    /// A study without runs, offline or in a host of a communication step [s].
+    /// Creates a study without runs, offline or in a host with a communication step [s].
     fn new((name, host_step): (&str, Option<f64>), scene: &Scene, converged: &Converged) -> Study {
         let on_seabed = scene.seabed.is_some();
         Study {
@@ -311,7 +309,7 @@ impl Study {
         }
     }
 
-    /// Runs moorline and the peers, and times the runs that the verdicts name in rounds; `done` is called with the number of runs that are done.
+    /// Runs moorline and the peers, and times the runs that the verdicts name in rounds; `done` is called with the number of finished runs.
     fn run(
         &mut self,
         case: &Case<'_>,
@@ -385,13 +383,13 @@ impl Study {
         }
     }
 
-    /// The cheapest run among those that `codes` admits whose error is at most `level` [-].
+    /// Returns the cheapest run of the codes that `codes` admits with an error of at most `level` [-].
     pub fn cheapest(&self, metric: Metric, level: f64, codes: impl Fn(&Code) -> bool) -> Option<&Run> {
         let good = self.within(metric, level, codes);
         good.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    /// Runs among those that `codes` admits whose error is at most `level` [-].
+    /// Returns the runs of the codes that `codes` admits with an error of at most `level` [-].
     fn within(
         &self,
         metric: Metric,
@@ -402,7 +400,7 @@ impl Study {
         good.filter(move |run| run.errors.of(metric) <= level)
     }
 
-    /// Runs of a code that none of its other runs beats in both cost and error, from the cheapest on.
+    /// Returns the runs of the codes that `codes` admits that no other of these runs beats in both cost and error, in order of cost.
     pub fn frontier(&self, metric: Metric, codes: impl Fn(&Code) -> bool) -> Vec<&Run> {
         let mut runs: Vec<&Run> = self.runs.iter().filter(|run| codes(&run.code)).collect();
         runs.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -437,7 +435,7 @@ fn code(setting: &Setting) -> Code {
     }
 }
 
-/// Mesh and step of a run, in words, with the treatment of the seabed, where there is one.
+/// Mesh and step of a run in words, with the treatment of the seabed if there is one.
 fn label(setting: &Setting, timed: &Timed, on_seabed: bool) -> String {
     let communication = timed.communication.filter(|_| setting.tolerance.is_none());
     let communication = communication.map_or(String::new(), |step| {
@@ -459,7 +457,7 @@ fn label(setting: &Setting, timed: &Timed, on_seabed: bool) -> String {
     }
 }
 
-/// A setting in words, before it has run.
+/// Describes a setting in words, before its run.
 fn described(setting: &Setting) -> String {
     let elements = setting.elements.map_or(String::new(), |n| format!(", n = {n}"));
     let step = setting.time_step_max.map(seconds);
@@ -470,7 +468,7 @@ fn described(setting: &Setting) -> String {
     format!("{}{elements}{step}{tolerance}", code(setting).name())
 }
 
-/// A time [s] in the multiple of the second that fits.
+/// Text of a time [s] in a suitable multiple of the second.
 fn seconds(time: f64) -> String {
     match time {
         t if t >= 0.1 => format!("{t:.2} s"),
@@ -492,7 +490,7 @@ fn judge(scene: &Scene, converged: &Histories) -> Judge {
 mod tests {
     use super::*;
 
-    /// A study of these runs, certain to 0.1 %.
+    /// Study of these runs with an uncertainty of 0.1 %.
     pub(crate) fn study_of(runs: Vec<Run>) -> Study {
         Study {
             name: "scene".to_string(),
@@ -513,12 +511,12 @@ mod tests {
         Run::new(code, format!("at {error}"), cost, Errors::all(error), how)
     }
 
-    /// A run of moorline with one error [-] in all respects.
+    /// A run of moorline with the same error [-] by all metrics.
     pub(crate) fn own(cost: f64, error: f64) -> Run {
         run_of(Code::Own(Integrator::Leapfrog), cost, error)
     }
 
-    /// A run of a peer with one error [-] in all respects.
+    /// A run of a peer with the same error [-] by all metrics.
     pub(crate) fn peer(name: &str, cost: f64, error: f64) -> Run {
         run_of(Code::Peer(name.to_string()), cost, error)
     }

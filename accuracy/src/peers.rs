@@ -1,8 +1,8 @@
-//! The peers, MoorDyn and CableDyn, run on the same scene, in the same run and on the same core.
+//! The peers MoorDyn and CableDyn, run with the same scene in the same study and on the same core.
 //!
-//! The Python script `peers.py` drives the peers' packages and exchanges lines of JSON with this module: it reads the scene and writes its
-//! ladder, then makes the runs that are requested, with or without reading their results. The ladder holds each peer's best settings;
-//! times are processor times of the peer's loop alone.
+//! The Python script `peers.py` drives the peers' packages and exchanges lines of JSON with this module: it reads the scene and writes its list of
+//! planned runs, then makes the runs that are requested, with or without reading their results. The list contains each peer's best settings. Times
+//! are processor times of the peer's loop alone.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
@@ -24,9 +24,9 @@ const SCRIPT: &str = include_str!("../peers.py");
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
 
-/// A finer mesh pays as long as it lowers some error to less than this part of the least so far [-].
+/// Ratio of an error to the least so far below which a finer mesh is an improvement [-].
 const PAYS: f64 = 0.95;
-/// Number of meshes in a row that do not pay, after which their family of settings ends [-].
+/// Number of consecutive meshes without improvement after which their family of settings ends [-].
 const IDLE_MAX: usize = 3;
 
 /// A Python interpreter that can import the peers' packages.
@@ -40,7 +40,7 @@ pub struct Peers {
 /// Reason why the peers cannot run.
 #[derive(Debug, thiserror::Error)]
 pub enum PeerError {
-    /// The interpreter is not there.
+    /// The interpreter does not exist.
     #[error("{}: no Python interpreter; give one, or the folder of a virtual environment", .0.display())]
     NoPython(PathBuf),
     /// The interpreter lacks the packages.
@@ -48,7 +48,7 @@ pub enum PeerError {
     NoPackages {
         /// The interpreter.
         python: PathBuf,
-        /// Message of the peer.
+        /// Message of the interpreter.
         said: String,
     },
     /// The script cannot be put into the folder.
@@ -61,7 +61,7 @@ pub enum PeerError {
     },
 }
 
-/// The script's first answer.
+/// First reply of the script.
 #[derive(Debug, Deserialize)]
 struct Ladder {
     runs: Vec<Planned>,
@@ -75,20 +75,20 @@ struct LeftOut {
     reason: String,
 }
 
-/// A run of the script's ladder.
+/// Run planned by the script.
 #[derive(Debug, Clone, Deserialize)]
 struct Planned {
     peer: String,
     label: String,
-    /// Runs that differ in their mesh alone, from coarse to fine.
+    /// Family of runs that differ only in their mesh, from coarse to fine.
     family: String,
-    /// Communication step [s] of a run in a host.
+    /// Communication step of a run in a host [s].
     host: Option<f64>,
-    /// Elements of a run with the settings that decks come with [-].
+    /// Elements of a run with the settings of decks [-].
     deck: Option<usize>,
 }
 
-/// The answer for a run.
+/// Reply of the script for a run.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Answer {
@@ -96,23 +96,23 @@ enum Answer {
     Failed { failed: String },
 }
 
-/// Processor time of a run, and its histories where they are read.
+/// Processor time of a run, and its histories if they are read.
 #[derive(Debug, Deserialize)]
 struct Measured {
     cpu_seconds: f64,
-    /// Of every line with a driven end.
+    /// Tension of every line with a driven end [N].
     #[serde(default)]
     tension: Vec<Vec<f64>>,
-    /// Of every line.
+    /// Position half-way along every line [m].
     #[serde(default)]
     mid: Vec<Vec<[f64; 3]>>,
 }
 
-/// The script at work on a scene.
+/// Running script with a scene.
 #[derive(Debug)]
 pub(crate) struct Conversation {
     child: Child,
-    /// Absent once the script has been made to end.
+    /// `None` after the script was made to end.
     input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
     runs: Vec<Planned>,
@@ -121,7 +121,7 @@ pub(crate) struct Conversation {
 }
 
 impl Peers {
-    /// The peers' packages in an interpreter, or in the virtual environment in a folder; their script goes into `folder`.
+    /// Finds the peers' packages in an interpreter, or in the virtual environment in a folder; writes their script into `folder`.
     ///
     /// # Errors
     /// There is no interpreter, it lacks the packages, or the script cannot be written.
@@ -154,7 +154,7 @@ impl Peers {
         }
     }
 
-    /// Starts the script with a scene, and reads its ladder.
+    /// Starts the script with a scene, and reads its list of planned runs.
     pub(crate) fn begin(&self, name: &str, scene: &Scene) -> Result<Conversation, String> {
         let question = system::described(name, scene)?;
         let mut child = Command::new(&self.python)
@@ -184,7 +184,7 @@ impl Peers {
 impl Drop for Conversation {
     fn drop(&mut self) {
         drop(self.input.take());
-        // The script ends with its input; a status that cannot be had changes nothing.
+        // The script ends when its input is closed; its exit status is not needed.
         let _ = self.child.wait();
     }
 }
@@ -210,7 +210,7 @@ impl Family {
 }
 
 impl Conversation {
-    /// Number of runs for a host of a communication step [s], or offline.
+    /// Number of runs for a host with a communication step [s], or offline.
     pub(crate) fn count(&self, host: Option<f64>) -> usize {
         self.runs.iter().filter(|run| run.host == host).count()
     }
@@ -226,7 +226,7 @@ impl Conversation {
         serde_json::from_str(&line).map_err(|error| format!("the peers' script answered {line:.80}: {error}"))
     }
 
-    /// Makes a run of the peers' ladder, with or without its histories.
+    /// Makes a planned run, with or without its histories.
     fn run(&mut self, number: usize, read: bool) -> Result<Measured, String> {
         match self.ask(&json!({ "run": number, "read": read }))? {
             Answer::Run(measured) => Ok(measured),
@@ -234,8 +234,8 @@ impl Conversation {
         }
     }
 
-    /// Makes the runs of the peers' ladder for the host of a study, or offline, and judges them. A family of settings ends where finer meshes no longer pay; `done` is
-    /// called with the number of runs that are done.
+    /// Makes the runs planned for the host of a study, or offline, and evaluates their errors. A family of settings ends when finer meshes bring no
+    /// further improvement; `done` is called with the number of finished runs.
     pub(crate) fn add_runs(&mut self, converged: &Converged, study: &mut Study, done: &mut dyn FnMut(usize)) {
         let mut families: BTreeMap<String, Family> = BTreeMap::new();
         let mut made = 0;
@@ -279,7 +279,7 @@ impl Conversation {
         }
     }
 
-    /// Times a run of the peers' ladder again: processor time over simulated time [-]. `None` where it fails.
+    /// Times a planned run again: processor time over simulated time [-]. `None` if it fails.
     pub(crate) fn time(&mut self, number: usize) -> Option<f64> {
         Some(self.run(number, false).ok()?.cpu_seconds / self.simulated)
     }

@@ -1,10 +1,9 @@
-//! Repeated timing, of moorline's and peers' runs alternately, on which the verdicts rest.
+//! Repeated timing of moorline's and the peers' runs alternately, as the basis of the verdicts.
 //!
-//! A cheapest run is the least of many timings and so biased low, and the load of the machine changes from minute to
-//! minute. Every run named by a verdict or chosen by default is therefore timed in several rounds, each of which
-//! takes moorline and peers alternately. The cost is the least of the rounds, the spread their range. A run that was
-//! slowed in its first timing is not named; at the levels that moorline is held to, runs that cost little more than
-//! the cheapest of their code are therefore timed in rounds too.
+//! The cost of a cheapest run is the least of many timings and therefore biased low, and the load of the machine changes from minute to minute. Every
+//! run named by a verdict or with default settings is therefore timed in several rounds, each of which takes moorline and peers alternately. The cost
+//! is the least of the rounds, and the spread is their range. A run that was slowed down in its first timing is not named; at the levels that
+//! moorline is held to, runs that cost little more than the cheapest of their code are therefore timed in rounds too.
 
 use moorline::scene::Scene;
 
@@ -14,14 +13,14 @@ use crate::peers::Conversation;
 use crate::timed::Trial;
 use crate::{Code, How, Run, Study};
 
-/// Timings of a run that a verdict names [-].
+/// Number of timings of a run that a verdict names [-].
 const ROUNDS: usize = 3;
-/// Passes over the named runs at most [-]: a new timing may make another run the cheapest.
+/// Greatest number of passes over the named runs [-]: a new timing may make another run the cheapest.
 const PASSES_MAX: usize = 8;
-/// Cost of a run over that of the cheapest of its code, up to which it might be the cheapest itself [-].
+/// Ratio of a run's cost to that of the cheapest of its code up to which it might be the cheapest itself [-].
 const CONTENDER_COST: f64 = 1.5;
 
-/// Everything that is needed to time the runs of a study again.
+/// Data needed to time the runs of a study again.
 pub(crate) struct Repeat<'a> {
     pub scene: &'a Scene,
     pub hosted: &'a [Hosted],
@@ -29,7 +28,7 @@ pub(crate) struct Repeat<'a> {
 }
 
 impl Repeat<'_> {
-    /// Processor time of a run over simulated time [-]; `None` where it cannot be repeated.
+    /// Processor time of a run over simulated time [-]; `None` if it cannot be repeated.
     fn cost(&mut self, how: &How) -> Option<f64> {
         match how {
             How::Own(setting) => Trial::new(self.scene, setting).ok()?.cost().ok(),
@@ -50,7 +49,7 @@ impl Study {
             }
             for index in open {
                 let cost = repeat.cost(&self.runs[index].how);
-                // A run that cannot be repeated keeps the cost it has.
+                // A run that cannot be repeated keeps its cost.
                 let run = &mut self.runs[index];
                 let cost = cost.unwrap_or(run.cost);
                 run.costs.push(cost);
@@ -59,8 +58,8 @@ impl Study {
         }
     }
 
-    /// Indices of the runs that the verdicts name and that were timed in fewer than all rounds: moorline's and the peers' next to
-    /// one another.
+    /// Indices of the runs that are named by the verdicts and were timed in fewer than all rounds, with moorline's and the peers' next to one
+    /// another.
     fn unsettled(&self) -> Vec<usize> {
         let mut named = Vec::new();
         for verdict in self.verdicts() {
@@ -82,7 +81,7 @@ impl Study {
         indices
     }
 
-    /// The runs of the same code as one of them that reach a level [-] of a metric too, at little more than its cost: with a luckier timing
+    /// Returns the runs of the same code as a given one that also reach a level [-] of a metric, at little more than its cost: after another timing
     /// they might be the cheapest.
     fn contenders(&self, of: &Run, metric: Metric, level: f64) -> impl Iterator<Item = &Run> {
         let (code, most) = (of.code.clone(), CONTENDER_COST * of.cost);

@@ -1,4 +1,4 @@
-//! The quasi-static mode in slower and slower motions of a scene: equilibria against dynamics on the same mesh.
+//! The quasi-static mode in increasingly slow motions of a scene: equilibria against dynamics on the same mesh.
 
 use moorline::scene::{Integrator, MotionPath, Scene};
 
@@ -7,28 +7,28 @@ use crate::judge;
 use crate::ladder::Setting;
 use crate::timed::Trial;
 
-/// Factors on all periods, tried until the quasi-static mode is good [-].
+/// Factors on all periods, tried until the error of the quasi-static mode is small enough [-].
 const FACTORS: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
-/// Good enough to stop: error of RMS tension [-].
+/// Error of RMS tension at which the trials end [-].
 const GOOD: f64 = 0.01;
-/// Elements of the longest line [-]; both runs have them, so that the mesh does not count.
+/// Elements of the longest line [-]; the same in both runs, so that the mesh has no effect.
 const ELEMENTS: usize = 80;
-/// Internal steps to the shortest period, at least [-].
+/// Least number of internal steps per shortest period [-].
 const STEPS_PER_PERIOD: f64 = 160.0;
 
-/// The quasi-static mode in a slower motion.
+/// Errors of the quasi-static mode in a slower motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slow {
-    /// Periods over those of the scene [-].
+    /// Ratio of the periods to those of the scene [-].
     pub factor: f64,
     /// Shortest period of the motion [s].
     pub period: f64,
-    /// Against dynamics on the same mesh.
+    /// Errors against dynamics on the same mesh.
     pub errors: Errors,
 }
 
-/// Errors of the quasi-static mode, from the scene's own motion on to slower ones; none where the motion is no sum of sines or a run
-/// fails.
+/// Errors of the quasi-static mode, from the scene's own motion to slower ones; empty if the motion is not a sum of sines. The list ends before the
+/// first run that fails.
 pub(crate) fn slow(scene: &Scene) -> Vec<Slow> {
     let mut all = Vec::new();
     for factor in FACTORS {
@@ -65,7 +65,7 @@ fn histories(scene: &Scene, setting: &Setting) -> Option<Histories> {
     Some(timed.histories)
 }
 
-/// The scene with all periods this many times as long, duration and output alike.
+/// Returns the scene with all periods, duration and output interval multiplied by a factor; `None` if the motion is not a sum of sines.
 fn slowed(scene: &Scene, factor: f64) -> Option<Scene> {
     let mut scene = scene.clone();
     let own = scene.points.iter_mut();

@@ -1,7 +1,7 @@
-//! The scene as the peers' script reads it: the properties that all codes have, and no others.
+//! The scene as read by the peers' script: only the properties that all codes have.
 //!
-//! A scene with any other property is refused, with the owner of the property: without it the peers would run a different system.
-//! Damping and places at rest are those of moorline's model, in which a damping ratio and an open damping are values in N s.
+//! A scene with any other property is refused, and the error names the owner of the property: without it, the peers would simulate a different
+//! system. Damping and positions at rest are those of moorline's model, in which a damping ratio and an open damping have values in N s.
 
 use moorline::model::{Line as ModelLine, Model, Role};
 use moorline::scene::{
@@ -13,18 +13,18 @@ use serde_json::{Value, json};
 
 use crate::ladder::{HOST_STEPS, Setting};
 
-/// Elements of the longest line that the peers are tried with [-].
+/// Elements of the longest line in runs of the peers [-].
 const ELEMENTS: [usize; 23] = [
     3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80,
 ];
 /// Index of the coarsest of these meshes for lines on a seabed: fewer elements do not resolve the touchdown.
 const ELEMENTS_ON_SEABED: usize = 5;
-/// Processor time that all passes of a single run of a peer may take [s].
+/// Greatest processor time of all passes of a single run of a peer [s].
 const TIME_LIMIT: f64 = 60.0;
-/// Elements of the longest line of the model that places at rest are taken from [-].
+/// Elements of the longest line of the model from which positions at rest are taken [-].
 const ELEMENTS_AT_REST: usize = 40;
 
-/// The scene as input of `peers.py`. The error names the owner of a property that the input does not hold.
+/// Returns the scene as input of `peers.py`. The error names the owner of a property that the input does not contain.
 pub(crate) fn described(name: &str, scene: &Scene) -> Result<Value, String> {
     admit_surroundings(scene)?;
     let meshed = Setting::new(ELEMENTS_AT_REST, Integrator::Auto, None).apply(scene);
@@ -59,7 +59,7 @@ pub(crate) fn described(name: &str, scene: &Scene) -> Result<Value, String> {
     }))
 }
 
-/// Returns an error if `whole`, described by `what`, differs from the part of it that the peers are given.
+/// Returns an error if `whole`, described by `what`, differs from the part of it that is given to the peers.
 fn only<T: PartialEq>(whole: &T, given: &T, what: &str) -> Result<(), String> {
     match whole == given {
         true => Ok(()),
@@ -85,7 +85,7 @@ fn admit_surroundings(scene: &Scene) -> Result<(), String> {
     Ok(())
 }
 
-/// A point at its place at rest [m], with its motion, if a host drives it.
+/// Point at its position at rest [m], with its motion if a host drives it.
 fn described_point(
     scene: &Scene,
     written: &Point,
@@ -142,7 +142,7 @@ fn described_point(
     }))
 }
 
-/// Motion of the point at `arm` [m] of a body at a place [m] and an attitude [rad].
+/// Motion of the point at `arm` [m] of a body at a position [m] and an attitude [rad].
 fn described_motion(
     scene: &Scene,
     body: &str,
@@ -165,7 +165,7 @@ fn described_motion(
     }))
 }
 
-/// A line, its sections with their properties, and the places of the joints between them at rest [m].
+/// Line, its sections with their properties, and the positions at rest of the joints between them [m].
 fn described_line(
     scene: &Scene,
     written: &Line,
@@ -207,7 +207,7 @@ fn described_line(
     }))
 }
 
-/// Properties of a line type, but for its damping.
+/// Properties of a line type except its damping.
 fn described_type(name: &str, line_type: &LineType) -> Result<Value, String> {
     let given = LineType {
         axial_stiffness: line_type.axial_stiffness,
@@ -267,7 +267,7 @@ mod tests {
         let [port, plate] = [0, 2].map(|point| &system["points"][point]);
         assert_eq!(port["motion"]["arm"], json!([20.0, 8.0, -2.0]));
         assert_eq!(port["motion"]["sines"][0], json!([[1.5, 11.0]]));
-        // The plate sinks from where the scene puts it.
+        // The plate sinks from its position in the scene.
         assert!(plate["position"][2].as_f64().unwrap() < -10.0);
         assert_eq!(system["lies_on_seabed"], json!(true));
     }

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use crate::{Code, Errors, How, Metric, Run, Study, TOLERANCES, Verdict};
 
-/// Words for a level of error that the converged solution is too uncertain to judge.
+/// Text for an error level below the uncertainty of the converged solution.
 pub const UNCERTAIN: &str = "within the converged solution's uncertainty";
 
 /// Peers with the settings of their decks, and their elements [-].
@@ -32,7 +32,7 @@ const HEAD: [&str; 11] = [
     "cost_least",
     "cost_greatest",
 ];
-/// End of the names of columns with the uncertainty of the converged solution.
+/// Suffix of the names of columns with the uncertainty of the converged solution.
 const UNCERTAINTY: &str = "_uncertainty";
 
 /// Writes every run of these studies in a row; `machine` names the processor. The columns are scene, whether it has a seabed, communication step of the host
@@ -40,7 +40,7 @@ const UNCERTAINTY: &str = "_uncertainty";
 /// solution.
 ///
 /// # Errors
-/// `out` refuses.
+/// Writing to `out` fails.
 pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let keys = Metric::ALL.map(Metric::key);
@@ -69,10 +69,11 @@ pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Resu
     table.flush()
 }
 
-/// Reads a table of [`write_runs`]: the processor of its first row and the studies, whose runs cannot be repeated. What the table does not hold is empty.
+/// Reads a table of [`write_runs`]: the processor of its first row and the studies, whose runs cannot be repeated. Data that the table does not
+/// contain are empty.
 ///
 /// # Errors
-/// A row is not as [`write_runs`] writes it: its number, and the column.
+/// A row differs from the format of [`write_runs`]; the message gives its number and the column.
 pub fn read_runs(input: impl Read) -> Result<(String, Vec<Study>), String> {
     let (mut machine, mut studies) = (String::new(), Vec::<Study>::new());
     let mut table = csv::Reader::from_reader(input);
@@ -100,7 +101,7 @@ pub fn read_runs(input: impl Read) -> Result<(String, Vec<Study>), String> {
 struct Row<'a>(&'a HashMap<String, String>);
 
 impl Row<'_> {
-    /// The study of the row, without runs, and its run.
+    /// Returns the study of the row, without runs, and the run.
     fn read(&self) -> Result<(Study, Run), String> {
         let errors = |end: &str| -> Result<Errors, String> {
             let [rms, low_passed, peak, position] =
@@ -142,7 +143,7 @@ impl Row<'_> {
         cell.parse().map_err(|_| format!("{column} is {cell:?}"))
     }
 
-    /// A number; `None` where the cell is empty.
+    /// Number in a cell; `None` if the cell is empty.
     fn optional<T: FromStr>(&self, column: &str) -> Result<Option<T>, String> {
         match self.word(column)? {
             "" => Ok(None),
@@ -151,10 +152,11 @@ impl Row<'_> {
     }
 }
 
-/// Writes, for every level of error, the cheapest run of moorline and of every peer, and the peer's cost over moorline's, empty where moorline has no run.
+/// Writes, for every level of error, the cheapest run of moorline and of every peer, and the peer's cost over moorline's, which is empty if moorline
+/// has no run.
 ///
 /// # Errors
-/// `out` refuses.
+/// Writing to `out` fails.
 pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let head =
@@ -201,7 +203,7 @@ fn host_step(study: &Study) -> String {
     study.host_step.map_or(String::new(), |step| step.to_string())
 }
 
-/// Tables in Markdown: the levels that moorline is held to, offline and in hosts, and what default settings cost in hosts.
+/// Tables in Markdown: the levels that moorline is held to, offline and in hosts, and the cost of default settings in hosts.
 pub fn summary(studies: &[Study]) -> String {
     let offline = |study: &&Study| study.host_step.is_none();
     let mut text = levels("offline, error", studies.iter().filter(offline));
@@ -226,7 +228,7 @@ pub fn summary(studies: &[Study]) -> String {
     text
 }
 
-/// The levels that moorline is held to; `head` is the title of the first column.
+/// Table of the levels that moorline is held to; `head` is the title of the first column.
 fn levels<'a>(head: &str, studies: impl Iterator<Item = &'a Study>) -> String {
     let mut text = format!(
         "| {head} | moorline | MoorDyn | CableDyn | ratio to the better | moorline's setting |\n|---|---|---|---|---|---|\n"
@@ -239,7 +241,7 @@ fn levels<'a>(head: &str, studies: impl Iterator<Item = &'a Study>) -> String {
     text
 }
 
-/// Cost and error of tension of moorline by default for each tolerance, and of the peers as decks set them.
+/// Cost and error of tension of moorline's default settings for each tolerance, and of the peers with the settings of their decks.
 fn defaults(study: &Study) -> String {
     let found = |is: &dyn Fn(&Run) -> bool| study.runs.iter().find(|run| is(run));
     let own = TOLERANCES.map(|tolerance| found(&|run| run.tolerance == Some(tolerance)));
@@ -261,7 +263,7 @@ fn defaults(study: &Study) -> String {
     )
 }
 
-/// The quantity of an error.
+/// Name of the quantity of a metric.
 fn quantity(metric: Metric) -> &'static str {
     match metric {
         Metric::Rms => "RMS tension",

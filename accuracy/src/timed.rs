@@ -1,8 +1,8 @@
 //! One run of a scene: its histories and their cost.
 //!
-//! A timed run is driven as by a host, which reads the forces on the moving bodies after every communication step. Before the step it
-//! gives their displacements and velocities at its end, computed beforehand, as for the peers; with default settings the
-//! displacements at its start alone, and nothing later. The converged solution follows the scene's motion exactly.
+//! A timed run is driven as by a host that reads the forces on the moving bodies after every communication step. Before the step, it gives their
+//! displacements and velocities at the end of the step, computed beforehand, as for the peers; with default settings, it gives only the displacements
+//! at the start of the step. The converged solution follows the scene's motion exactly.
 
 use std::hint::black_box;
 
@@ -17,18 +17,18 @@ use moorline::scene::table::Choice;
 use crate::errors::Histories;
 use crate::ladder::Setting;
 
-/// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
+/// Greatest number of passes of one timing, of which the median is used, and total time [s] from which on no further pass is made.
 const PASSES_MAX: usize = 9;
 const PASSES_TIME: f64 = 0.08;
-/// Rounding of a number of steps [-].
+/// Tolerance for rounding of a number of steps [-].
 const ROUNDING: f64 = 1e-9;
 
 /// A run that can be repeated.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
     pub(crate) start: Simulation,
-    /// Inputs before every step, body by body, contiguous in memory: fetching them is no work of the solver. Empty where the scene's motion
-    /// is followed exactly.
+    /// Inputs before every step, body by body, contiguous in memory, so that fetching them adds little to the solver's time. Empty if the scene's
+    /// motion is followed exactly.
     pub(crate) inputs: Vec<Input>,
     /// Bodies that the host moves.
     pub(crate) bodies: Vec<Body>,
@@ -42,7 +42,7 @@ pub(crate) struct Trial {
     samples: usize,
 }
 
-/// Displacement [m, rad] of a body, and its velocity [m/s, rad/s] where the host gives one.
+/// Displacement [m, rad] of a body, and its velocity [m/s, rad/s] if the host gives one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Input {
     pub displacement: [f64; 6],
@@ -61,7 +61,7 @@ pub(crate) struct Timed {
     pub elements: usize,
     /// Mean internal step [s].
     pub step: f64,
-    /// Communication step [s], where it is not the interval of the output.
+    /// Communication step [s], if it differs from the interval of the output.
     pub communication: Option<f64>,
 }
 
@@ -80,13 +80,13 @@ impl Timed {
 }
 
 impl Trial {
-    /// A run driven as a host drives it; the error is a message.
+    /// Prepares a run driven as by a host; the error is a message.
     pub(crate) fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let step = setting.communication as f64 * scene.output.interval;
         Trial::in_steps(&setting.apply(scene), step)
     }
 
-    /// A run of a scene with its setting, driven in communication steps of a length [s].
+    /// Prepares a run of a scene with its setting, driven in communication steps of a given length [s].
     pub(crate) fn in_steps(scene: &Scene, step: f64) -> Result<Trial, String> {
         let interval = scene.output.interval;
         let samples = samples(scene);
@@ -138,7 +138,7 @@ impl Trial {
         })
     }
 
-    /// A run that follows the scene's motion exactly.
+    /// Prepares a run that follows the scene's motion exactly.
     pub(crate) fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
         start.follow_scene().map_err(|error| error.to_string())?;
@@ -155,7 +155,7 @@ impl Trial {
         })
     }
 
-    /// Integrator and planned steps in a communication step, by network: two runs with one mesh and the same plan are the same.
+    /// Integrator and planned number of steps in a communication step, by network: two runs with the same mesh and plan are equal.
     pub(crate) fn plan(&self) -> Vec<(Integrator, usize)> {
         let steps = |step_max: f64| (self.step / step_max - ROUNDING).ceil() as usize;
         let choices = self.start.choices();
@@ -164,8 +164,8 @@ impl Trial {
             .collect()
     }
 
-    /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short
-    /// ones are timed again without reading.
+    /// Runs once and reads the histories. The time of a long pass is used as its cost, since reading takes a negligible part of it; short runs are
+    /// timed again without reading.
     pub(crate) fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
         let mut record = Record::new(&self.start, self.count);
         let mut steps = 0;
@@ -187,7 +187,7 @@ impl Trial {
         Ok((timed, long.then(|| self.relative(elapsed))))
     }
 
-    /// Processor time over simulated time [-], the median of a few passes that read the forces on the bodies alone.
+    /// Processor time over simulated time [-]: the median of a few passes that read only the forces on the bodies.
     pub(crate) fn cost(&self) -> Result<f64, String> {
         let pass = || {
             self.step_through(|simulation| {
@@ -203,7 +203,7 @@ impl Trial {
         elapsed / (self.step * self.count as f64)
     }
 
-    /// Steps to the end from the start; processor time of this thread [s].
+    /// Steps from the start to the end; returns the processor time of this thread [s].
     fn step_through(&self, mut each: impl FnMut(&Simulation)) -> Result<f64, String> {
         let mut simulation = self.start.clone();
         let before = ThreadTime::now();
@@ -237,16 +237,16 @@ pub(crate) fn median(mut pass: impl FnMut() -> Result<f64, String>) -> Result<f6
     Ok(times[times.len() / 2])
 }
 
-/// Runs a setting as a host drives it, and times it.
+/// Runs a trial and times it.
 pub(crate) fn run(trial: &Trial) -> Result<Timed, String> {
     let (timed, cost) = trial.recorded()?;
     let cost = cost.map_or_else(|| trial.cost(), Ok)?;
     Ok(Timed { cost, ..timed })
 }
 
-/// Values read at every communication point, the start included.
+/// Values read at every communication point, including the start.
 struct Record {
-    /// Lines with a driven end; all where there is none.
+    /// Lines with a driven end; all lines if there is none.
     driven: Vec<usize>,
     tension: Vec<Vec<f64>>,
     middle: Vec<Vec<Vector3<f64>>>,
@@ -280,7 +280,7 @@ impl Record {
         }
     }
 
-    /// Histories after every interval [s] of the samples taken after every step [s].
+    /// Returns the histories at every interval [s] from the samples taken after every step [s].
     fn sampled(self, step: f64, interval: f64, samples: usize) -> Histories {
         let parts = step / interval;
         let tension = self.tension.into_iter();
@@ -292,7 +292,7 @@ impl Record {
     }
 }
 
-/// Values at 1, 2, … `samples` of values that are `parts` apart and begin at 0: by cubics through four of them.
+/// Returns values at 1, 2, … `samples` from values with a spacing of `parts` that begin at 0, on cubics through four of them.
 fn resampled<T>(values: &[T], parts: f64, samples: usize) -> Vec<T>
 where
     T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
@@ -314,12 +314,12 @@ fn samples(scene: &Scene) -> usize {
     (scene.output.duration / scene.output.interval).round().max(2.0) as usize
 }
 
-/// The integrator as the scene format spells it.
+/// Name of the integrator, as in the scene format but with hyphens.
 fn name(integrator: Integrator) -> String {
     integrator.word().replace('_', "-")
 }
 
-/// Position half-way along a line [m]: by a cubic through four nodes, on a chord where there are fewer.
+/// Position half-way along a line [m], on a cubic through four nodes, or on a chord if there are fewer.
 fn half_way_of(simulation: &Simulation, line: usize) -> Vector3<f64> {
     let arc = &simulation.model().lines[line].nodes.arc;
     let profile = simulation.state().lines[line].position.as_slice();
@@ -343,7 +343,7 @@ fn half_way(arc: &[f64], profile: &[Vector3<f64>]) -> Vector3<f64> {
     terms.sum()
 }
 
-/// Weights of the values at four places in the value at another, on the cubic through them [-].
+/// Weights of the values at four positions in the value of their cubic at another position [-].
 fn cubic(places: [f64; 4], at: f64) -> [f64; 4] {
     let share = |own: f64| {
         let others = places.iter().filter(|other| **other != own);

@@ -3,29 +3,28 @@
 use crate::errors::Metric;
 use crate::{Code, Run, Study, TOLERANCES};
 
-/// Error levels that are judged [-].
+/// Error levels of the verdicts [-].
 pub const LEVELS: [f64; 5] = [0.05, 0.03, 0.02, 0.01, 0.005];
 /// Level that moorline is held to offline on a seabed [-].
 const LEVEL: f64 = 0.03;
-/// Runs beyond this error [-] show nothing.
+/// Error beyond which a run is meaningless [-].
 const ERROR_MAX: f64 = 1.0;
 
-/// The cheapest ways to one level of error.
+/// Cheapest runs that reach an error level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict<'a> {
     /// Quantity that is compared.
     pub metric: Metric,
     /// Error level [-].
     pub level: f64,
-    /// moorline is held to this level: 3 % of RMS tension, 1 % in position; of lines without a seabed 1 % of RMS tension; in a host the
-    /// tolerances of its default settings, of RMS tension. The low-passed tension takes the place of the raw one at levels at which only the
-    /// former is certain.
+    /// True if moorline is held to this level: 3 % of RMS tension and 1 % in position; without a seabed, also 1 % of RMS tension; in a host, the
+    /// tolerances of its default settings, of RMS tension. The low-passed tension replaces the raw one at levels at which only the former is certain.
     pub key: bool,
-    /// The converged solution is certain enough to judge this level.
+    /// True if the converged solution is certain enough to judge this level.
     pub certain: bool,
     /// moorline's cheapest run.
     pub own: Option<&'a Run>,
-    /// Every peer's cheapest run, where it has one.
+    /// Every peer's cheapest run, if it has one.
     pub peers: Vec<(&'a str, Option<&'a Run>)>,
 }
 
@@ -48,21 +47,21 @@ impl<'a> Verdict<'a> {
     }
 }
 
-/// A peer's run on its frontier, and moorline's cheapest run of no greater error.
+/// A peer's run on its frontier, and moorline's cheapest run with no greater error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duel<'a> {
     /// Quantity that is compared.
     pub metric: Metric,
-    /// The peer's error, or the converged solution's uncertainty where that is greater [-].
+    /// The peer's error, or the converged solution's uncertainty if that is greater [-].
     pub level: f64,
-    /// moorline's run, where it has one.
+    /// moorline's run, if it has one.
     pub own: Option<&'a Run>,
     /// The peer's run.
     pub peer: &'a Run,
 }
 
 impl Duel<'_> {
-    /// Cost of the peer over moorline's [-]; 0 where moorline does not get there.
+    /// Cost of the peer over moorline's [-]; 0 if moorline does not reach the level.
     pub fn ratio(&self) -> f64 {
         self.own.map_or(0.0, |own| self.peer.cost / own.cost)
     }
@@ -80,7 +79,7 @@ impl Study {
         self.tension_metric_at(LEVEL)
     }
 
-    /// Metric of the tension at a level [-]: RMS of the raw tension, or of the low-passed one where only that is certain.
+    /// Metric of the tension at a level [-]: RMS of the raw tension, or of the low-passed one if only that is certain.
     fn tension_metric_at(&self, level: f64) -> Metric {
         let is_certain = |metric: Metric| level >= self.uncertainty.of(metric);
         match is_certain(Metric::LowPassed) && !is_certain(Metric::Rms) {
@@ -89,7 +88,7 @@ impl Study {
         }
     }
 
-    /// The verdict at a level [-].
+    /// Returns the verdict at a level [-].
     pub fn verdict(&self, metric: Metric, level: f64) -> Verdict<'_> {
         let of_peer = |name| {
             let its_runs = move |code: &Code| matches!(code, Code::Peer(peer) if peer == name);
@@ -113,8 +112,8 @@ impl Study {
         }
     }
 
-    /// Every run on a peer's frontier against moorline: as costs are staircases in the error, a peer is cheaper somewhere if it is
-    /// cheaper at one of these.
+    /// Compares every run on a peer's frontier with moorline: since cost is a step function of the error, a peer is cheaper somewhere if and only if
+    /// it is cheaper at one of these runs.
     pub fn duels<'a>(&'a self, metric: Metric) -> Vec<Duel<'a>> {
         let of_peer = |name: &str| {
             let its_runs = |code: &Code| matches!(code, Code::Peer(peer) if peer == name);

@@ -1,6 +1,7 @@
-//! Speed against error: what a study says of a short scene.
+//! Speed against error: results of the study of a short scene.
 //!
-//! claim: a converged solution is certain to the promised figure, errors fall with the mesh, the frontier goes down in error and up in cost, and nothing is said of a scene at rest.
+//! claim: a converged solution has the promised uncertainty, errors fall as the mesh is refined, cost rises along the frontier as the error falls,
+//! and a scene at rest gives no result.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -12,7 +13,7 @@ use moorline_accuracy::{
     Code, LEVELS, Means, Metric, PeerError, Peers, Study, StudyError, study, uncertainty,
 };
 
-/// A taut rope of 100 m that its upper end pulls with a period of 2 s.
+/// A taut rope of 100 m whose upper end is pulled with a period of 2 s.
 const ROPE: &str = include_str!("../../tests/scenes/pulled_rope.toml");
 
 fn studied() -> &'static Study {
@@ -38,8 +39,8 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
     let leapfrog = |code: &Code| *code == Code::Own(Integrator::Leapfrog);
     let runs: Vec<_> = study.runs.iter().filter(|run| leapfrog(&run.code)).collect();
     assert!(runs.len() >= 30);
-    // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh. From 30 elements on, driven by a host at points
-    // in time, the tension differs by 5.4e-4 from the converged solution, which follows the motion exactly.
+    // The meshes are sorted from coarse to fine: second order over a factor of 80 in the mesh. From 30 elements on, the tension driven by a host at
+    // points in time differs by 5.4e-4 from the converged solution, which follows the motion exactly.
     let position = |run: &moorline_accuracy::Run| run.errors.of(Metric::Position);
     assert!(position(runs[runs.len() - 1]) < 0.01 * position(runs[0]));
     assert!(rms(runs[runs.len() - 1]) < 6e-4);
@@ -62,7 +63,7 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
     );
 }
 
-/// Tables of a study without peers: a row for every run, one for every level reached, and a figure.
+/// Checks the tables of a study without peers: a row for every run, one for every level reached, and a figure.
 fn told(study: &Study) {
     let rows = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().count() - 1;
     let studies = std::slice::from_ref(study);
@@ -85,7 +86,7 @@ fn slower_motion_brings_the_quasi_static_mode_nearer() {
     let slow = &studied().slow;
     assert!(slow.len() >= 2 && slow[0].factor == 1.0 && slow[0].period == 2.0);
     let errors: Vec<f64> = slow.iter().map(|one| one.errors.of(Metric::Rms)).collect();
-    // Not one after the other: the rope swings in a period of 8 s.
+    // The error does not fall with every factor: the rope swings with a period of 8 s.
     assert!(errors[0] > 0.1, "{errors:?}");
     assert!(errors[errors.len() - 1] <= 0.01, "{errors:?}");
 }

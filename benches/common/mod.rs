@@ -1,4 +1,4 @@
-//! Timing of fixed steps from a saved state: the least of many repetitions, which noise cannot lower.
+//! Timing of fixed steps from a saved state: the minimum of many repetitions, which noise cannot lower.
 #![allow(dead_code)] // each bench uses a part
 
 use std::fs;
@@ -8,7 +8,7 @@ use std::time::Instant;
 use moorline::scene::Scene;
 use moorline::simulation::Simulation;
 
-/// Repetitions of which the fastest counts.
+/// Number of repetitions; the fastest counts.
 const REPETITIONS: usize = 40;
 /// Time before the timed steps, for the ramp to pass [s].
 const WARM_UP: f64 = 30.0;
@@ -32,7 +32,7 @@ pub fn scene(name: &str) -> Scene {
     Scene::from_toml(&text).expect("a scene that passes its checks")
 }
 
-/// Path of a table of this processor, `benches/tables/<processor>.<name>.csv`; none where the processor's name is not known.
+/// Path of a table of this processor, `benches/tables/<processor>.<name>.csv`; `None` if the name of the processor is not known.
 pub fn table(name: &str) -> Option<PathBuf> {
     let known = fs::read_to_string("/proc/cpuinfo").ok()?;
     let processor = known.lines().find_map(|line| line.strip_prefix("model name"))?;
@@ -43,7 +43,7 @@ pub fn table(name: &str) -> Option<PathBuf> {
     Some(folder.join(format!("{}.{name}.csv", words.join("-"))))
 }
 
-/// Writes a table of this processor; whether its name is known.
+/// Writes a table of this processor; returns whether the name of the processor is known.
 pub fn write_table(name: &str, text: &str) -> bool {
     let Some(path) = table(name) else {
         return false;
@@ -54,7 +54,7 @@ pub fn write_table(name: &str, text: &str) -> bool {
     true
 }
 
-/// Times steps of the scene's output interval with its own motion.
+/// Times communication steps of the output interval, with the motion of the scene.
 pub fn measure(scene: &Scene) -> Cost {
     let interval = scene.output.interval;
     let mut simulation = Simulation::new(scene).expect("an equilibrium");

@@ -1,8 +1,8 @@
 //! A system thread that creates the worker threads.
 //!
-//! [`std::thread`] registers a destructor on the thread that spawns another. On a thread of the host, that destructor would keep this library
-//! mapped after it is unloaded, until the host's thread ends. A thread made here by the system's own call ends at once, and its destructors
-//! with it.
+//! [`std::thread`] registers a destructor on the thread that spawns another. On a thread of the host, this destructor would keep the library
+//! mapped after it is unloaded, until the host's thread ends. A thread created here by the system call ends at once, and runs its
+//! destructors then.
 //!
 //! Source: POSIX.1-2017, pthread_create and pthread_join; both succeed with 0.
 
@@ -37,7 +37,7 @@ pub(crate) fn run(mut work: Work) {
 extern "C" fn body(work: *mut c_void) -> *mut c_void {
     // SAFETY: made in `run` of this type, alive until this thread has ended, and used here only.
     let work = unsafe { &mut *work.cast::<Work>() };
-    // interrupted work leaves no result, which its caller detects
+    // interrupted work leaves no result, which the caller of `run` detects
     let _ = catch_unwind(AssertUnwindSafe(work));
     ptr::null_mut()
 }

@@ -1,4 +1,4 @@
-//! The guard that stops a panic before it leaves the library.
+//! Guard that catches a panic before it leaves the library.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -13,23 +13,23 @@ thread_local! {
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Key of all worker threads of a simulation, whose panics a guard passes on.
+/// Key shared by all worker threads of simulations; a guard also reports their panics.
 const WORKER: usize = 0;
 
-/// Places of guarded panics, by thread, until their guards have reported them.
+/// Source locations of guarded panics by thread, until their guards report them.
 static PLACES: Mutex<BTreeMap<usize, String>> = Mutex::new(BTreeMap::new());
 
 fn places() -> MutexGuard<'static, BTreeMap<usize, String>> {
     PLACES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A number that no other living thread has: the address of its flag.
+/// Returns a number unique among the living threads: the address of this thread's flag.
 fn thread_number() -> usize {
     IS_GUARDED.with(|flag| std::ptr::from_ref(flag).addr())
 }
 
-/// Prepares the library at its first call: a separate thread creates worker threads, and guarded panics are kept off the console; others go
-/// where they went before.
+/// Prepares the library at its first call: a separate thread creates worker threads, and guarded panics are not printed; others go to the
+/// previous panic hook.
 fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -49,10 +49,10 @@ fn prepare() {
     });
 }
 
-/// Runs `body`; a panic becomes its message.
+/// Runs `body` and converts a panic to its message.
 ///
 /// # Errors
-/// The panic, with its place.
+/// Message and source location of the panic.
 pub fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
     prepare();
     let outer = IS_GUARDED.replace(true);

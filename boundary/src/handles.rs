@@ -1,15 +1,15 @@
-//! Handles of a host: numbers that are never used again, so that one that was closed is refused.
+//! Handles of a host: numbers that are never reused, so that a closed handle is refused.
 //!
-//! A handle crosses the boundary as a pointer that nothing dereferences. An item takes a range of handles: the first for the item itself, the
-//! others for its parts (lines, points), which end with it. Calls on one item wait for one another, so that a host may call from any
-//! thread. A panic inside a call closes the item to everything but its removal.
+//! A handle crosses the boundary as a pointer that is never dereferenced. An item takes a range of handles: the first for the item itself, the
+//! others for its parts (lines, points), which become invalid with it. Calls on one item are serialised, so that a host may call from any
+//! thread. After a panic inside a call, the item can only be removed.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use crate::guard::guard;
 
-/// Distance of two handles, so that they differ from small integers and are aligned as pointers are [-].
+/// Difference between consecutive handles [-]; handles differ from small integers and are aligned like pointers.
 const STRIDE: usize = 64;
 
 /// Reason why a call on a handle is refused.
@@ -21,7 +21,7 @@ pub enum Denied {
     Unknown,
     /// An earlier call on the item panicked.
     Poisoned,
-    /// This call panicked: the message.
+    /// This call panicked, with this message.
     Panicked(String),
 }
 
@@ -43,7 +43,7 @@ impl<T> Default for Handles<T> {
 }
 
 impl<T> Handles<T> {
-    /// An empty collection.
+    /// Returns an empty collection.
     pub const fn new() -> Handles<T> {
         Handles {
             entries: RwLock::new(BTreeMap::new()),
@@ -51,7 +51,7 @@ impl<T> Handles<T> {
         }
     }
 
-    /// Takes an item with `parts` parts and returns its handle.
+    /// Inserts an item with `parts` parts and returns its handle.
     pub fn insert(&self, item: T, parts: usize) -> usize {
         let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);
         let handle = *next;
@@ -65,12 +65,12 @@ impl<T> Handles<T> {
         handle
     }
 
-    /// Handle of part `number` of an item, from 1.
+    /// Returns the handle of part `number` of an item, counted from 1.
     pub fn part(handle: usize, number: usize) -> usize {
         handle + number * STRIDE
     }
 
-    /// Closes an item, after the call that is using it; returns whether there was one. A part is no item.
+    /// Closes an item; a call in progress completes first. Returns whether an item had this handle; a part is not an item.
     pub fn remove(&self, handle: usize) -> bool {
         let mut entries = self.entries.write().unwrap_or_else(PoisonError::into_inner);
         let removed = entries.remove(&handle);
@@ -81,10 +81,10 @@ impl<T> Handles<T> {
         is_known
     }
 
-    /// Runs `body` on the item of a handle, with the number of the part: 0 is the item itself.
+    /// Runs `body` on the item of a handle and the number of the part, 0 for the item itself.
     ///
     /// # Errors
-    /// The handle serves no call, or `body` panicked.
+    /// The handle is null, unknown or poisoned, or `body` panicked.
     pub fn with<R>(&self, handle: usize, body: impl FnOnce(&mut T, usize) -> R) -> Result<R, Denied> {
         if handle == 0 {
             return Err(Denied::Null);

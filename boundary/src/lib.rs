@@ -1,8 +1,8 @@
-//! Boundary of the FMU library and the C libraries: what crosses from a host to safe Rust and back.
+//! Boundary of the FMU library and the C libraries: conversions between a host and safe Rust.
 //!
 //! * [`guard`]: a panic becomes a message;
 //! * `aside`: worker threads that do not keep an unloaded library mapped;
-//! * [`handles`]: numbers in place of pointers, so that a handle that was closed is refused and never followed;
+//! * [`handles`]: numbers instead of pointers, so that a closed handle is refused and never dereferenced;
 //! * [`pointers`]: slices and texts from the host's pointers.
 //!
 //! `aside` and [`pointers`] are the unsafe modules.

@@ -1,11 +1,11 @@
-//! Slices and texts at a host's pointers.
+//! Slices and texts from a host's pointers.
 //!
 //! Guarantees of the host: a pointer with a length points to that many values that stay valid during the call, and no other thread changes
-//! them; a text ends with a zero byte. Null, misaligned and over-long ones are refused.
+//! them; a text ends with a zero byte. Null, misaligned and over-long pointers are refused.
 
 use std::ffi::{CStr, c_char};
 
-/// Greatest length of a text of a host [bytes].
+/// Maximum length of a text of a host [bytes].
 pub const TEXT_MAX: usize = 1 << 24;
 
 /// Checks that `count` values of type T can be at `pointer`.
@@ -26,7 +26,7 @@ pub fn check<T>(pointer: *const T, count: usize) -> Result<(), String> {
     }
 }
 
-/// Values of the host.
+/// Returns the host's values as a slice; an empty one if `count` is 0.
 ///
 /// # Safety
 /// A pointer that is not null points to `count` values that nothing changes during `'a`.
@@ -42,13 +42,13 @@ pub unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> Result<&'a [T], S
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
-/// Room for values of the host.
+/// Returns the host's values as a mutable slice; an empty one if `count` is 0.
 ///
 /// # Safety
 /// A pointer that is not null points to `count` initialised values that nothing else uses during `'a`.
 ///
 /// # Errors
-/// As [`slice`].
+/// The pointer is null, misaligned or over-long.
 pub unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> Result<&'a mut [T], String> {
     if count == 0 {
         return Ok(&mut []);
@@ -64,7 +64,7 @@ pub unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> Result<&'a mut 
 /// A pointer that is not null may be written to.
 ///
 /// # Errors
-/// As [`slice`].
+/// The pointer is null or misaligned.
 pub unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), String> {
     check(pointer, 1)?;
     // SAFETY: not null and aligned; the caller promises the rest.
@@ -72,13 +72,13 @@ pub unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), String> {
     Ok(())
 }
 
-/// Text of the host.
+/// Returns a text of the host.
 ///
 /// # Safety
 /// A pointer that is not null points to a text that ends with a zero byte and stays as it is during `'a`.
 ///
 /// # Errors
-/// Null, over-long, or not UTF-8.
+/// The pointer is null, or the text is longer than [`TEXT_MAX`] or not UTF-8.
 pub unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, String> {
     if pointer.is_null() {
         return Err("a text is null".to_string());
@@ -91,13 +91,13 @@ pub unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, String> {
     }
 }
 
-/// Copies a text with its zero byte into `room` bytes of the host, truncated to fit, and returns the room that the whole text needs [bytes]. A null target
-/// without room only returns that.
+/// Copies a text and a zero byte into a buffer of `room` bytes, truncated to fit, and returns the size needed for the whole text [bytes]. With `room` 0
+/// nothing is copied, and the target may be null.
 ///
 /// # Safety
 /// A pointer that is not null points to `room` bytes that nothing else uses.
 ///
-/// # Errors
+/// The target is null although `room` is not 0.
 /// A null pointer with room.
 pub unsafe fn copy_text(text: &str, target: *mut c_char, room: usize) -> Result<usize, String> {
     let bytes = text.as_bytes();

@@ -7,7 +7,7 @@ use std::ffi::{c_char, c_int};
 use crate::edge::{self, moorline_simulation};
 use crate::session::{Failure, Outcome};
 
-/// Copies values to a host that gives room for exactly as many.
+/// Copies values to a host's array, which must have the same length.
 fn copy(values: &[f64], target: &mut [f64]) -> Outcome {
     if values.len() != target.len() {
         let (wanted, given) = (values.len(), target.len());
@@ -19,7 +19,7 @@ fn copy(values: &[f64], target: &mut [f64]) -> Outcome {
     Ok(())
 }
 
-/// Gives the number of bodies that the host moves: coupled points, then vessels.
+/// Gets the number of bodies that the host moves: coupled points, then vessels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_body_count(simulation: moorline_simulation, count: *mut usize) -> c_int {
     edge::call(simulation, "moorline_body_count", |session| {
@@ -29,7 +29,7 @@ pub unsafe extern "C" fn moorline_body_count(simulation: moorline_simulation, co
     })
 }
 
-/// Gives the name of a body, counted from 0. `moorline_message` says how a text is given.
+/// Gets the name of a body, counted from 0. The text is returned as by `moorline_message`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_body_name(
     simulation: moorline_simulation,
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn moorline_body_name(
     })
 }
 
-/// Gives the degrees of freedom of a body: 3 of a point, 6 of a vessel.
+/// Gets the number of degrees of freedom of a body: 3 for a point, 6 for a vessel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_body_size(
     simulation: moorline_simulation,
@@ -59,8 +59,9 @@ pub unsafe extern "C" fn moorline_body_size(
     })
 }
 
-/// Sets the displacement of a body from its reference [m], with roll, pitch and yaw of a vessel added to those of its reference attitude [rad], body to
-/// global by yaw, pitch, roll (Z-Y-X); and its velocity [m/s] and angular velocity in global axes [rad/s], which are derived where `velocity` is null.
+/// Sets the displacement of a body from its reference position [m] and, for a vessel, roll, pitch and yaw relative to its reference attitude
+/// [rad] (body to global by yaw, pitch, roll, Z-Y-X); and its velocity [m/s] and angular velocity in global axes [rad/s], which are derived if
+/// `velocity` is null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_move(
     simulation: moorline_simulation,
@@ -79,7 +80,7 @@ pub unsafe extern "C" fn moorline_move(
     })
 }
 
-/// Gives the force of the mooring on a body [N] and, on a vessel, its moment about the vessel's origin [N m], in global axes.
+/// Gets the force of the mooring on a body [N] and, for a vessel, the moment about the vessel's origin [N m], in global axes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_force(
     simulation: moorline_simulation,
@@ -94,7 +95,7 @@ pub unsafe extern "C" fn moorline_force(
     })
 }
 
-/// Gives the 36 values of the stiffness of the mooring on a vessel as it is now, by rows of force [N/m, N] and moment [N, N m].
+/// Gets the 36 values of the current stiffness of the mooring on a vessel, row by row: force [N/m, N] and moment [N, N m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_stiffness(
     simulation: moorline_simulation,
@@ -111,7 +112,7 @@ pub unsafe extern "C" fn moorline_stiffness(
     })
 }
 
-/// Gives the number of lines.
+/// Gets the number of lines.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_line_count(simulation: moorline_simulation, count: *mut usize) -> c_int {
     edge::call(simulation, "moorline_line_count", |session| {
@@ -121,7 +122,7 @@ pub unsafe extern "C" fn moorline_line_count(simulation: moorline_simulation, co
     })
 }
 
-/// Gives the name of a line, counted from 0. `moorline_message` says how a text is given.
+/// Gets the name of a line, counted from 0. The text is returned as by `moorline_message`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_line_name(
     simulation: moorline_simulation,
@@ -137,7 +138,7 @@ pub unsafe extern "C" fn moorline_line_name(
     })
 }
 
-/// Gives the number of nodes of a line, from start on.
+/// Gets the number of nodes of a line; only after start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_node_count(
     simulation: moorline_simulation,
@@ -151,7 +152,7 @@ pub unsafe extern "C" fn moorline_node_count(
     })
 }
 
-/// Gives x, y, z of every node of a line, from end A to end B [m]: three values a node.
+/// Gets x, y, z of every node of a line, from end A to end B [m]: three values per node.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_node_positions(
     simulation: moorline_simulation,
@@ -170,7 +171,7 @@ pub unsafe extern "C" fn moorline_node_positions(
     })
 }
 
-/// Gives the effective tension at every node of a line, from end A to end B [N].
+/// Gets the effective tension at every node of a line, from end A to end B [N].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_node_tensions(
     simulation: moorline_simulation,
@@ -189,8 +190,8 @@ pub unsafe extern "C" fn moorline_node_tensions(
     })
 }
 
-/// Gives x, y, z of the places for which the flow of the water is due next, for the nodes of a line from end A to end B [m]: three values a node. These
-/// are the places of the nodes now or, where inputs hold for the end of the step, the places they are expected to reach. From start on.
+/// Gets x, y, z of the positions at which the water flow is required next, for the nodes of a line from end A to end B [m]: three values per
+/// node. These are the current positions of the nodes or, if inputs refer to the end of the step, their expected positions there. Only after start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_flow_places(
     simulation: moorline_simulation,
@@ -205,7 +206,7 @@ pub unsafe extern "C" fn moorline_flow_places(
     })
 }
 
-/// Sets the velocity [m/s] and the acceleration [m/s2] of the water at those places, three values a node, in a scene with `flow = "host"` in [water].
+/// Sets velocity [m/s] and acceleration [m/s2] of the water at those positions, three values per node, in a scene with `flow = "host"` in [water].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_set_flow(
     simulation: moorline_simulation,

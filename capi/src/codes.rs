@@ -2,28 +2,28 @@
 
 use std::ffi::c_int;
 
-/// Version of this interface, which a host gives to load and read; it changes with every change that breaks a host.
+/// Version of this interface, which a host passes to load and read; it changes with every incompatible change.
 pub const MOORLINE_ABI_VERSION: u32 = 1;
 
 /// The call succeeded.
 pub const MOORLINE_OK: c_int = 0;
-/// A handle is null, closed, or none.
+/// A handle is null, closed or unknown.
 pub const MOORLINE_INVALID_HANDLE: c_int = 1;
 /// An argument is null, of a wrong length, or has a value that cannot be used.
 pub const MOORLINE_INVALID_ARGUMENT: c_int = 2;
 /// The host was built for another version of this interface.
 pub const MOORLINE_WRONG_VERSION: c_int = 3;
-/// The scene or deck cannot be read, or has mistakes.
+/// The scene or deck cannot be read, or contains mistakes.
 pub const MOORLINE_SCENE_ERROR: c_int = 4;
-/// There is no static equilibrium.
+/// No static equilibrium was found.
 pub const MOORLINE_STATICS_ERROR: c_int = 5;
-/// A step failed; the state is that before it.
+/// A step failed; the state is unchanged.
 pub const MOORLINE_STEP_ERROR: c_int = 6;
-/// The call comes too early or too late: before or after start.
+/// The call is not allowed in this phase: before or after start.
 pub const MOORLINE_WRONG_PHASE: c_int = 7;
-/// moorline does not find it for this scene.
+/// moorline does not compute this result for the scene.
 pub const MOORLINE_NOT_AVAILABLE: c_int = 8;
-/// A fault inside the library: the simulation serves nothing but close any more.
+/// Internal fault of the library: the simulation can only be closed.
 pub const MOORLINE_INTERNAL_ERROR: c_int = 9;
 
 /// Causality of a variable: the host sets it before a step.

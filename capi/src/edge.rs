@@ -1,8 +1,8 @@
-//! Handles, messages, and everything that touches a host's pointer.
+//! Handles, messages, and all code that uses a host's pointers.
 //!
-//! Guarantees of the host: a pointer that is not null points to as many values as the function says, which stay valid and unchanged by others
-//! during the call; a text ends with a zero byte. Null pointers, wrong lengths and closed handles are refused. Any thread may call; calls on
-//! one simulation wait for one another. The message of a failure is that of the calling thread.
+//! Guarantees of the host: a pointer that is not null points to as many values as the function requires, which stay valid and are not changed by
+//! others during the call; a text ends with a zero byte. Null pointers, wrong lengths and closed handles are refused. Any thread may call; calls on
+//! one simulation are serialised. Each thread has its own message of the last failure.
 
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int};
@@ -26,11 +26,11 @@ pub type moorline_simulation = *mut MoorlineSimulationTarget;
 static SESSIONS: Handles<Session> = Handles::new();
 
 thread_local! {
-    /// Message of the last call that failed.
+    /// Message of the last call that failed on this thread.
     static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Keeps the message of a failure and returns its code.
+/// Stores the message of a failure and returns the code of the result.
 fn report(function: &str, result: Outcome) -> c_int {
     match result {
         Ok(()) => MOORLINE_OK,
@@ -41,12 +41,12 @@ fn report(function: &str, result: Outcome) -> c_int {
     }
 }
 
-/// The message of the last failure of this thread.
+/// Returns the message of the last failure on this thread.
 pub(crate) fn message() -> String {
     MESSAGE.with_borrow(Clone::clone)
 }
 
-/// Makes a simulation and gives its handle.
+/// Creates a simulation and returns its handle through `target`.
 ///
 /// # Safety
 /// `target` is null or may be written to.
@@ -77,14 +77,14 @@ pub(crate) unsafe fn create(
     )
 }
 
-/// Closes a simulation; null is nothing to close.
+/// Closes a simulation; null is ignored.
 pub(crate) fn close(simulation: moorline_simulation) -> c_int {
     let is_done = simulation.is_null() || SESSIONS.remove(simulation.addr());
     let unknown = || Failure::new(MOORLINE_INVALID_HANDLE, "the handle is closed, or none");
     report("moorline_close", if is_done { Ok(()) } else { Err(unknown()) })
 }
 
-/// Serves a call on a simulation: handle, panic guard, message, code.
+/// Carries out a call on a simulation: checks the handle, catches a panic, stores the message of a failure and returns the code.
 pub(crate) fn call(
     simulation: moorline_simulation,
     function: &str,
@@ -109,7 +109,7 @@ pub(crate) fn call(
     report(function, result)
 }
 
-/// Values of the host.
+/// Returns the host's values as a slice.
 ///
 /// # Safety
 /// As [`pointers::slice`].
@@ -118,7 +118,7 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> Outcome<&'
     unsafe { pointers::slice(pointer, count) }.map_err(Failure::argument)
 }
 
-/// Room of the host.
+/// Returns the host's values as a mutable slice.
 ///
 /// # Safety
 /// As [`pointers::slice_mut`].
@@ -136,7 +136,7 @@ pub(crate) unsafe fn put<T>(target: *mut T, value: T) -> Outcome {
     unsafe { pointers::write(target, value) }.map_err(Failure::argument)
 }
 
-/// Text of the host.
+/// Returns a text of the host.
 ///
 /// # Safety
 /// As [`pointers::text`].
@@ -145,7 +145,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Outcome<&'a str> {
     unsafe { pointers::text(pointer) }.map_err(Failure::argument)
 }
 
-/// Copies a text to the host, cut to its room, and gives the room that the whole needs unless `needed` is null [bytes].
+/// Copies a text to the host, truncated to `room` bytes, and returns the size needed for the whole text [bytes] through `needed` unless it is null.
 ///
 /// # Safety
 /// `target` is null or points to `room` bytes, `needed` is null or may be written to.
@@ -160,7 +160,7 @@ pub(crate) unsafe fn give_text(text: &str, target: *mut c_char, room: usize, nee
     }
 }
 
-/// Copies bytes to a host with room for all of them, and gives their number; with no room only the latter.
+/// Copies bytes to a host that has room for all of them, and returns their number; with room 0 only the number.
 ///
 /// # Safety
 /// `target` is null or points to `room` bytes, `needed` is null or may be written to.

@@ -1,7 +1,7 @@
-//! moorline as a library for C: `moorline_c`, with the header `include/moorline.h` that cbindgen writes from these files.
+//! moorline as a C library: `moorline_c`, with the header `include/moorline.h`, which cbindgen generates from these files.
 //!
-//! [`session`] is the mooring that a host drives, in safe code. Every function of C is one translation to it: [`life`] (load, start, step, save),
-//! [`table`] (variables by name and number), [`bodies`] (bodies, lines, stiffness). [`edge`] holds handles, messages and pointers.
+//! [`session`] is the mooring that a host drives, in safe code. Every C function translates one call to it: [`life`] (load, start, step, save),
+//! [`table`] (variables by name and reference), [`bodies`] (bodies, lines, stiffness). [`edge`] contains handles, messages and pointers.
 
 mod bodies;
 pub mod codes;

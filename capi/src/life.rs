@@ -1,4 +1,4 @@
-//! Life of a simulation: load, start, step, save.
+//! Life cycle of a simulation: load, start, step, save.
 //!
 //! Safety of every function here: the host keeps the promises listed in [`crate::edge`]; nothing else is relied on.
 
@@ -11,14 +11,14 @@ use crate::codes::{MOORLINE_ABI_VERSION, MOORLINE_INTERNAL_ERROR, MOORLINE_OK};
 use crate::edge::{self, moorline_simulation};
 use crate::session::Session;
 
-/// Returns the version of this interface; it is MOORLINE_ABI_VERSION of the header that the library was built with.
+/// Returns the version of this interface: MOORLINE_ABI_VERSION of the header with which the library was built.
 #[unsafe(no_mangle)]
 pub extern "C" fn moorline_abi_version() -> u32 {
     MOORLINE_ABI_VERSION
 }
 
-/// Gives the message of the last call of this thread that failed. A text is written with a zero byte into `room` bytes and cut to them; `needed`,
-/// unless it is null, becomes the room of the whole text. With room 0, `text` may be null.
+/// Gets the message of the last call that failed on this thread. A text is copied with a zero byte into `room` bytes and truncated to fit; `needed`,
+/// unless null, receives the size needed for the whole text. With room 0, `text` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_message(text: *mut c_char, room: usize, needed: *mut usize) -> c_int {
     let given = guard(|| {
@@ -47,7 +47,7 @@ pub unsafe extern "C" fn moorline_load(
     }
 }
 
-/// Reads a scene from a text in TOML, which names no other files.
+/// Reads a scene from a TOML text that refers to no other files.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_read(
     abi_version: u32,
@@ -62,25 +62,26 @@ pub unsafe extern "C" fn moorline_read(
     }
 }
 
-/// Closes a simulation; its handle is refused from then on. Null is nothing to close.
+/// Closes a simulation; its handle becomes invalid. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_close(simulation: moorline_simulation) -> c_int {
     edge::close(simulation)
 }
 
-/// Selects by trials what the scene leaves open: elements, integrator and time step. Takes up to seconds; without it, rules choose. Before start.
+/// Selects by convergence trials the values that the scene leaves open: elements, integrator and time step. Takes up to seconds; otherwise, rules choose
+/// them. Only before start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_select(simulation: moorline_simulation) -> c_int {
     edge::call(simulation, "moorline_select", |session| session.select())
 }
 
-/// Starts at a time [s], in the scene's initial shapes (static equilibrium by default) at the present inputs.
+/// Starts at a time [s], in the scene's initial shapes (static equilibrium by default) with the current inputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_start(simulation: moorline_simulation, time: f64) -> c_int {
     edge::call(simulation, "moorline_start", |session| session.start(time))
 }
 
-/// Goes back to before start; parameters and inputs stay.
+/// Returns to the state before start; parameters and inputs are kept.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_reset(simulation: moorline_simulation) -> c_int {
     edge::call(simulation, "moorline_reset", |session| {
@@ -89,14 +90,14 @@ pub unsafe extern "C" fn moorline_reset(simulation: moorline_simulation) -> c_in
     })
 }
 
-/// Steps by a time [s]. Inputs hold for the start of the step, or for its end where the scene says so.
+/// Steps by a time [s]. Inputs refer to the start of the step, or to its end if the scene specifies that.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_step(simulation: moorline_simulation, step: f64) -> c_int {
     edge::call(simulation, "moorline_step", |session| session.step(step))
 }
 
-/// Gives the warnings on the scene, the start and the steps that were not given before, a line each; an empty text where there are none. A text that
-/// does not fit into `room` is given again.
+/// Gets the warnings on the scene, the start and the steps that have not been read yet, one per line; an empty text if there are none. A text that
+/// does not fit into `room` is kept for the next call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_warnings(
     simulation: moorline_simulation,
@@ -114,7 +115,7 @@ pub unsafe extern "C" fn moorline_warnings(
     })
 }
 
-/// Gives the time [s].
+/// Gets the time [s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_time(simulation: moorline_simulation, time: *mut f64) -> c_int {
     edge::call(simulation, "moorline_time", |session| {
@@ -124,7 +125,7 @@ pub unsafe extern "C" fn moorline_time(simulation: moorline_simulation, time: *m
     })
 }
 
-/// Gives the state as bytes. `needed`, unless it is null, becomes their number; with room 0, `bytes` may be null.
+/// Gets the state as bytes. `needed`, unless null, receives their number; with room 0, `bytes` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_save(
     simulation: moorline_simulation,
@@ -139,7 +140,7 @@ pub unsafe extern "C" fn moorline_save(
     })
 }
 
-/// Goes back to a state of `moorline_save`, from which it goes on bit for bit. A state may be that of another simulation of the same scene.
+/// Restores a state of `moorline_save`; the simulation continues bit for bit. The state may come from another simulation of the same scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_restore(
     simulation: moorline_simulation,
@@ -152,7 +153,7 @@ pub unsafe extern "C" fn moorline_restore(
     })
 }
 
-/// Gives the static equilibrium of the scene at its reference positions as JSON, as `moorline statics --json` does. `moorline_message` says how a text is given.
+/// Gets the static equilibrium of the scene at its reference positions as JSON, as `moorline statics --json`. The text is returned as by `moorline_message`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_statics(
     simulation: moorline_simulation,
@@ -167,7 +168,7 @@ pub unsafe extern "C" fn moorline_statics(
     })
 }
 
-/// Gives the scene with its present parameters as TOML. `moorline_message` says how a text is given.
+/// Gets the scene with its current parameters as TOML. The text is returned as by `moorline_message`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_scene(
     simulation: moorline_simulation,

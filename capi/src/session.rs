@@ -1,4 +1,4 @@
-//! A mooring that a host drives: a scene, its variables, and from the start on a simulation. Safe code without pointers.
+//! Mooring that a host drives: a scene, its variables and, after start, a simulation. Safe code without pointers.
 
 use std::ffi::c_int;
 use std::path::Path;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::codes::*;
 
-/// Failure with its code and a sentence.
+/// Failure: code and message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Failure {
     pub(crate) code: c_int,
@@ -36,10 +36,10 @@ impl Failure {
 
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
-/// Beginning of a saved state.
+/// First bytes of a saved state.
 const MARK: &[u8] = concat!("moorline c 1 ", env!("CARGO_PKG_VERSION"), "\n").as_bytes();
 
-/// All that changes.
+/// Everything that changes in a session.
 #[derive(Debug, Serialize, Deserialize)]
 struct Saved {
     scene: String,
@@ -49,30 +49,30 @@ struct Saved {
     snapshot: Option<Snapshot>,
 }
 
-/// A body that the host moves.
+/// Body moved by the host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Moved {
     pub(crate) name: String,
     pub(crate) body: Body,
-    /// Degrees of freedom: 3 or 6.
+    /// Number of degrees of freedom [-]: 3 or 6.
     pub(crate) size: usize,
 }
 
-/// A mooring.
+/// Mooring driven by a host.
 #[derive(Debug)]
 pub(crate) struct Session {
     scene: Scene,
     interface: Interface,
     moved: Vec<Moved>,
     inputs: HostInputs,
-    /// Inputs at the start, from which the equilibrium was found.
+    /// Inputs at the start, with which the equilibrium was solved.
     origin: Inputs,
     start_time: f64,
     simulation: Option<Simulation>,
     watch: Option<Watch>,
-    /// Notes on the scene that were kept for the host.
+    /// Notes on the scene that have been passed to the host.
     noted: Vec<Note>,
-    /// Warnings that the host has not read, a line each.
+    /// Warnings that the host has not read, one per line.
     pub(crate) warnings: String,
 }
 
@@ -108,7 +108,7 @@ impl Session {
         })
     }
 
-    /// Selects by trials what the scene leaves open: elements, integrator and step.
+    /// Selects by convergence trials the values that the scene leaves open: elements, integrator and time step.
     pub(crate) fn select(&mut self) -> Outcome {
         self.expect_not_started("select")?;
         if let Some(found) = discretisation::select(&self.scene) {
@@ -144,7 +144,7 @@ impl Session {
         self.simulation.as_ref().ok_or_else(missing)
     }
 
-    /// Finds the equilibrium at the present inputs, at a time [s].
+    /// Solves the equilibrium with the current inputs at a time [s].
     pub(crate) fn start(&mut self, time: f64) -> Outcome {
         if !time.is_finite() {
             return Err(Failure::argument(format!(
@@ -161,20 +161,20 @@ impl Session {
         Ok(())
     }
 
-    /// Goes back to before the start; parameters and inputs stay.
+    /// Returns to the state before the start; parameters and inputs are kept.
     pub(crate) fn reset(&mut self) {
         self.simulation = None;
         self.watch = None;
     }
 
-    /// Keeps notes for the host.
+    /// Appends notes to the warnings for the host.
     fn note(&mut self, notes: &[Note]) {
         for note in notes {
             self.warnings += &format!("{note}\n");
         }
     }
 
-    /// Notes on the scene with its present parameters, each once.
+    /// Appends the notes on the scene with its current parameters, each once.
     fn note_scene(&mut self) {
         let mut notes = self.scene.notes();
         notes.retain(|note| !self.noted.contains(note));
@@ -182,7 +182,7 @@ impl Session {
         self.noted.extend(notes);
     }
 
-    /// Notes on the present state, each once.
+    /// Appends the notes on the current state, each once.
     fn note_state(&mut self) {
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             let notes = watch.look(simulation);
@@ -227,7 +227,7 @@ impl Session {
         found.map(Interface::reference).ok_or_else(unknown)
     }
 
-    /// References of all variables of a causality, in their order.
+    /// Returns the references of all variables with a causality, in ascending order.
     pub(crate) fn references(&self, causality: Causality) -> Vec<u32> {
         let variables = self.variables().iter().enumerate();
         let wanted = variables.filter(|(_, variable)| variable.causality == causality);
@@ -242,14 +242,14 @@ impl Session {
         Ok(())
     }
 
-    /// Derivatives of outputs by an input.
+    /// Computes the derivatives of outputs with respect to an input.
     pub(crate) fn derivatives(&self, outputs: &[u32], input: u32, values: &mut [f64]) -> Outcome {
         let (outputs, input) = (self.variables_of(outputs)?, self.variable(input)?);
         let found = Interface::derivative(&outputs, input, self.simulation()?);
         put_derivatives(found, values)
     }
 
-    /// Rates of outputs in time.
+    /// Computes the time derivatives of outputs [per second].
     pub(crate) fn rates(&self, outputs: &[u32], values: &mut [f64]) -> Outcome {
         let found = Interface::rates(&self.variables_of(outputs)?, self.simulation()?);
         put_derivatives(found, values)
@@ -277,7 +277,7 @@ impl Session {
         }
     }
 
-    /// Sets inputs, and parameters before the start: all of them or, where one is refused, none.
+    /// Sets inputs, and before the start parameters: all of them, or none if one is refused.
     pub(crate) fn set(&mut self, references: &[u32], values: &[f64]) -> Outcome {
         check_lengths(references.len(), values.len())?;
         let (mut scene, mut inputs, steps) = (None, self.inputs.clone(), self.simulation.is_some());
@@ -324,7 +324,7 @@ impl Session {
         self.moved.get(index).ok_or_else(unknown)
     }
 
-    /// Sets the present pose of a body, and its velocity if that is given.
+    /// Sets the current pose of a body, and its velocity if given.
     pub(crate) fn move_body(&mut self, index: usize, place: &[f64], velocity: Option<&[f64]>) -> Outcome {
         let body = self.body(index)?.clone();
         check_lengths(body.size, place.len())?;
@@ -338,13 +338,13 @@ impl Session {
         Ok(())
     }
 
-    /// Force on a body [N], and moment on a vessel [N m].
+    /// Returns the force on a body [N] and, for a vessel, the moment [N m].
     pub(crate) fn force(&self, index: usize) -> Outcome<Vec<f64>> {
         let (body, simulation) = (self.body(index)?, self.simulation()?);
         Ok(simulation.host_force(body.body)[..body.size].to_vec())
     }
 
-    /// Stiffness of the mooring on a vessel by rows of force [N/m, N, N m].
+    /// Returns the stiffness of the mooring on a vessel, row by row [N/m, N, N m].
     pub(crate) fn stiffness(&self, index: usize) -> Outcome<[[f64; 6]; 6]> {
         let (body, simulation) = (self.body(index)?, self.simulation()?);
         let Body::Vessel(vessel) = body.body else {
@@ -383,7 +383,7 @@ impl Session {
         self.scene.lines.len()
     }
 
-    /// Positions of the nodes of a line from end A to end B [m], with their tensions [N].
+    /// Returns the positions [m] and tensions [N] of the nodes of a line, from end A to end B.
     pub(crate) fn nodes(&self, index: usize) -> Outcome<Vec<([f64; 3], f64)>> {
         self.line(index)?;
         let profile = self.simulation()?.profile(index).into_iter();
@@ -392,7 +392,7 @@ impl Session {
             .collect())
     }
 
-    /// Places of the nodes of a line from end A to end B for which the next flow of the water is due [m].
+    /// Returns the positions at which the water flow is required next, for the nodes of a line from end A to end B [m].
     pub(crate) fn flow_places(&self, index: usize) -> Outcome<Vec<[f64; 3]>> {
         let count = self.flow_count(index)?;
         let simulation = self.simulation()?;
@@ -400,7 +400,7 @@ impl Session {
         Ok((0..count).map(place).collect())
     }
 
-    /// Sets velocity [m/s] and acceleration [m/s²] of the water at the nodes of a line from end A to end B, three values a node.
+    /// Sets velocity [m/s] and acceleration [m/s²] of the water at the nodes of a line from end A to end B, three values per node.
     pub(crate) fn set_flow(&mut self, index: usize, velocities: &[f64], accelerations: &[f64]) -> Outcome {
         let count = self.flow_count(index)?;
         check_lengths(3 * count, velocities.len())?;
@@ -413,7 +413,7 @@ impl Session {
         Ok(())
     }
 
-    /// Number of nodes of a line at which the host gives the flow.
+    /// Returns the number of nodes of a line at which the host sets the water flow.
     fn flow_count(&self, index: usize) -> Outcome<usize> {
         let line = self.line(index)?;
         match self.interface.inputs().flow.node_count(index) {
@@ -422,22 +422,22 @@ impl Session {
         }
     }
 
-    /// The equilibrium as `moorline statics --json` writes it.
+    /// Returns the equilibrium in the format of `moorline statics --json`.
     pub(crate) fn statics(&self) -> Outcome<String> {
         let mut scene = self.scene.clone();
         if let Some(water) = &mut scene.water {
-            water.waves = None; // an equilibrium is that of the sea at rest
+            water.waves = None; // the equilibrium is that in still water
         }
         let simulation = Simulation::at_rest(&scene).map_err(building_error)?;
         Ok(json::text(&collect::statics(&scene, simulation)))
     }
 
-    /// The scene with its present parameters, as TOML.
+    /// Returns the scene with its current parameters as TOML.
     pub(crate) fn scene(&self) -> String {
         self.scene.to_toml()
     }
 
-    /// All that changes, as bytes.
+    /// Serialises everything that changes in the session.
     pub(crate) fn save(&self) -> Vec<u8> {
         let saved = Saved {
             scene: self.scene.to_toml(),
@@ -452,7 +452,7 @@ impl Session {
         sealed::seal(MARK, &saved)
     }
 
-    /// Goes back to a saved state, of this scene with any parameters.
+    /// Restores a saved state of this scene; its parameters may differ.
     pub(crate) fn restore(&mut self, bytes: &[u8]) -> Outcome {
         let damaged = || Failure::argument("the bytes are no state of this version of moorline, or damaged");
         let saved: Saved = sealed::open(MARK, bytes).map_err(|_| damaged())?;
@@ -482,7 +482,7 @@ impl Session {
         Ok(())
     }
 
-    /// A session with the scene and start of a saved state, whose variables are those of this one.
+    /// Returns a session with the scene and start of a saved state; refuses a state with other variables.
     fn sibling(&self, saved: &Saved) -> Outcome<Session> {
         let mut other = Session::read(&saved.scene)?;
         let names = |session: &Session| -> Vec<String> {
@@ -525,7 +525,7 @@ fn moved(scene: &Scene, model: &Model) -> Vec<Moved> {
     bodies.filter(is_moved).collect()
 }
 
-/// Copies derivatives into the room for them.
+/// Copies derivatives to an array of the same length.
 fn put_derivatives(found: Result<Vec<f64>, String>, values: &mut [f64]) -> Outcome {
     let found = found.map_err(|problem| Failure::new(MOORLINE_NOT_AVAILABLE, problem))?;
     check_lengths(found.len(), values.len())?;

@@ -18,7 +18,7 @@ fn causality_code(causality: Causality) -> c_int {
     }
 }
 
-/// Gives the number of variables; their references are 1 to this number.
+/// Gets the number of variables, which is also the greatest reference; references count from 1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_count(
     simulation: moorline_simulation,
@@ -31,7 +31,7 @@ pub unsafe extern "C" fn moorline_variable_count(
     })
 }
 
-/// Gives the reference of a variable by its name, such as `fairlead.x`.
+/// Gets the reference of a variable by its name, for example `fairlead.x`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_find(
     simulation: moorline_simulation,
@@ -47,7 +47,7 @@ pub unsafe extern "C" fn moorline_find(
     })
 }
 
-/// Gives the name of a variable. `moorline_message` says how a text is given.
+/// Gets the name of a variable. The text is returned as by `moorline_message`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_name(
     simulation: moorline_simulation,
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn moorline_variable_name(
     })
 }
 
-/// Gives the unit of a variable. `moorline_message` says how a text is given.
+/// Gets the unit of a variable. The text is returned as by `moorline_message`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_unit(
     simulation: moorline_simulation,
@@ -79,7 +79,7 @@ pub unsafe extern "C" fn moorline_variable_unit(
     })
 }
 
-/// Gives the description of a variable in a sentence. `moorline_message` says how a text is given.
+/// Gets the description of a variable, one sentence. The text is returned as by `moorline_message`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_description(
     simulation: moorline_simulation,
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn moorline_variable_description(
     })
 }
 
-/// Gives the causality of a variable: MOORLINE_INPUT, MOORLINE_OUTPUT, MOORLINE_PARAMETER or MOORLINE_CALCULATED_PARAMETER.
+/// Gets the causality of a variable: MOORLINE_INPUT, MOORLINE_OUTPUT, MOORLINE_PARAMETER or MOORLINE_CALCULATED_PARAMETER.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_variable_causality(
     simulation: moorline_simulation,
@@ -109,7 +109,7 @@ pub unsafe extern "C" fn moorline_variable_causality(
     })
 }
 
-/// Sets inputs, and parameters before start: all of them or, where one is refused, none. Displacements are from the reference positions [m, rad].
+/// Sets inputs, and before start parameters: all of them, or none if one is refused. Displacements are relative to the reference positions [m, rad].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_set(
     simulation: moorline_simulation,
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn moorline_set(
     })
 }
 
-/// Gets variables. Results have values from start on.
+/// Gets the values of variables. Results are available after start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_get(
     simulation: moorline_simulation,
@@ -140,8 +140,8 @@ pub unsafe extern "C" fn moorline_get(
     })
 }
 
-/// Gives the derivatives of `count` outputs by an input, a displacement or a velocity, at the end of the last step. The scene asks for them with
-/// `derivatives = true` in `[output]`.
+/// Gets the derivatives of `count` outputs with respect to an input, a displacement or a velocity, at the end of the last step. Requires
+/// `derivatives = true` in `[output]` of the scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_derivatives(
     simulation: moorline_simulation,
@@ -157,8 +157,7 @@ pub unsafe extern "C" fn moorline_derivatives(
     })
 }
 
-/// Gives the rates of `count` outputs in time, per second, at the end of the last step. The scene asks for them with `derivatives = true` in
-/// `[output]`.
+/// Gets the time derivatives of `count` outputs [per second] at the end of the last step. Requires `derivatives = true` in `[output]` of the scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_rates(
     simulation: moorline_simulation,
@@ -173,7 +172,7 @@ pub unsafe extern "C" fn moorline_rates(
     })
 }
 
-/// Gives the number of inputs.
+/// Gets the number of inputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_input_count(simulation: moorline_simulation, count: *mut usize) -> c_int {
     edge::call(simulation, "moorline_input_count", |session| {
@@ -183,7 +182,7 @@ pub unsafe extern "C" fn moorline_input_count(simulation: moorline_simulation, c
     })
 }
 
-/// Gives the number of outputs.
+/// Gets the number of outputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_output_count(simulation: moorline_simulation, count: *mut usize) -> c_int {
     edge::call(simulation, "moorline_output_count", |session| {
@@ -193,7 +192,7 @@ pub unsafe extern "C" fn moorline_output_count(simulation: moorline_simulation, 
     })
 }
 
-/// Gives the number of parameters.
+/// Gets the number of parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_parameter_count(
     simulation: moorline_simulation,

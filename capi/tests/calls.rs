@@ -1,4 +1,4 @@
-//! The library for C: it agrees with the library in Rust, refuses what it cannot use with a code and a sentence, and survives calls in any order.
+//! The C library agrees with the Rust library, refuses unusable arguments with a code and a message, and accepts calls in any order.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::ptr::{null, null_mut, without_provenance_mut};
@@ -88,7 +88,7 @@ lines = [
 ]
 ";
 
-/// The same, whose host gives the flow of the water.
+/// The same scene with the water flow set by the host.
 fn hosted() -> String {
     SCENE.replace("water.density", "water.flow = \"host\"\nwater.density")
 }
@@ -414,7 +414,7 @@ fn the_flow_of_the_water_acts_as_in_the_library_in_rust_and_is_that_of_its_input
 fn a_flow_that_is_not_asked_for_or_cannot_be_used_has_its_code_and_a_sentence() {
     let (still, flowing) = (read(SCENE), read(&hosted()));
     let (calm, wild, mut places) = ([0.0; 21], [f64::NAN; 21], [0.0; 21]);
-    // SAFETY: arrays of the lengths that are said.
+    // SAFETY: arrays of the lengths passed.
     unsafe {
         refused(
             moorline_set_flow(still, 0, calm.as_ptr(), calm.as_ptr(), 21),
@@ -462,7 +462,7 @@ fn elements_are_selected_for_a_scene_whose_host_gives_the_flow() {
     }
 }
 
-/// Claims the code of a call, and words of its message.
+/// Asserts the code of a call and words of its message.
 fn refused(code: c_int, expected: c_int, words: &str) {
     assert_eq!(code, expected, "{}", message());
     assert!(message().contains(words), "{}", message());
@@ -630,7 +630,7 @@ fn the_equilibrium_is_written_as_json() {
     }
 }
 
-/// Calls in any order on handles that are open, closed or null, with arrays of any length up to their own.
+/// Makes calls in any order on handles that are open, closed or null, with arrays of any length up to their own.
 fn assert_calm(sequences: usize, seed: u64) {
     let mut random = Random::new(seed);
     let mut below = move |count: usize| (random.unit() * count as f64) as usize;
@@ -649,7 +649,7 @@ fn assert_calm(sequences: usize, seed: u64) {
             } else {
                 values.as_mut_ptr()
             };
-            // SAFETY: arrays have at least as many values as are said, or are null; handles may be anything.
+            // SAFETY: arrays have at least the lengths passed, or are null; handles may be anything.
             let code = unsafe {
                 match below(16) {
                     0..=2 => moorline_start(handle, values[0]),

@@ -1,4 +1,4 @@
-//! The examples in C, Fortran and Octave: built and run where their tools are, with the same force in all.
+//! The examples in C, Fortran and Octave are built and run if their tools are installed; all give the same force.
 
 mod common;
 
@@ -19,7 +19,7 @@ fn scene() -> PathBuf {
     folder().join("../scenes/oc3_catenary.toml")
 }
 
-/// Force [N] that the library in Rust finds for the run of the examples.
+/// Force [N] that the Rust library computes for the run of the examples.
 fn expected() -> [f64; 3] {
     let mut mooring = Simulation::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
     let fairlead = mooring.model().point_index("fairlead").unwrap();
@@ -33,7 +33,7 @@ fn expected() -> [f64; 3] {
     mooring.end_force(fairlead)
 }
 
-/// Claims that the numbers after `force` in a line are the expected force, to six digits.
+/// Asserts that the numbers after `force` in a line equal the expected force, to six digits.
 fn assert_force(said: &str) {
     let words = said.split("force").nth(1).unwrap_or_else(|| panic!("{said}"));
     let numbers: Vec<f64> = words
@@ -49,7 +49,7 @@ fn assert_force(said: &str) {
     assert_eq!(numbers.len(), 3, "{said}");
 }
 
-/// Runs a program on the scene with the folder of the library where its linker looks.
+/// Runs a program on the scene; its linker searches the library's folder.
 fn run_host(program: &Path) -> String {
     let libraries = library("moorline_c").parent().unwrap().to_path_buf();
     run(Command::new(program)
@@ -104,7 +104,7 @@ fn the_host_in_fortran_has_the_force_of_the_host_in_rust() {
     assert_force(&run_host(&program));
 }
 
-/// Needs the headers of Octave: `mkoctfile` of Debian's octave-dev, or their folder in the variable OCTAVE_HEADERS.
+/// Requires the headers of Octave: `mkoctfile` of Debian's octave-dev, or their folder in the environment variable OCTAVE_HEADERS.
 #[test]
 fn the_host_in_octave_has_the_force_of_the_host_in_rust() {
     if !cfg!(target_os = "linux") || !has("octave-cli") {
@@ -125,7 +125,7 @@ fn the_host_in_octave_has_the_force_of_the_host_in_rust() {
         }
         None => return,
     };
-    // in one word: mkoctfile takes no folder of its own
+    // one word: mkoctfile does not accept the folder as a separate argument
     let headers = format!("-I{}", folder().join("include").display());
     command.arg(headers).arg(source);
     command.arg("-o").arg(built.path().join("moorline_run.mex"));

@@ -1,4 +1,4 @@
-//! The header of the library: it is current, clean in C and C++, and names exactly the symbols of the library.
+//! The header of the library is current, compiles without warnings in C and C++, and declares exactly the symbols of the library.
 
 mod common;
 

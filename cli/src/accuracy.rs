@@ -28,7 +28,7 @@ macro_rules! built_in {
     };
 }
 
-/// The scenes that are studied where none is given.
+/// Scenes that are studied if none is given.
 const PUBLIC: [(&str, &str); 11] = [
     built_in!("oc3_catenary"),
     built_in!("oc4_chain"),
@@ -42,14 +42,14 @@ const PUBLIC: [(&str, &str); 11] = [
     built_in!("volturnus_semi"),
     built_in!("shared_mooring"),
 ];
-/// Error of RMS tension with which the quasi-static mode is enough [-].
+/// Error of RMS tension up to which the quasi-static mode is sufficient [-].
 const ENOUGH: f64 = 0.02;
 
 /// Folder with the results of a study.
 pub(crate) struct Results<'a> {
     /// The folder.
     pub folder: &'a Path,
-    /// True if its other scenes are kept.
+    /// True if the results of other scenes in it are kept.
     pub add: bool,
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn accuracy(
     let peers = python.map(|python| Peers::find(python, folder)).transpose();
     let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     stay_on_one_core();
-    // Results are written even if the reader of standard output closes it.
+    // Results are written even if standard output is closed by its reader.
     let mut printed = print(&format!("on {machine}\n\n"));
     let kept = studies.len();
     for (name, scene) in &scenes {
@@ -108,7 +108,7 @@ pub(crate) fn accuracy(
     printed
 }
 
-/// The studies of a folder, made on this machine; none where it holds none.
+/// Reads the studies in a folder, which must be of this machine; empty if there are none.
 fn studied(machine: &str, folder: &Path) -> Result<Vec<Study>, Failure> {
     let path = folder.join("accuracy.csv");
     let fault = |text: String| Failure::Argument(format!("{}: {text}", path.display()));
@@ -125,7 +125,7 @@ fn studied(machine: &str, folder: &Path) -> Result<Vec<Study>, Failure> {
     Ok(studies)
 }
 
-/// The FMU of a scene, opened; the error is a message.
+/// Packages a scene as an FMU and opens it; the error is a message.
 fn opened(scene: &Scene, library: Library<'_>) -> Result<Fmu, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let (target, text) = (folder.path().join("scene.fmu"), scene.to_toml());
@@ -188,14 +188,14 @@ fn scenes(
     Ok(scenes)
 }
 
-/// Keeps this thread, and the peers that it starts, on one core; without the system's permission, on any.
+/// Keeps this thread, and the peers that it starts, on one core if the system permits it.
 fn stay_on_one_core() {
     if let Some(core) = core_affinity::get_core_ids().and_then(|cores| cores.last().copied()) {
         core_affinity::set_for_current(core);
     }
 }
 
-/// Name of the processor, or its architecture where the system does not give it.
+/// Name of the processor, or its architecture if the system does not give the name.
 fn processor() -> String {
     let processors = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = processors.lines().find(|line| line.starts_with("model name"));
@@ -204,8 +204,8 @@ fn processor() -> String {
         .to_string()
 }
 
-/// A study in tables: the cheapest runs at each level and the cost of the peers over moorline's; offline settings of each integrator and the
-/// periods for which equilibria are enough, in a host default settings.
+/// Tables of a study: the cheapest runs at each level and the cost of the peers over moorline's; offline, settings of each integrator and the periods
+/// for which equilibria are sufficient; in a host, default settings.
 fn report(study: &Study) -> String {
     let title = match study.title.as_str() {
         "" => String::new(),
@@ -293,7 +293,7 @@ fn how(verdict: &Verdict<'_>) -> String {
     peer.map_or(own.clone(), |peer| format!("{own} | {peer}"))
 }
 
-/// Errors at which a peer is cheaper than moorline, or else where it comes closest; empty without a peer.
+/// Errors at which a peer is cheaper than moorline, or else the error at which it comes closest; empty without a peer.
 fn lost(study: &Study) -> String {
     let described = |duel: &Duel<'_>| {
         format!(
@@ -350,7 +350,7 @@ fn defaults(study: &Study) -> Table {
     table
 }
 
-/// Periods from which on the quasi-static mode is enough.
+/// Table of the quasi-static mode, and the periods from which on it is sufficient.
 fn slower(slow: &[Slow]) -> String {
     let Some(last) = slow.last() else {
         return "the quasi-static mode was not compared with dynamics: the scene is quasi-static itself, or no sum of sines in still water\n"

@@ -200,7 +200,7 @@ pub(crate) struct FromHost {
 }
 
 impl FromHost {
-    /// The same for the reader of decks.
+    /// Converts the values for the reader of decks.
     pub(crate) fn supplement(&self) -> Supplement {
         Supplement {
             depth: self.depth,

@@ -13,8 +13,8 @@ use crate::failure::Failure;
 use crate::hold;
 use crate::terminal::{noted, print};
 
-/// Reads a scene, discretises it, and prints a description of its model, notes on it, and the variables of its FMU.
-/// Where `write` is set, also writes the discretisation into the scene's file.
+/// Reads a scene, discretises it, and prints a description of its model, notes on it, and the variables of its FMU. If `write` is set, also writes
+/// the discretisation into the scene's file.
 pub(crate) fn check(input: &Input, write: bool) -> Result<(), Failure> {
     let loaded = load_with(&input.scene, &input.host.supplement())?;
     if write {
@@ -75,7 +75,7 @@ pub(crate) fn check(input: &Input, write: bool) -> Result<(), Failure> {
     print(&format!("\n{}\n", hold::hold(&loaded, held.as_ref())?))
 }
 
-/// Integrators with their steps, and threads, each in a sentence.
+/// Describes integrators with their steps, and threads, in a sentence each.
 fn steps_in_words(scene: &Scene, simulation: &Simulation) -> Vec<String> {
     let mut said = simulation.choices_in_words();
     let threads = simulation.threads_in_words(scene.output.interval);

@@ -22,7 +22,7 @@ pub(crate) fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Re
         let text = format!("{} is a scene of moorline already", path.display());
         return Err(Failure::Argument(text));
     }
-    // A scene that cannot be discretised is not a scene.
+    // A scene that cannot be discretised is refused.
     Model::new(&loaded.scene).map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
     let text = loaded.to_commented_toml();
     write_file(target, |out: &mut dyn Write| out.write_all(text.as_bytes()))?;

@@ -1,5 +1,5 @@
-//! `moorline demo`: the main job from end to end. The built-in scene becomes an FMU; a host opens it through its C
-//! interface, moves the fairlead and reads forces, tensions and shapes back.
+//! `moorline demo`: the main workflow from end to end. The built-in scene becomes an FMU; a host opens it through its C interface, moves the fairlead
+//! and reads forces, tensions and shapes.
 
 use std::path::Path;
 use std::time::Instant;
@@ -27,7 +27,7 @@ use moorline::output::recorder::{columns, input_of, recorded};
 /// The built-in scene.
 const SCENE: &str = include_str!("../../scenes/demo.toml");
 
-/// Packages the built-in scene, drives the FMU, shows and writes the results.
+/// Packages the built-in scene, drives the FMU, and shows and writes the results.
 pub(crate) fn demo(folder: &Path, library: Library<'_>) -> Result<(), Failure> {
     let mut loaded = load_text(Path::new("demo.toml"), SCENE.to_string())?;
     discretise(&mut loaded, discretisation::select);
@@ -127,7 +127,7 @@ impl<'a> Host<'a> {
         })
     }
 
-    /// Initializes the FMU, and gives a record its equilibrium.
+    /// Initializes the FMU, and records its equilibrium.
     fn initialize(&mut self, end: f64, record: &mut Record) -> Result<(), HostError> {
         self.slave.enter_initialization(0.0, Some(end))?;
         self.set_motion(0.0)?;
@@ -135,7 +135,7 @@ impl<'a> Host<'a> {
         self.record_statics(record)
     }
 
-    /// Makes a step of a length from a time [s]; returns the number of internal steps.
+    /// Makes a step of length `step` [s] from `time` [s]; returns the number of internal steps.
     fn step(&mut self, time: f64, step: f64) -> Result<u64, HostError> {
         self.set_motion(time)?;
         self.slave.do_step(time, step)?;
@@ -154,7 +154,7 @@ impl<'a> Host<'a> {
         Ok(())
     }
 
-    /// Replaces the equilibrium and the closed form of the reference by the FMU's.
+    /// Replaces the equilibrium and the closed form in a record by those of the FMU.
     fn record_statics(&mut self, record: &mut Record) -> Result<(), HostError> {
         let model = self.reference.model();
         for (line, built) in record.lines.iter_mut().zip(&model.lines) {

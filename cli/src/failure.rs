@@ -15,7 +15,7 @@ use crate::folder::INTERRUPTED;
 const INPUT: u8 = 2;
 /// The computation failed.
 const COMPUTATION: u8 = 1;
-/// Width of a message that does not go to a terminal [characters].
+/// Width of a message that is not written to a terminal [characters].
 const WIDTH: usize = 110;
 
 /// Failure of a command.
@@ -27,14 +27,14 @@ pub(crate) enum Failure {
     Argument(String),
     /// The computation failed, or its result could not be written.
     Computation(String),
-    /// The command was interrupted, and has kept its results.
+    /// The command was interrupted, and its results are kept.
     Interrupted(String),
-    /// Standard output did not take the text.
+    /// The text could not be written to standard output.
     Print(io::Error),
 }
 
 impl Failure {
-    /// A mistake that appears only when the scene is discretised or brought to equilibrium.
+    /// Failure due to a mistake that appears only when the scene is discretised or brought to equilibrium.
     pub(crate) fn of_simulation(error: simulation::Error, loaded: &LoadedScene) -> Failure {
         match error {
             simulation::Error::Scene(mistake) => Failure::of_scene(mistake, loaded),
@@ -42,7 +42,7 @@ impl Failure {
         }
     }
 
-    /// A mistake in a scene that has been read.
+    /// Failure due to a mistake in a scene that has been read.
     pub(crate) fn of_scene(mistake: SceneError, loaded: &LoadedScene) -> Failure {
         Failure::Scene(LoadError::Scene {
             path: loaded.path.clone(),
@@ -51,7 +51,7 @@ impl Failure {
         })
     }
 
-    /// A package that was not written.
+    /// Failure due to a package that was not written.
     pub(crate) fn of_package(error: PackageError, loaded: &LoadedScene) -> Failure {
         match error {
             PackageError::Scene(mistake) => Failure::of_scene(mistake, loaded),
@@ -60,7 +60,7 @@ impl Failure {
         }
     }
 
-    /// A file that was not written: its path is wrong, or the disk is full or broken.
+    /// Failure due to a file that was not written: its path is wrong, or the disk is full or broken.
     pub(crate) fn of_file(kind: ErrorKind, text: String) -> Failure {
         match kind {
             ErrorKind::NotFound
@@ -89,13 +89,13 @@ impl Failure {
                 format!("error: cannot write to standard output: {error}\n"),
             ),
         };
-        // A message that cannot be written changes nothing.
+        // A failure to write the message is ignored.
         let _ = io::stderr().write_all(text.as_bytes());
         code
     }
 }
 
-/// The message with the lines of the scene that it is about.
+/// Message with the lines of the scene to which it refers.
 fn rendered(error: &LoadError) -> String {
     let mistakes = error.mistakes();
     let labels = mistakes.iter().filter_map(|mistake| {

@@ -98,7 +98,7 @@ pub(crate) fn verify(file: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes the FMU of a scene; its name appears when the file is whole.
+/// Writes the FMU of a scene; the file receives its name when it is complete.
 pub(crate) fn package(
     loaded: &LoadedScene,
     target: &Path,

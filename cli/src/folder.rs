@@ -1,5 +1,5 @@
-//! Folder that a command writes into: made and tested before any work, and removed again where it stays empty. Also
-//! the message on the results that an interrupted command leaves behind.
+//! Folder into which a command writes: created and tested before any work, and removed again if it stays empty. Also the message on the results that
+//! an interrupted command leaves.
 
 use std::fs;
 use std::io::{self, Write};
@@ -11,37 +11,37 @@ use moorline::output::{open_folder, remove_partial};
 
 use crate::failure::Failure;
 
-/// Exit code of a program that Ctrl-C ends, by the convention of shells: 128 and the signal's number.
+/// Exit code of a program ended by Ctrl-C, by the convention of shells: 128 plus the signal's number.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Interrupts end the program.
 const ENDS: u8 = 0;
 /// The next interrupt is left to the command.
 const LISTENS: u8 = 1;
-/// An interrupt has come that the command ends after.
+/// An interrupt was received, after which the command ends.
 const STOPS: u8 = 2;
 static INTERRUPTS: AtomicU8 = AtomicU8::new(ENDS);
 
-/// Place that the command writes to, while it does.
+/// Folder into which the command is writing.
 static OPEN: Mutex<Option<Place>> = Mutex::new(None);
 
-/// Folder that files are written into.
+/// Folder into which files are written.
 #[derive(Debug, Clone)]
 struct Place {
     path: PathBuf,
-    /// Folders that were not there before, the innermost first.
+    /// Folders that were created, innermost first.
     made: Vec<PathBuf>,
-    /// True if it is for results alone; false for the folder of one file.
+    /// True if the folder is for results alone; false for the folder of one file.
     is_own: bool,
 }
 
-/// A folder that is open for results as long as this lives.
+/// Folder that is open for results until this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Folder(Place);
 
 impl Folder {
-    /// Makes a folder where it is missing, and checks that files can be written there. An interrupted command names
-    /// the results kept in it.
+    /// Creates a folder if it is missing, and checks that files can be written into it. The message of an interrupted command names the results in
+    /// it.
     pub(crate) fn open(path: &Path) -> Result<Folder, Failure> {
         let above = path.ancestors();
         let missing = above.take_while(|path| !path.as_os_str().is_empty() && !path.exists());
@@ -50,7 +50,7 @@ impl Folder {
         Ok(Folder::of(path, made, true))
     }
 
-    /// The folder of one file, whose incomplete content an interrupted command removes.
+    /// Returns the folder of one file, whose incomplete content an interrupted command removes.
     pub(crate) fn of_file(target: &Path) -> Folder {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
         Folder::of(folder.unwrap_or(Path::new(".")), Vec::new(), false)
@@ -71,18 +71,18 @@ impl Drop for Folder {
     }
 }
 
-/// As long as this lives, the first interrupt is left to the command, which looks for it and ends by itself. The second one ends the program.
+/// While this value exists, the first interrupt is left to the command, which polls it and ends by itself. The second one ends the program.
 #[derive(Debug)]
 pub(crate) struct Listener(());
 
 impl Listener {
-    /// Begins to listen.
+    /// Begins to leave interrupts to the command.
     pub(crate) fn new() -> Listener {
         INTERRUPTS.store(LISTENS, Ordering::SeqCst);
         Listener(())
     }
 
-    /// Returns true once an interrupt has come.
+    /// Returns whether an interrupt was received.
     pub(crate) fn is_interrupted(&self) -> bool {
         INTERRUPTS.load(Ordering::Relaxed) == STOPS
     }
@@ -94,7 +94,7 @@ impl Drop for Listener {
     }
 }
 
-/// Refuses to write results to the file that is read.
+/// Refuses to write results to the file from which the input is read.
 pub(crate) fn check_apart(input: &Path, target: &Path) -> Result<(), Failure> {
     let [read, written] = [input, target].map(|path| fs::canonicalize(path).ok());
     if read.is_some() && read == written {
@@ -107,14 +107,14 @@ pub(crate) fn check_apart(input: &Path, target: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Sets where the command writes; returns where it wrote before.
+/// Sets the folder into which the command writes; returns the previous one.
 fn set_open(place: Option<Place>) -> Option<Place> {
     let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
     std::mem::replace(&mut open, place)
 }
 
 impl Place {
-    /// Removes the folders that were made for nothing.
+    /// Removes the created folders that are empty.
     fn remove_empty(&self) {
         for folder in &self.made {
             // The system does not remove a folder that is not empty.
@@ -124,7 +124,7 @@ impl Place {
         }
     }
 
-    /// Removes incomplete files; returns whether results are left.
+    /// Removes incomplete files; returns whether any results remain.
     fn clear(&self) -> bool {
         remove_partial(&self.path);
         self.remove_empty();
@@ -132,9 +132,10 @@ impl Place {
     }
 }
 
-/// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on the results kept, or be seen by a [`Listener`].
+/// Installs a handler for Ctrl-C and termination requests such as SIGTERM: they end the program with a message on the results kept, or are left to a
+/// [`Listener`].
 pub(crate) fn end_on_interrupt() {
-    // Without a handler, they end this program like any other.
+    // If the handler cannot be installed, they end the program without a message.
     let _ = ctrlc::set_handler(|| {
         let left = INTERRUPTS.compare_exchange(LISTENS, STOPS, Ordering::SeqCst, Ordering::SeqCst);
         if left.is_ok() {
@@ -144,7 +145,7 @@ pub(crate) fn end_on_interrupt() {
             Some(place) => format!("{} holds what was written before", place.path.display()),
             None => "nothing was written".to_string(),
         };
-        // A message that cannot be written changes nothing.
+        // A failure to write the message is ignored.
         let _ = writeln!(io::stderr(), "interrupted: {kept}");
         std::process::exit(INTERRUPTED.into())
     });

@@ -1,4 +1,4 @@
-//! `moorline check --write`: the selected discretisation in the scene's own file, so that no later command searches for it.
+//! `moorline check --write`: the selected discretisation in the scene's own file, so that later commands need no selection.
 
 use std::io::Write;
 
@@ -15,7 +15,7 @@ const MARK: char = '\u{feff}';
 /// The other name of `integrator`.
 const DYNAMICS: &str = "dynamics";
 
-/// Refuses the file of another program, which has no place for a discretisation.
+/// Refuses the file of another program, which cannot contain a discretisation.
 pub(crate) fn check_format(loaded: &LoadedScene) -> Result<(), Failure> {
     if loaded.format == TOML {
         return Ok(());
@@ -27,8 +27,8 @@ pub(crate) fn check_format(loaded: &LoadedScene) -> Result<(), Failure> {
     )))
 }
 
-/// Writes the elements, integrator and step of a discretised scene, where there is one, into the file of the scene, and keeps the rest of the
-/// file as it is. Returns a sentence.
+/// Writes the elements, integrator and step of a discretised scene, if there is one, into the file of the scene. The rest of the file does not
+/// change. Returns a sentence.
 pub(crate) fn hold(loaded: &LoadedScene, held: Option<&Scene>) -> Result<String, Failure> {
     let path = loaded.path.display();
     let Some(held) = held else {
@@ -46,7 +46,8 @@ pub(crate) fn hold(loaded: &LoadedScene, held: Option<&Scene>) -> Result<String,
     Ok(format!("written to {path}: {}", keys.join(", ")))
 }
 
-/// Text of a scene with the discretisation of the scene `held` in place of that of the scene `given`, and the keys set; none if the text is not a scene.
+/// Text of a scene with the discretisation of the scene `held` instead of that of the scene `given`, and the keys set; `None` if the text is not a
+/// scene.
 fn edited(text: &str, given: &Scene, held: &Scene) -> Option<(String, Vec<String>)> {
     let mut document: DocumentMut = text.parse().ok()?;
     let [mut before, mut after] = [given, held].map(|scene| scene.to_toml().parse::<DocumentMut>().ok());
@@ -94,7 +95,7 @@ fn like(model: &str, text: &str) -> String {
     }
 }
 
-/// Value of a key after a change; none where it is the same as before or absent.
+/// Value of a key after a change; `None` if it is the same as before or absent.
 fn changed<'d>(before: Option<&Item>, after: Option<&'d Item>) -> Option<&'d Item> {
     let words = |item: &Item| item.to_string().trim().to_string();
     after.filter(|item| before.map(words) != Some(words(item)))
@@ -114,7 +115,8 @@ fn put(table: &mut dyn TableLike, at: &str, key: &str, item: &Item) -> String {
     assignment
 }
 
-/// Removes the blank behind the last value of a table: before the brace that closes an inline table, and so before the comma of a key to come.
+/// Removes the blank after the last value of a table: it stands before the closing brace of an inline table, and would stand before the comma of a
+/// new key.
 fn close_up(table: &mut dyn TableLike) {
     let Some(last) = table.iter_mut().last().and_then(|(_, item)| item.as_value_mut()) else {
         return;

@@ -1,4 +1,5 @@
-//! The program `moorline`: parse, call, print, exit code. The binary of this package and the Python package both call [`main`].
+//! The program `moorline`: parses arguments, calls a command, prints and returns an exit code. The binary of this package and the Python package both
+//! call [`main`].
 //!
 //! Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.
 #![forbid(unsafe_code)]
@@ -44,7 +45,7 @@ const EMBEDDED: Option<&[u8]> = Some(include_bytes!(env!(
 #[cfg(not(feature = "embedded-fmu"))]
 const EMBEDDED: Option<&[u8]> = None;
 
-/// Place of the FMU libraries that the program packages. Those inside the program come first.
+/// Location of the FMU libraries that the program packages. Libraries embedded in the program take precedence.
 #[derive(Debug, Clone, Copy)]
 pub enum Library<'a> {
     /// In the folder of the program.
@@ -54,10 +55,10 @@ pub enum Library<'a> {
 }
 
 impl Library<'_> {
-    /// The libraries.
+    /// Returns the libraries.
     ///
     /// # Errors
-    /// A file that is missing or cannot be read.
+    /// A file is missing or cannot be read.
     pub fn find(self) -> Result<Binaries, PackageError> {
         match (EMBEDDED, self) {
             (Some(embedded), _) => Binaries::of_bytes(embedded),
@@ -72,7 +73,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>, library: Library<'_>)
     let command = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments.command,
         Err(usage) => {
-            // A message that cannot be written changes nothing.
+            // A failure to write the message is ignored.
             let _ = usage.print();
             let _ = std::io::stdout().flush();
             return u8::try_from(usage.exit_code()).unwrap_or(USAGE);

@@ -35,7 +35,7 @@ pub(crate) fn man(folder: Option<&Path>) -> Result<(), Failure> {
         .filter(|command| command.get_name() != "help");
     let mut count = 0;
     for command in std::iter::once(&program).chain(commands) {
-        // `build` has called them moorline-run and so on
+        // `build` has named them moorline-run and so on
         let name = command.get_display_name().unwrap_or(NAME);
         let page = page(command.clone()).map_err(Failure::Print)?;
         write_file(&folder.join(format!("{name}.1")), |out| out.write_all(&page))?;

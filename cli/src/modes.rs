@@ -22,9 +22,9 @@ const DIGITS: usize = 6;
 /// Options of the command.
 #[derive(Debug)]
 pub(crate) struct Shown<'a> {
-    /// Modes, of all lines together.
+    /// Number of modes of all lines together.
     pub count: usize,
-    /// JSON in place of a table.
+    /// True to print JSON instead of a table.
     pub as_json: bool,
     /// Folder for the figure.
     pub output: Option<&'a Path>,
@@ -34,7 +34,7 @@ pub(crate) struct Shown<'a> {
 pub(crate) fn modes(input: &Input, shown: &Shown) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Some(water) = &mut loaded.scene.water {
-        water.waves = None; // an equilibrium is that of the sea at rest
+        water.waves = None; // the equilibrium is that in still water
     }
     if loaded.scene.solver.integrator == Integrator::QuasiStatic {
         loaded.scene.solver.integrator = Integrator::Leapfrog; // elements at rest, not catenaries
@@ -56,7 +56,7 @@ pub(crate) fn modes(input: &Input, shown: &Shown) -> Result<(), Failure> {
     print(&table(&found))
 }
 
-/// The modes for the terminal.
+/// Table of the modes for the terminal.
 fn table(found: &NaturalModes) -> String {
     let head = [
         "natural mode",

@@ -26,14 +26,14 @@ const SAVED_EVERY: Duration = Duration::from_secs(60);
 /// Coupling of the motion to the mooring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Stepping {
-    /// Exactly.
+    /// The scene's motion is followed exactly.
     Scene,
-    /// The scene's motion as a host gives it, at communication points only: before every step where it starts, or where it ends if
-    /// the inputs have that meaning.
+    /// The scene's motion is set at communication points only, as by a host: before every step, the motion at its start, or at its end if the inputs
+    /// have that meaning.
     Host {
         /// Communication step [s].
         step: f64,
-        /// Velocities are set too.
+        /// True if velocities are set too.
         velocities: bool,
     },
 }
@@ -137,7 +137,7 @@ fn check_step(step: f64, scene: &Scene) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Remarks on a scene that a drive has changed. Those on motions of the drive name its file or argument.
+/// Writes remarks on a scene that a drive has changed. Remarks on motions of the drive name its file or argument.
 fn remark_driven(notes: Vec<Note>, loaded: &LoadedScene, before: &Scene, drive: &Drive) {
     for note in notes {
         let body = note
@@ -175,7 +175,7 @@ impl Given {
         }
     }
 
-    /// Reads the state of the interrupted run in a folder; refuses that of another one.
+    /// Reads the state of the interrupted run in a folder; refuses the state of another run.
     fn saved_in(&self, folder: &Path) -> Result<RunState, Failure> {
         let saved = RunState::read(folder)?;
         let refuse = |problem: String| {
@@ -205,24 +205,24 @@ impl Given {
         Ok(saved)
     }
 
-    /// The scene that the interrupted run simulates.
+    /// Returns the scene that the interrupted run simulates.
     fn discretised(&self, saved: &RunState) -> Result<Scene, Failure> {
         let read = Scene::from_toml(&saved.discretised);
         read.map_err(|mistake| Failure::Computation(format!("the saved scene cannot be read: {mistake}")))
     }
 }
 
-/// End of the steps.
+/// Reason why the steps end.
 enum End {
-    /// The duration is over.
+    /// The duration is complete.
     Complete,
-    /// The time to stop has come.
+    /// The time to stop is reached.
     Until,
-    /// A signal has come.
+    /// A signal was received.
     Interrupted,
 }
 
-/// A run between two rows.
+/// State of a run between two rows.
 struct Run<'r> {
     loaded: &'r LoadedScene,
     folder: &'r Path,
@@ -237,7 +237,7 @@ struct Run<'r> {
 }
 
 impl<'r> Run<'r> {
-    /// Builds the simulation and the files, with the first row; or restores them behind their last row.
+    /// Builds the simulation and the files, with the first row; or restores them after their last row.
     fn start(
         loaded: &'r LoadedScene,
         folder: &'r Path,
@@ -293,7 +293,7 @@ impl<'r> Run<'r> {
         Ok(run)
     }
 
-    /// Steps until the end of the run, an interruption or the time to stop, with a row at every step.
+    /// Steps until the end of the run, an interruption or the time to stop, and adds a row at every step.
     fn finish(mut self) -> Result<(Record, End), Failure> {
         let listener = Listener::new();
         let (count, first) = (self.times.count, self.record.course.rows);

@@ -15,7 +15,7 @@ use crate::terminal::{at_rest, print, read_scene, remark_all};
 pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Some(water) = &mut loaded.scene.water {
-        water.waves = None; // an equilibrium is that of the sea at rest
+        water.waves = None; // the equilibrium is that in still water
     }
     let simulation = at_rest(&mut loaded)?;
     remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));

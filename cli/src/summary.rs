@@ -8,16 +8,16 @@ use moorline::output::report::{difference, rounded};
 /// Digits of a number in a table [-].
 const DIGITS: usize = 7;
 
-/// A table with a name in front of every row of numbers.
+/// Table with a name in front of every row of numbers.
 #[derive(Debug)]
 pub(crate) struct Table {
     rows: Vec<Vec<String>>,
-    /// The last column holds words.
+    /// True if the last column contains words.
     ends_in_words: bool,
 }
 
 impl Table {
-    /// A table with this head.
+    /// Creates a table with this header.
     pub(crate) fn new(head: &[&str]) -> Table {
         Table {
             rows: vec![head.iter().map(|cell| (*cell).to_string()).collect()],
@@ -25,7 +25,7 @@ impl Table {
         }
     }
 
-    /// The same with words in the last column.
+    /// Returns the table with words in the last column.
     pub(crate) fn ending_in_words(self) -> Table {
         Table {
             ends_in_words: true,
@@ -69,7 +69,7 @@ impl fmt::Display for Table {
     }
 }
 
-/// Lines that have an equilibrium, compared with the closed-form catenary.
+/// Table of the lines that have an equilibrium, compared with the closed-form catenary.
 pub(crate) fn static_table(record: &Record) -> Table {
     let mut table = Table::new(&["static equilibrium", "solved", "catenary", "difference"]);
     for line in &record.lines {

@@ -13,13 +13,13 @@ use crate::failure::Failure;
 use crate::folder::{Folder, Listener};
 use crate::terminal::{self, LINES_EVERY, print, remark, rounded};
 
-/// Failed cases that are listed [-].
+/// Greatest number of failed cases that are listed [-].
 const LISTED: usize = 10;
 
 /// Choice of the results of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Choice {
-    /// Time from which results count [s]; the end of the ramps where absent.
+    /// Time from which results are evaluated [s]; the end of the ramps if absent.
     pub from: Option<f64>,
     /// True if all results in time are kept.
     pub series: bool,
@@ -31,7 +31,7 @@ pub(crate) fn sweep(input: &Input, file: &Path, folder: &Path, choice: &Choice) 
     base.notes().iter().for_each(|note| remark(&input.scene, note));
     let cases = cases(&base, file, choice.from)?;
     for (case, note) in remarks(&cases) {
-        // a remark that cannot be written does not end the command
+        // a failure to write a remark does not end the command
         let _ = writeln!(io::stderr(), "note: {}:{}: {note}", file.display(), case.line);
     }
     let _open = Folder::open(folder)?;
@@ -89,7 +89,7 @@ fn summary(state: &Progress, ran: usize, wall: Duration) -> String {
     )
 }
 
-/// The failed cases, with their reasons.
+/// Lists the failed cases with their reasons.
 fn failures(sweep: &Sweep, cases: &[Case], file: &Path) -> String {
     let mut failed: Vec<(usize, &String)> = sweep
         .rows()
@@ -112,7 +112,7 @@ fn failures(sweep: &Sweep, cases: &[Case], file: &Path) -> String {
     text
 }
 
-/// Progress on standard error: a bar on a terminal, a line a minute elsewhere.
+/// Progress on standard error: a bar on a terminal, otherwise a line per minute.
 struct Shown {
     bar: ProgressBar,
     is_terminal: bool,
@@ -137,7 +137,7 @@ impl Shown {
         }
     }
 
-    /// One more case has ended.
+    /// Shows the end of a case.
     fn ended(&mut self, row: &Row, progress: Progress) {
         if let Err(reason) = &row.results {
             let text = format!("case {} failed: {reason}", row.case);

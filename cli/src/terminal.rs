@@ -19,12 +19,12 @@ pub(crate) fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedS
     Ok(loaded)
 }
 
-/// Writes a remark on a scene, or on another file, to standard error. A remark that cannot be written does not end the command.
+/// Writes a remark on a scene, or on another file, to standard error. A failure to write it does not end the command.
 pub(crate) fn remark(path: &Path, note: &Note) {
     let _ = writeln!(io::stderr(), "{}", noted(path, note));
 }
 
-/// A remark with its file and, where it has one, its line.
+/// Text of a remark with its file and, if it has one, its line.
 pub(crate) fn noted(path: &Path, note: &Note) -> String {
     match note.line {
         Some(line) => format!("note: {}:{line}: {note}", path.display()),
@@ -32,22 +32,22 @@ pub(crate) fn noted(path: &Path, note: &Note) -> String {
     }
 }
 
-/// Remarks that were found after the scene was read.
+/// Writes remarks that were found after the scene was read.
 pub(crate) fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
     for note in notes {
         remark(&loaded.path, &loaded.locate_note(note));
     }
 }
 
-/// Gives a scene the mesh, integrator and step that it leaves open, once for all that a command does with it. Remarks where they are not
-/// expected to keep the tolerance.
+/// Selects the mesh, integrator and step that a scene leaves open, once for all parts of a command. Writes remarks if they are not expected to keep
+/// the tolerance.
 pub(crate) fn discretise(loaded: &mut LoadedScene, select: fn(&Scene) -> Option<Discretisation>) {
     if let Some(found) = select(&loaded.scene) {
         take(loaded, found);
     }
 }
 
-/// Gives a scene the mesh that its equilibrium needs, and solves that; remarks as [`discretise`].
+/// Selects the mesh that the equilibrium of a scene needs, and solves the equilibrium; writes remarks as [`discretise`] does.
 pub(crate) fn at_rest(loaded: &mut LoadedScene) -> Result<Simulation, Failure> {
     match discretisation::at_rest(&loaded.scene) {
         Ok((found, simulation)) => {
@@ -63,7 +63,7 @@ fn take(loaded: &mut LoadedScene, found: Discretisation) {
     loaded.scene = found.scene;
 }
 
-/// The simulation of a scene, in static equilibrium.
+/// Returns the simulation of a scene, in static equilibrium.
 pub(crate) fn simulate(loaded: &LoadedScene) -> Result<Simulation, Failure> {
     Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, loaded))
 }
@@ -76,17 +76,17 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
         .map_err(Failure::Print)
 }
 
-/// A bar of the progress of a command, shown on a terminal.
+/// Progress bar of a command, shown on a terminal.
 pub(crate) fn bar(steps: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left")
         .expect("the template is a constant that indicatif accepts");
     ProgressBar::new(steps as u64).with_style(style)
 }
 
-/// Time between lines on the progress of a run that no terminal shows.
+/// Time between progress lines if standard error is not a terminal.
 pub(crate) const LINES_EVERY: Duration = Duration::from_secs(60);
 
-/// Progress of a run on standard error: a bar on a terminal, a line a minute elsewhere, both with the time that remains.
+/// Progress of a run on standard error: a bar on a terminal, otherwise a line per minute, both with the remaining time.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -94,7 +94,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Progress of a run that ends at a time [s], after some of its steps are done.
+    /// Creates the progress of a run that ends at a time [s], after some of its steps are done.
     pub(crate) fn new(steps: usize, done: usize, end: f64) -> Progress {
         let bar = bar(steps).with_position(done as u64);
         bar.reset_eta();
@@ -105,20 +105,20 @@ impl Progress {
         }
     }
 
-    /// One more step is done, up to a time [s].
+    /// Records a step that ends at a time [s].
     pub(crate) fn step(&mut self, time: f64) {
         match &mut self.lines {
             None => self.bar.inc(1),
             Some(lines) => {
                 if let Some(line) = lines.step(time, Instant::now()) {
-                    // a line that cannot be written does not end the run
+                    // a failure to write a line does not end the run
                     let _ = writeln!(io::stderr(), "{line}");
                 }
             }
         }
     }
 
-    /// Writes something else to standard error.
+    /// Hides the bar while `write` writes to standard error.
     pub(crate) fn suspend(&self, write: impl FnOnce()) {
         self.bar.suspend(write);
     }
@@ -129,11 +129,11 @@ impl Progress {
     }
 }
 
-/// Progress in lines.
+/// Progress as lines of text.
 #[derive(Debug)]
 struct Lines {
     steps: usize,
-    /// Steps done before, and now.
+    /// Numbers of steps done before the start and up to now.
     done: [usize; 2],
     /// End of the run [s].
     end: f64,
@@ -152,7 +152,7 @@ impl Lines {
         }
     }
 
-    /// One more step is done, up to a time [s]; a line once a minute.
+    /// Records a step that ends at a time [s]; returns a line once a minute.
     fn step(&mut self, time: f64, now: Instant) -> Option<String> {
         self.done[1] += 1;
         if now - self.last < LINES_EVERY {
@@ -170,7 +170,7 @@ impl Lines {
     }
 }
 
-/// A time that remains, in words.
+/// Text of a remaining time.
 pub(crate) fn rounded(left: Duration) -> String {
     match left.as_secs() {
         left @ 0..120 => format!("{left} s"),

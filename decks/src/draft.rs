@@ -1,4 +1,4 @@
-//! A scene on its way from a deck, and the part of it that a deck leaves to its host: depth of the water, places of vessels.
+//! Scene under construction from a deck, with the values that a deck leaves to its host: depth of the water, positions of vessels.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -12,13 +12,13 @@ use moorline::scene::{
 use crate::Supplement;
 use crate::findings::{Findings, Placed};
 
-/// Density of sea water [kg/m³] of a deck that gives none.
+/// Density of sea water [kg/m³] for a deck that does not specify one.
 pub(crate) const SEA_WATER: f64 = 1025.0;
 
-/// Part of an object in a deck: key in the scene, bytes in the file, name of its column.
+/// Part of an object in a deck: key in the scene, byte range in the file, name of its column.
 pub(crate) type Part<'p> = (&'static str, &'p Range<usize>, &'static str);
 
-/// A scene on its way from a deck. It is complete if there are no mistakes.
+/// Scene under construction from a deck. It is complete if there are no mistakes.
 pub(crate) struct Draft<'s> {
     /// Name of the format of the file.
     pub format: &'static str,
@@ -26,14 +26,14 @@ pub(crate) struct Draft<'s> {
     pub places: Places,
     pub findings: Findings,
     pub supplement: &'s Supplement,
-    /// Order of the angles in the motions that hosts of such decks give.
+    /// Order of the angles in the motions from hosts of such decks.
     pub motion_angles: AngleOrder,
-    /// Names of the line types in the scene, by those in the deck.
+    /// Names of the line types in the scene, by their names in the deck.
     types: BTreeMap<String, String>,
 }
 
 impl<'s> Draft<'s> {
-    /// A draft without anything in it.
+    /// Returns an empty draft.
     pub(crate) fn new(
         format: &'static str,
         findings: Findings,
@@ -51,7 +51,7 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// Keeps the place of a key path, and of the parts below it, with the words of the deck for it.
+    /// Stores the place in the file of a key path and of the parts below it, with their name in the deck.
     pub(crate) fn place(&mut self, at: &str, span: &Range<usize>, words: &str, parts: &[Part<'_>]) {
         self.places.put(at, span, words);
         for (key, span, column) in parts {
@@ -73,14 +73,14 @@ impl<'s> Draft<'s> {
         self.scene.line_types.insert(name, line_type);
     }
 
-    /// Adds a point; `words` name it in the deck.
+    /// Adds a point; `words` are its name in the deck.
     pub(crate) fn add_point(&mut self, point: Point, span: &Range<usize>, words: &str, parts: &[Part<'_>]) {
         let at = format!("points[{}]", self.scene.points.len());
         self.place(&at, span, words, parts);
         self.scene.points.push(point);
     }
 
-    /// A line of one section between two points, with the number of its elements where the deck gives it.
+    /// Returns a line of one section between two points, with the number of its elements if the deck specifies it.
     pub(crate) fn line(
         &self,
         name: String,
@@ -99,15 +99,15 @@ impl<'s> Draft<'s> {
         Line::between(name, from, to, vec![section])
     }
 
-    /// Adds a line; `words` name it in the deck.
+    /// Adds a line; `words` are its name in the deck.
     pub(crate) fn add_line(&mut self, line: Line, span: &Range<usize>, words: &str, parts: &[Part<'_>]) {
         let at = format!("lines[{}]", self.scene.lines.len());
         self.place(&at, span, words, parts);
         self.scene.lines.push(line);
     }
 
-    /// Depth of the seabed [m]: that of the deck, that of the supplement, else that of the deepest fixed point, with a remark unless there are soundings.
-    /// If there are only soundings, it is 0.
+    /// Returns the depth of the seabed [m]: that of the deck, otherwise that of the supplement, otherwise that of the deepest fixed point, with a remark
+    /// unless there are soundings. With soundings alone, it is 0.
     pub(crate) fn depth(&mut self, given: Option<f64>, is_sounded: bool) -> Option<f64> {
         if let Some(depth) = given {
             if let Some(other) = self.supplement.depth.filter(|other| *other != depth) {
@@ -133,14 +133,14 @@ impl<'s> Draft<'s> {
         deepest
     }
 
-    /// The deepest fixed point; the first of several.
+    /// Returns the deepest fixed point; the first of several at the same depth.
     pub(crate) fn deepest_anchor(&self) -> Option<&Point> {
         let points = self.scene.points.iter();
         let anchors = points.filter(|point| point.kind == PointKind::Fixed);
         anchors.min_by(|a, b| a.position[2].total_cmp(&b.position[2]))
     }
 
-    /// Name of the vessel that a deck means where it gives none.
+    /// Returns the name of the vessel of a deck, which the deck does not specify.
     pub(crate) fn vessel_of_the_deck(&self) -> &'s str {
         self.supplement.vessel.as_deref().unwrap_or("vessel")
     }
@@ -150,7 +150,7 @@ impl<'s> Draft<'s> {
         self.scene.vessels.iter().any(|vessel| vessel.name == name)
     }
 
-    /// Puts a point on a vessel, which is made where it is missing at a position [m] and attitude [rad].
+    /// Puts a point on a vessel; a missing vessel is created at a position [m] and attitude [rad].
     pub(crate) fn aboard(
         &mut self,
         point: Point,
@@ -174,7 +174,7 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// Checks that the vessel of all coupled points has a name that a scene accepts, and no other place; `others` are those of the file.
+    /// Checks that the vessel of all coupled points has a valid name, not one of `others` in the file, and no position in the supplement.
     pub(crate) fn check_given(&mut self, mut others: impl Iterator<Item = String>) {
         let Some(name) = &self.supplement.vessel else {
             return;
@@ -195,7 +195,7 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// Checks that the scene has every vessel of the supplement, and no point or line of the name of one.
+    /// Checks that the scene has every vessel of the supplement, and that no point or line has the same name as the vessel of all coupled points.
     pub(crate) fn check_vessels(&mut self) {
         let vessels = self.scene.vessels.iter();
         let known: Vec<&str> = vessels.map(|vessel| vessel.name.as_str()).collect();
@@ -229,7 +229,7 @@ fn taken(name: &str) -> String {
     )
 }
 
-/// The name of a line type in a form that a scene accepts: variables of the FMU are named after it.
+/// Converts the name of a line type to a valid name in a scene, from which variables of the FMU are named.
 fn type_name(given: &str, taken: BTreeSet<&String>) -> String {
     let letter = |c: char| match c {
         c if c.is_ascii_alphanumeric() || c == '-' => c,
@@ -245,12 +245,12 @@ fn type_name(given: &str, taken: BTreeSet<&String>) -> String {
     names.find(|name| !taken.contains(name)).unwrap_or(name)
 }
 
-/// A value of a deck, where zero means none.
+/// Returns a value of a deck in which zero means absence.
 pub(crate) fn nonzero(value: f64) -> Option<f64> {
     (value != 0.0).then_some(value)
 }
 
-/// A constant force [N] on a point; `None` where it is zero.
+/// Returns a constant force [N] on a point; `None` if it is zero.
 pub(crate) fn constant_force(force: [f64; 3]) -> Option<PointForce> {
     let [x, y, z] = force.map(|part| nonzero(part).map(TimeFunction::Constant));
     (force != [0.0; 3]).then_some(PointForce { x, y, z })

@@ -5,10 +5,10 @@ use std::ops::Range;
 use moorline::scene::path::line_column;
 use moorline::scene::{Note, SceneError};
 
-/// Greatest number of mistakes that are listed for one file.
+/// Maximum number of mistakes listed for one file [-].
 pub(crate) const MISTAKES_MAX: usize = 50;
 
-/// A value and the bytes it was read from.
+/// Value with the byte range from which it was read.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Placed<T> {
     pub value: T,
@@ -16,14 +16,14 @@ pub(crate) struct Placed<T> {
 }
 
 impl<T> Placed<T> {
-    /// Another value read from the same bytes.
+    /// Returns another value with the same byte range.
     pub(crate) fn with<U>(&self, value: U) -> Placed<U> {
         let span = self.span.clone();
         Placed { value, span }
     }
 }
 
-/// Mistakes and remarks found so far.
+/// Mistakes and remarks collected while reading.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     pub mistakes: Vec<SceneError>,
@@ -32,7 +32,7 @@ pub(crate) struct Findings {
     remarks: Vec<Remark>,
 }
 
-/// A remark on a part of the file.
+/// Remark on a part of the file.
 #[derive(Debug, Clone)]
 struct Remark {
     /// First byte of the part; `None` for the whole file.
@@ -41,7 +41,7 @@ struct Remark {
 }
 
 impl Findings {
-    /// Adds a mistake: what it is about, where, what would be right.
+    /// Adds a mistake: its subject, its byte range, and the problem with a correction.
     pub(crate) fn mistake(&mut self, at: impl Into<String>, span: Range<usize>, problem: impl Into<String>) {
         if self.mistakes.len() < MISTAKES_MAX {
             self.mistakes.push(SceneError {
@@ -62,7 +62,7 @@ impl Findings {
         self.remark_at(placed.span.start, text);
     }
 
-    /// Adds a remark on the text at a byte.
+    /// Adds a remark on the text from a byte on.
     pub(crate) fn remark_at(&mut self, byte: usize, text: impl Into<String>) {
         let (byte, text) = (Some(byte), text.into());
         self.remarks.push(Remark { byte, text });
@@ -74,7 +74,7 @@ impl Findings {
         self.remarks.push(Remark { byte, text });
     }
 
-    /// The remarks with the numbers of their lines, in the order of the file; those on the whole file first.
+    /// Returns the remarks with their line numbers, in the order of the file; those on the whole file come first.
     pub(crate) fn notes(mut self, source: &str) -> Vec<Note> {
         self.remarks.sort_by_key(|remark| remark.byte);
         let at = |byte: usize| format!("file line {}", line_column(source, byte).0);

@@ -1,6 +1,6 @@
-//! Decks of MoorDyn (versions 1 and 2, in the styles of OpenFAST and MoorDyn-C) and of MAP++ as scenes of moorline.
+//! Converts decks of MoorDyn (versions 1 and 2, in the styles of OpenFAST and MoorDyn-C) and of MAP++ to scenes of moorline.
 //!
-//! [`load`] reads a scene or a deck and recognises it by its content. A deck leaves some things to its host, such as the depth
+//! [`load`] reads a scene or a deck and identifies the format by the content. A deck leaves some values to its host, such as the depth
 //! of the water: [`load_with`] takes them as a [`Supplement`].
 //!
 //! ```no_run
@@ -36,21 +36,21 @@ use findings::MISTAKES_MAX;
 /// Values that a deck of another program leaves to its host.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Supplement {
-    /// Depth of the water [m], where the deck gives none.
+    /// Depth of the water [m], if the deck does not specify it.
     pub depth: Option<f64>,
     /// Reference positions [m] of vessels by name, such as those of the turbines of a farm.
     pub positions: BTreeMap<String, [f64; 3]>,
-    /// Name of the one vessel that all coupled points of the deck ride on, its origin at (0, 0, 0) and its axes the global ones.
+    /// Name of the only vessel, which carries all coupled points of the deck. Its origin is (0, 0, 0) and its axes are the global ones.
     pub vessel: Option<String>,
 }
 
 impl Supplement {
-    /// Returns whether nothing is given.
+    /// Returns whether no value is given.
     pub fn is_empty(&self) -> bool {
         *self == Supplement::default()
     }
 
-    /// Reason why a scene takes no supplement.
+    /// Reason why a supplement cannot be used with a scene.
     fn problem_of_scene(&self) -> &'static str {
         match (self.depth, &self.vessel) {
             (Some(_), _) => {
@@ -66,18 +66,18 @@ impl Supplement {
     }
 }
 
-/// Reads and checks a file: a scene, or a deck of MoorDyn or MAP++. The files that it names stand relative to its folder.
+/// Reads and checks a file: a scene, or a deck of MoorDyn or MAP++. Names of other files in it are relative to its folder.
 ///
 /// # Errors
-/// The reason why the file cannot be read, or all mistakes in it.
+/// The file cannot be read, or contains mistakes, all of which are listed.
 pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
     load_with(path, &Supplement::default())
 }
 
-/// As [`load`], with what a deck leaves to its host.
+/// Works like [`load`], with the values that a deck leaves to its host.
 ///
 /// # Errors
-/// As [`load`]; and where the file is a scene, which leaves nothing to its host.
+/// As [`load`], and if the file is a scene but a supplement is given.
 pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let text = read_text(path, |text| reader(text).is_some())?;
     let Some(read) = reader(&text) else {
@@ -115,17 +115,17 @@ pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Lo
 
 type Reader = for<'s> fn(&str, &'s Supplement) -> Draft<'s>;
 
-/// The reader of a deck; `None` of TOML and of texts that are no decks.
+/// Returns the reader of a deck; `None` for TOML and for texts that are not decks.
 fn reader(text: &str) -> Option<Reader> {
     let reader = match map::is_deck(text) {
         true => Some(map::read as Reader),
         false => moordyn::is_deck(text).then_some(moordyn::read as Reader),
     };
-    // Banners of dashes stand in comments and strings of scenes too.
+    // Lines of dashes also occur in comments and strings of scenes.
     reader.filter(|_| !is_toml(text))
 }
 
-/// Reads the files that a deck names and checks the scene as every scene is checked. Returns notes on the scene.
+/// Reads the files that a deck refers to and checks the scene like any other scene. Returns notes on the scene.
 fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneError>> {
     let mistakes = std::mem::take(&mut draft.findings.mistakes);
     if !mistakes.is_empty() {
@@ -144,7 +144,7 @@ fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneEr
     Ok(notes)
 }
 
-/// Keeps only the first of equal mistakes, such as those of a row that the deck repeats.
+/// Removes repeated mistakes, such as those of a row that the deck repeats.
 fn drop_repeated(mistakes: &mut Vec<SceneError>) {
     let mut known: Vec<SceneError> = Vec::new();
     mistakes.retain(|mistake| {
@@ -156,7 +156,7 @@ fn drop_repeated(mistakes: &mut Vec<SceneError>) {
     });
 }
 
-/// Takes the greatest of the soundings as the depth for waves, where a deck gives no other.
+/// Sets the depth for waves to the greatest of the soundings if the deck does not specify it.
 fn sound_depth(scene: &mut Scene) {
     if let Some(seabed) = &mut scene.seabed
         && seabed.depth == 0.0
@@ -171,7 +171,7 @@ fn located(places: &moorline::scene::Places, text: &str, notes: Vec<Note>) -> Ve
     notes.map(|note| places.locate_note(text, note)).collect()
 }
 
-/// Leaves out the rows below zero strain of tables of tension, which MoorDyn does not use. Returns a note for each table that has some.
+/// Removes the rows below zero strain from tension tables, since MoorDyn does not use them. Returns a note for each table with such rows.
 fn cut_tables(scene: &mut Scene) -> Vec<Note> {
     let mut notes = Vec::new();
     for (name, line_type) in &mut scene.line_types {
@@ -187,8 +187,8 @@ fn cut_tables(scene: &mut Scene) -> Vec<Note> {
     notes
 }
 
-/// Leaves out the rows below zero strain; where none stands at zero strain, the table begins with the straight line through zero.
-/// Returns their number [-].
+/// Removes the rows below zero strain and returns their number [-]. If no row is at zero strain, one is added there by linear interpolation
+/// between the adjacent rows.
 fn cut_below_zero(table: &mut TensionStrain) -> usize {
     let below = table.rows.iter().take_while(|row| row[0] < 0.0).count();
     if below == 0 {

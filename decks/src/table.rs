@@ -10,7 +10,7 @@ use moorline::scene::units::differ;
 
 use crate::findings::{Findings, Placed};
 
-/// Greatest number of rows of a table: beyond any mooring, and short enough for every check.
+/// Maximum number of rows of a table [-]: more than any mooring needs, and few enough for every check.
 pub(crate) const ROWS_MAX: usize = 5_000;
 
 /// A column of a table.
@@ -18,13 +18,13 @@ pub(crate) const ROWS_MAX: usize = 5_000;
 pub(crate) struct Column {
     /// Name in messages, as in the format's own documentation.
     pub name: &'static str,
-    /// Unit of its numbers; "-" where they have none.
+    /// Unit of its numbers; "-" if they have none.
     unit: &'static str,
-    /// Names in headers, in capitals between blanks.
+    /// Names in headers, in capitals, separated by blanks.
     pub spellings: &'static str,
 }
 
-/// A column by its name, unit and spellings.
+/// Returns a column with its name, unit and spellings.
 pub(crate) const fn column(name: &'static str, unit: &'static str, spellings: &'static str) -> Column {
     Column {
         name,
@@ -33,13 +33,13 @@ pub(crate) const fn column(name: &'static str, unit: &'static str, spellings: &'
     }
 }
 
-/// Returns whether a word is in a list of words between blanks, regardless of case.
+/// Returns whether a word is in a list of words separated by blanks, regardless of case.
 pub(crate) fn is_one_of(word: &str, list: &str) -> bool {
     list.split(' ').any(|known| known.eq_ignore_ascii_case(word))
 }
 
-/// Reads the rows of a section that have as many cells as one of the lists of columns, which are in ascending order, or more than
-/// the last.
+/// Reads the rows of a section whose number of cells equals that of one of the lists of columns, which are in ascending order, or exceeds the
+/// last.
 pub(crate) fn read_rows<T>(
     section: &str,
     rows: &[Row<'_>],
@@ -67,7 +67,7 @@ pub(crate) fn read_rows<T>(
     table
 }
 
-/// `9 (ID Attachment …) or 12 (ID Type …)`.
+/// Describes lists of columns, for example `9 (ID Attachment …) or 12 (ID Type …)`.
 fn in_words(lists: &[&'static [Column]]) -> String {
     let list = |columns: &&[Column]| {
         let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
@@ -76,7 +76,7 @@ fn in_words(lists: &[&'static [Column]]) -> String {
     lists.iter().map(list).collect::<Vec<_>>().join(" or ")
 }
 
-/// A row of a table, cell by cell. Every wrong cell is noted; the value returned for it only allows reading to continue.
+/// Row of a table, read cell by cell. Every wrong cell adds a mistake; the value returned for it only allows reading to continue.
 pub(crate) struct Cells<'r, 't> {
     /// Section and row in messages, such as "LINES, row 2".
     pub place: String,
@@ -86,20 +86,20 @@ pub(crate) struct Cells<'r, 't> {
 }
 
 impl Cells<'_, '_> {
-    /// Adds a mistake in a cell.
+    /// Adds a mistake for a cell.
     pub(crate) fn wrong(&mut self, column: usize, problem: impl Into<String>) {
         let about = format!("{}, {}", self.place, self.columns[column].name);
         self.findings
             .mistake(about, self.fields[column].span.clone(), problem);
     }
 
-    /// A value with the bytes of its cell.
+    /// Returns a value with the byte range of a cell.
     pub(crate) fn placed<T>(&self, column: usize, value: T) -> Placed<T> {
         let span = self.fields[column].span.clone();
         Placed { value, span }
     }
 
-    /// The value of a cell, or, where it is wrong, a mistake and a value in its place.
+    /// Returns the value of a cell; for an error, adds a mistake and returns the value `instead`.
     pub(crate) fn read<T>(&mut self, column: usize, value: Result<T, String>, instead: T) -> Placed<T> {
         let value = value.unwrap_or_else(|problem| {
             self.wrong(column, problem);
@@ -108,12 +108,12 @@ impl Cells<'_, '_> {
         self.placed(column, value)
     }
 
-    /// The cell as it stands.
+    /// Returns the text of a cell.
     pub(crate) fn word(&self, column: usize) -> Placed<String> {
         self.placed(column, self.fields[column].text.to_string())
     }
 
-    /// A number, in the unit of its column.
+    /// Reads a number, in the unit of its column.
     pub(crate) fn number(&mut self, column: usize) -> Placed<f64> {
         let value = number(self.fields[column].text).map_err(|problem| match self.columns[column].unit {
             "-" => problem,
@@ -122,12 +122,12 @@ impl Cells<'_, '_> {
         self.read(column, value, 0.0)
     }
 
-    /// Three numbers in three columns.
+    /// Reads three numbers from three columns.
     pub(crate) fn vector(&mut self, column: usize) -> [Placed<f64>; 3] {
         [0, 1, 2].map(|axis| self.number(column + axis))
     }
 
-    /// A whole number, `least` or more.
+    /// Reads a whole number, at least `least`.
     pub(crate) fn count(&mut self, column: usize, least: usize) -> Placed<usize> {
         let text = self.fields[column].text;
         let value = text.parse::<usize>().ok().filter(|value| *value >= least);
@@ -137,20 +137,20 @@ impl Cells<'_, '_> {
     }
 }
 
-/// A word or a row of the file with its bytes.
+/// Returns a word or row of the file with its byte range.
 pub(crate) fn placed_text(text: &str, span: &Range<usize>) -> Placed<String> {
     let (value, span) = (text.to_string(), span.clone());
     Placed { value, span }
 }
 
-/// Words above the first section as a title of one line.
+/// Joins the words above the first section to a title of one line.
 pub(crate) fn title<'r, 't: 'r>(rows: impl Iterator<Item = &'r Row<'t>>) -> String {
     let words: Vec<&str> = rows.flat_map(Row::fields).map(|field| field.text).collect();
     let title = words.join(" ");
     title.chars().filter(|c| !c.is_control()).take(200).collect()
 }
 
-/// Adds a mistake for each number or name that an earlier row of the table has.
+/// Adds a mistake for each number or name that an earlier row of the table already has.
 pub(crate) fn check_unique<'d, T: Ord + Display + 'd>(
     names: impl Iterator<Item = &'d Placed<T>>,
     what: &str,
@@ -165,7 +165,7 @@ pub(crate) fn check_unique<'d, T: Ord + Display + 'd>(
     }
 }
 
-/// The remark on an option or flag that is not known.
+/// Returns the remark on an unknown option or flag, which is ignored.
 pub(crate) fn left_out<'a>(
     what: &str,
     name: &str,
@@ -176,8 +176,8 @@ pub(crate) fn left_out<'a>(
     format!("the {what} {} is not known and left out{meant}", shown(name))
 }
 
-/// Refuses a unit above a column that has numbers other than 0 and is read in another unit of the same quantity. The programs of such decks
-/// read no units either.
+/// Refuses a unit above a column with numbers other than 0 if it differs from the column's unit of the same quantity. The programs that use
+/// such decks do not read units either.
 pub(crate) fn check_units(units: &Row<'_>, columns: &[Column], rows: &[Row<'_>], findings: &mut Findings) {
     for (place, (unit, column)) in units.fields().iter().zip(columns).enumerate() {
         let counts = |row: &Row<'_>| {
@@ -195,7 +195,7 @@ pub(crate) fn check_units(units: &Row<'_>, columns: &[Column], rows: &[Row<'_>],
     }
 }
 
-/// Remarks on names above a table that are those of other columns: columns are read by their place, not by their name.
+/// Remarks on a name above a column that belongs to another column: columns are identified by position, not by name.
 pub(crate) fn compare_header(header: &Row<'_>, columns: &[Column], findings: &mut Findings) {
     let names = header.fields();
     let is =

@@ -1,7 +1,7 @@
 //! A body on a spring with a mooring line, and the masters that couple the two.
 //!
-//! The body of mass m hangs at the line's fairlead on a spring k, whose foot moves. All masters step the body by the generalised-α method
-//! (Chung & Hulbert 1993): with a, v and x at the end of a step h,
+//! The body of mass m hangs at the line's fairlead on a spring k with a moving foot. All masters step the body by the generalised-α method (Chung &
+//! Hulbert 1993): with a, v and x at the end of a step h,
 //!
 //! x = x̃ + βh²a,   v = ṽ + γha,   m[(1−α_m) a + α_m a₀] = (1−α_f) f + α_f f₀.
 
@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Spectral radius of the body's integrator at infinite frequency [-].
 const RADIUS: f64 = 0.8;
-/// Iterations of a step, at most [-].
+/// Maximum number of iterations of a step [-].
 const ITERATIONS_MAX: usize = 100;
 /// Displacement beyond which a run is unstable [m].
 const LOST: f64 = 100.0;
@@ -24,11 +24,11 @@ pub enum Master {
     Jacobi,
     /// The body first, with the last force; the mooring then has the motion at the end of the step.
     BodyFirst,
-    /// As `BodyFirst`, with the mass of the end on the body's side.
+    /// As `BodyFirst`, with the mass of the line end in the equation of the body.
     Mass,
-    /// The body first, with the force of the coming step: mass, damping and stiffness on the body's side.
+    /// The body first, with the force of the coming step: mass, damping and stiffness of the line end in the equation of the body.
     Impedance,
-    /// Repeated steps, each with the last one's force.
+    /// Repeated steps, each with the force of the previous one.
     FixedPoint,
     /// Repeated steps with the directional derivatives of the force.
     Newton,
@@ -47,7 +47,7 @@ pub struct Case {
     pub duration: f64,
 }
 
-/// Displacements of the body [m] at all communication points, and the greatest number of iterations of a step [-].
+/// Displacements of the body [m] at all communication points, and the maximum number of iterations of a step [-].
 pub type Run = (Vec<Vector3<f64>>, usize);
 
 /// Motion of the spring's foot [m] at a time [s].
@@ -58,7 +58,7 @@ fn foot(t: f64) -> Vector3<f64> {
     Vector3::new(wave(2.0, 10.0), 0.0, wave(1.0, 8.0))
 }
 
-/// Body and what it is stepped with.
+/// Body and mooring with their master.
 struct Host {
     simulation: Simulation,
     point: usize,
@@ -80,7 +80,7 @@ fn coefficients() -> [f64; 4] {
     [alpha_m, alpha_f, 0.25 * sum * sum, 0.5 - alpha_m + alpha_f]
 }
 
-/// Runs a scene with one coupled point, `point`. `None` where the run is unstable.
+/// Runs a scene with one coupled point, `point`. `None` if the run is unstable.
 pub fn run(scene: &Scene, point: &str, master: Master, case: Case) -> Option<Run> {
     let mut scene = scene.clone();
     scene.solver.input_reconstruction = match master {
@@ -130,7 +130,7 @@ fn top(matrix: &nalgebra::Matrix6<f64>) -> Matrix3<f64> {
 }
 
 impl Host {
-    /// Steps both to a time [s]; returns the iterations.
+    /// Steps body and mooring to a time [s]; returns the number of iterations.
     fn step(&mut self, time: f64) -> Option<usize> {
         let held = force(&self.simulation, self.point);
         let body = Body::Point(self.point);
@@ -188,15 +188,14 @@ impl Host {
         [x + beta * h * h * a, v + gamma * h * a, a]
     }
 
-    /// Gives the body's motion to the mooring.
+    /// Passes the motion of the body to the mooring.
     fn give(&mut self, [x, v, _]: [Vector3<f64>; 3]) {
         self.simulation.set_displacement(self.point, x.into());
         self.simulation
             .set_velocity(self.point, [Some(v.x), Some(v.y), Some(v.z)]);
     }
 
-    /// Ends a step with a motion and the force of the line there [N]. With light bodies the acceleration follows from the forces, so that
-    /// errors of the linearisation do not stay.
+    /// Ends a step with a motion and the force of the line there [N].
     fn accept(&mut self, time: f64, next: [Vector3<f64>; 3], force: Vector3<f64>, _: Matrix3<f64>) {
         self.motion = next;
         self.before = force + self.case.spring * (foot(time) - next[0]) - self.carried;

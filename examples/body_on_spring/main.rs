@@ -1,8 +1,8 @@
-//! Masters for a body on a spring with the OC3 line: error of each, by mass of the body and communication step.
+//! Masters for a body on a spring with the OC3 line: error of each, by body mass and communication step.
 //!
-//! `cargo run --release --example body_on_spring` writes the table of `docs/coupling.md`. The error is the RMS difference of the body's displacement from
-//! a run with the impedance of the coming step and a step of 1/80 s, over the RMS of that; `-` is a run that is unstable, and in brackets are the greatest
-//! iterations of a step.
+//! `cargo run --release --example body_on_spring` writes the table of `docs/coupling.md`. The error is the RMS difference of the body's displacement
+//! from a run with the impedance of the coming step and a step of 1/80 s, relative to the RMS displacement of that run. `-` is an unstable run; the
+//! maximum number of iterations of a step is in brackets.
 
 mod host;
 
@@ -44,7 +44,7 @@ fn main() {
     }
 }
 
-/// Error of a run in words.
+/// Table cell with the error of a run.
 fn cell(found: Option<Run>, truth: &[nalgebra::Vector3<f64>]) -> String {
     let Some((path, iterations)) = found else {
         return "-".to_string();

@@ -15,7 +15,7 @@ pub const ALL: [fn() -> Page; 14] = [
     steps,
 ];
 
-/// Most points of a curve.
+/// Maximum number of points of a curve.
 const POINTS: usize = 600;
 
 fn series(name: &str, look: Look, points: Vec<[f64; 2]>) -> Series {
@@ -36,14 +36,14 @@ fn panel(title: &str, axes: [&str; 2], series: Vec<Series>) -> Panel {
     }
 }
 
-/// Tension at end B in time between two times [s], in multiples of a unit [N].
+/// Tension at end B against time, between two times [s], in multiples of a unit [N].
 fn tension(run: &Run, [from, to]: [f64; 2], unit: f64) -> Vec<[f64; 2]> {
     let samples = run.time.iter().zip(&run.tension);
     let inside = samples.filter(|(t, _)| (from..=to).contains(*t));
     inside.map(|(t, tension)| [*t, tension / unit]).collect()
 }
 
-/// The same without frequencies above 0.5 Hz.
+/// The same, low-passed at 0.5 Hz.
 fn slow_tension(run: &Run, span: [f64; 2], unit: f64) -> Vec<[f64; 2]> {
     let slow = low_pass(&run.tension, run.time[1] - run.time[0], 0.5);
     let run = Run {
@@ -53,7 +53,7 @@ fn slow_tension(run: &Run, span: [f64; 2], unit: f64) -> Vec<[f64; 2]> {
     tension(&run, span, unit)
 }
 
-/// Error of the ledger over the energy that flowed in all, in time.
+/// Error of the energy balance relative to the energy that flowed [%], against time.
 fn ledger(run: &Run, time_unit: f64) -> Vec<[f64; 2]> {
     let samples = run.time.iter().zip(&run.error);
     samples

@@ -1,10 +1,10 @@
 //! Figures of `docs/hard-cases.md`, and their numbers.
 //!
-//! `cargo run --release --example hard_cases -- docs/figures` runs all cases, prints for every run its internal steps for a second, the
-//! error of its energy ledger and the energy that it gained over the energy that flowed, and draws a figure of each case.
+//! `cargo run --release --example hard_cases -- docs/figures` runs all cases and draws a figure of each. For every run it prints the internal steps
+//! per second, the error of the energy balance and the energy gain relative to the energy that flowed.
 
 mod figures;
-#[allow(dead_code)] // the tests use what the figures do not
+#[allow(dead_code)] // the tests use more than the figures
 mod run;
 #[allow(dead_code)] // the same
 mod scenes;
@@ -21,7 +21,7 @@ pub struct Page {
     pub stem: &'static str,
     /// Charts from top to bottom.
     pub panels: Vec<Panel>,
-    /// Runs that the table speaks of.
+    /// Runs that the table lists.
     pub runs: Vec<(String, Run)>,
 }
 

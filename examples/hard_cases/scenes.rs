@@ -13,7 +13,7 @@ use moorline::scene::{Break, Friction, HarmonicMotion, InitialShape, Integrator,
 use moorline::simulation::Simulation;
 use nalgebra::Complex;
 
-/// Gravity of the scenes that are written here [m/s²].
+/// Gravity of the scenes that are defined here [m/s²].
 pub const G: f64 = 9.80665;
 
 /// Integrators that apply to a single cable.
@@ -24,19 +24,19 @@ pub const INTEGRATORS: [Integrator; 4] = [
     Integrator::Auto,
 ];
 
-/// A scene of the folder `scenes`.
+/// Scene from the folder `scenes`.
 pub fn shipped(name: &str) -> Scene {
     let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     written(&text)
 }
 
-/// A scene from text that is right.
+/// Scene from valid text.
 fn written(text: &str) -> Scene {
     Scene::from_toml(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A scene with these keys, of one line between two points.
+/// Scene with these keys and one line between two points.
 fn single(keys: &str, [a, b]: [&str; 2], line: &str) -> Scene {
     written(&format!(
         "points = [{{ {a} }}, {{ {b} }}]\nlines = [{{ {line} }}]\n{keys}"
@@ -48,7 +48,7 @@ fn end(name: &str, kind: &str, position: [f64; 3]) -> String {
     format!("name = '{name}', kind = '{kind}', position = {position:?}")
 }
 
-/// A section of a type, of a length [m] and with a number of elements.
+/// Section of a line type, with its length [m] and number of elements.
 fn piece(line_type: &str, length: f64, elements: usize) -> String {
     format!("{{ type = '{line_type}', length = {length:?}, elements = {elements} }}")
 }
@@ -61,7 +61,7 @@ pub fn with_elements(mut scene: Scene, count: usize) -> Scene {
     scene
 }
 
-/// The same scene with an integrator, and the upper limit of its step [s] where that is the implicit one, which has no limit.
+/// The same scene with an integrator. The implicit one, whose step has no limit, gets the maximum step `implicit_step` [s].
 pub fn by(mut scene: Scene, integrator: Integrator, implicit_step: f64) -> Scene {
     scene.solver.integrator = integrator;
     if integrator == Integrator::GeneralisedAlpha {
@@ -97,7 +97,7 @@ pub fn harder_seabed(mut scene: Scene, factor: f64) -> Scene {
     scene
 }
 
-/// The OC4 chain on a seabed with friction [-], its fairlead driven 40 m towards the anchor and back at 10 m/s, reached in a second; at rest again
+/// OC4 chain on a seabed with friction [-]. Its fairlead moves 40 m towards the anchor and back at 10 m/s, reached in a second, and is at rest again
 /// after 10 s.
 pub fn dragged_through_touchdown(friction: f64) -> Scene {
     let mut scene = shipped("oc4_chain");
@@ -113,7 +113,7 @@ pub fn dragged_through_touchdown(friction: f64) -> Scene {
     scene
 }
 
-/// Displacement of that fairlead at a time [s], in [m].
+/// Displacement of that fairlead [m] at a time [s].
 fn dragged_by(t: f64) -> f64 {
     let there = |t: f64| match t {
         t if t < 1.0 => 5.0 * t * t,
@@ -127,17 +127,17 @@ fn dragged_by(t: f64) -> f64 {
     }
 }
 
-/// Time at which the fairlead of [`jumped`] jumps [s], and the communication step that it does so in [s].
+/// Time at which the fairlead of [`jumped`] jumps [s], and the communication step of the jump [s].
 pub const JUMP: [f64; 2] = [1.0, 0.05];
 
-/// Input of a host whose fairlead jumps by 1 m along x from one communication point to the next.
+/// Input of a host that moves the fairlead by 1 m along x from one communication point to the next.
 pub fn jumped(simulation: &mut Simulation) {
     let fairlead = simulation.model().point_index("fairlead");
     let x = f64::from(u8::from(simulation.time() > JUMP[0] - 0.5 * JUMP[1]));
     simulation.set_displacement(fairlead.expect("a fairlead"), [x, 0.0, 0.0]);
 }
 
-/// The OC3 line whose fairlead moves by 5 m in 100 s along x and 2 m in 70 s along z.
+/// OC3 line whose fairlead oscillates by 5 m along x, with a period of 100 s, and by 2 m along z, with a period of 70 s.
 pub fn slowly_moved() -> Scene {
     let mut scene = shipped("oc3_catenary");
     let motion = HarmonicMotion {
@@ -153,7 +153,7 @@ pub fn slowly_moved() -> Scene {
 /// Periods of that motion [s].
 const SLOW: [f64; 2] = [100.0, 70.0];
 
-/// Input of a host of [`slowly_moved`]: place and velocity of the fairlead.
+/// Input of a host of [`slowly_moved`]: position and velocity of the fairlead.
 pub fn say_slow(simulation: &mut Simulation) {
     let fairlead = simulation.model().point_index("fairlead");
     let fairlead = fairlead.expect("a fairlead");
@@ -170,7 +170,7 @@ pub fn say_slow(simulation: &mut Simulation) {
     simulation.set_velocity(fairlead, [Some(x[1]), Some(0.0), Some(z[1])]);
 }
 
-/// Communication steps from 1 ms to 10 s [s], as they come: evenly spread over the decades.
+/// Random communication steps from 1 ms to 10 s [s], evenly distributed over the decades.
 pub fn irregular_steps(duration: f64) -> Vec<f64> {
     let mut random = Random::new(14);
     let (mut left, mut steps) = (duration, Vec::new());
@@ -182,7 +182,7 @@ pub fn irregular_steps(duration: f64) -> Vec<f64> {
     steps
 }
 
-/// Rope of 100 m between points 90 m apart, dry, without damping, released 40° out of its plane.
+/// Rope of 100 m between points 90 m apart, in air, without damping, released 40° out of its plane.
 pub fn undamped_swing(elements: usize) -> Scene {
     let mut scene = single(
         "line_types.rope = { mass = 5.0, axial_stiffness = 1.0e6, axial_damping = 0.0 }",
@@ -206,7 +206,7 @@ pub fn undamped_swing(elements: usize) -> Scene {
 /// Time at which both ends of [`released_in_swing`] are released [s].
 pub const RELEASE: f64 = 2.0;
 
-/// The rope of [`undamped_swing`] with the default damping, released at both ends in full swing.
+/// Rope of [`undamped_swing`] with the default damping, released at both ends in full swing.
 pub fn released_in_swing() -> Scene {
     let mut scene = undamped_swing(40);
     for line_type in scene.line_types.values_mut() {
@@ -227,7 +227,7 @@ pub fn release(simulation: &mut Simulation) {
     simulation.set_release(0, now);
 }
 
-/// A chain over a seabed whose middle element is `ratio` times shorter than its neighbours; without it where `ratio` is 0.
+/// Chain over a seabed whose middle element is `ratio` times shorter than its neighbours; without that element if `ratio` is 0.
 pub fn short_segment(ratio: f64) -> Scene {
     let piece = |length, elements| piece("chain", length, elements);
     let sections = if ratio > 0.0 {
@@ -255,8 +255,7 @@ pub const ROPE: f64 = 20.0;
 /// EA of its rope [N].
 pub const ROPE_STIFFNESS: f64 = 2.0e6;
 
-/// Clump of 1 t on 20 m of rope of 0.1 kg/m, dry, released `lift` metres above the straight rope's position, or at
-/// `angle` [rad] to it.
+/// Clump of 1 t on 20 m of rope of 0.1 kg/m, in air, released `lift` metres above the straight rope's position, or at `angle` [rad] to it.
 pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
     let reach = ROPE * (1.0 + CLUMP * G * angle.cos() / ROPE_STIFFNESS);
     let (x, z) = if lift > 0.0 {
@@ -276,7 +275,7 @@ pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
             piece("rope", ROPE, elements)
         ),
     );
-    // a rope that is too long hangs in two straight halves, with its middle between them
+    // a slack rope is bent into two straight halves, with its middle between them
     let beside = (0.25 * (ROPE * ROPE - x * x - z * z)).max(0.0).sqrt();
     let node = |i: usize| {
         let part = 1.0 - i as f64 / elements as f64;
@@ -287,8 +286,8 @@ pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
     scene
 }
 
-/// Pull of the rope of [`clump`] released at `angle` [rad], every `interval` [s] [N]: the mass on a spring without mass, by Runge and Kutta's
-/// method in steps of a tenth of that.
+/// Tension of the rope of [`clump`] released at `angle` [rad], every `interval` [s] [N]: the mass on a massless spring, by the Runge-Kutta method in
+/// steps of a tenth of the interval.
 pub fn swing_pulls(angle: f64, interval: f64, count: usize) -> Vec<f64> {
     let pull = |x: f64, z: f64| ROPE_STIFFNESS * (x.hypot(z) / ROPE - 1.0).max(0.0);
     let rates = |[x, z, vx, vz]: [f64; 4]| {
@@ -313,13 +312,13 @@ pub fn swing_pulls(angle: f64, interval: f64, count: usize) -> Vec<f64> {
     pulls
 }
 
-/// Pull of the rope that catches [`clump`] dropped by `lift` [m] [N]: m g (h + δ) = EA δ²/2L.
+/// Maximum tension of the rope that catches [`clump`] dropped by `lift` [m] [N]: m g (h + δ) = EA δ²/2L.
 pub fn caught_pull(lift: f64) -> f64 {
     let weight = CLUMP * G;
     weight * (1.0 + (1.0 + 2.0 * lift * ROPE_STIFFNESS / (weight * ROPE)).sqrt())
 }
 
-/// A taut line of 100 m of `mass` [kg/m], EA 1 MN, strained by 1 %, in water or in air, driven along and across itself.
+/// Taut line of 100 m of `mass` [kg/m], EA 1 MN, strained by 1 %, in water or in air, driven along and across the line.
 pub fn nearly_massless(mass: f64, wet: bool) -> Scene {
     let water = if wet { "water.density = 1025.0" } else { "" };
     single(
@@ -337,7 +336,7 @@ pub fn nearly_massless(mass: f64, wet: bool) -> Scene {
 /// Length of the folded chain [m].
 pub const CHAIN: f64 = 10.0;
 
-/// A chain of 10 m folded so that both ends are at one height, `striping` elements apart; the free one is released. Node 0 is the free end.
+/// Chain of 10 m, folded so that both ends are at the same height, `striping` elements apart; one end is released. Node 0 is the free end.
 pub fn folded_chain(elements: usize, striping: usize) -> Scene {
     let h = CHAIN / elements as f64;
     let gap = striping as f64 * h;
@@ -352,7 +351,7 @@ pub fn folded_chain(elements: usize, striping: usize) -> Scene {
             "name = 'chain', from = 'hand', to = 'fairlead', break = {{ at = 'a', time = 0.0 }}, sections = [{pieces}]"
         ),
     );
-    // two arms, and a bottom of as many elements as the gap is wide
+    // two arms, and a bottom with as many elements as the gap is wide
     let arm = (elements - striping) / 2;
     let node = |i: usize| {
         let down = i.min(elements - i).min(arm);
@@ -363,8 +362,8 @@ pub fn folded_chain(elements: usize, striping: usize) -> Scene {
     scene
 }
 
-/// Time at which the free end of the folded chain has fallen by `part` of its length [s], from v² = g x (2L − x)/(L − x), the balance of energy
-/// of the one-dimensional chain: with x = L s², t = 2 √(L/g) ∫ √((1 − s²)/(2 − s²)) ds.
+/// Time at which the free end of the folded chain has fallen by `part` of its length [s], from v² = g x (2L − x)/(L − x), the energy balance of the
+/// one-dimensional chain: with x = L s², t = 2 √(L/g) ∫ √((1 − s²)/(2 − s²)) ds.
 ///
 /// Source: Calkin & March (1989), Am. J. Phys. 57, 154.
 pub fn fall_time(part: f64) -> f64 {
@@ -380,7 +379,7 @@ pub fn fall_time(part: f64) -> f64 {
     2.0 * (CHAIN / G).sqrt() * simpson
 }
 
-/// Pull of that chain on its support over its weight, its free end having fallen by `part` of its length [-].
+/// Force of that chain on its support relative to its weight, after its free end has fallen by `part` of its length [-].
 pub fn fall_pull(part: f64) -> f64 {
     0.25 * (2.0 + 2.0 * part - 3.0 * part * part) / (1.0 - part)
 }
@@ -388,13 +387,13 @@ pub fn fall_pull(part: f64) -> f64 {
 /// Rod: length [m], EA [N], mass [kg/m], BA [N s], tension [N], amplitude of the driven end [m].
 pub const ROD: [f64; 6] = [100.0, 1.0e7, 10.0, 1.0e4, 2.0e5, 1.0e-3];
 
-/// First axial frequency of the rod between held ends, π c/L [rad/s].
+/// First axial frequency of the rod between fixed ends, π c/L [rad/s].
 pub fn rod_frequency() -> f64 {
     let [length, ea, mass, ..] = ROD;
     PI / length * (ea / mass).sqrt()
 }
 
-/// A taut rod, one end driven along it at a circular frequency [rad/s]; no gravity.
+/// Taut rod with one end driven along it at a circular frequency [rad/s]; negligible gravity.
 pub fn resonant_rod(elements: usize, omega: f64) -> Scene {
     let [length, ea, mass, ba, tension, amplitude] = ROD;
     let span = length * (1.0 + tension / ea);
@@ -425,8 +424,8 @@ pub fn rod_amplitude(omega: f64) -> f64 {
     (stiffness * k * angle.cos() / angle.sin()).norm() * amplitude
 }
 
-/// The same scene with its fairlead moved along x and z by two records of a JONSWAP spectrum of a significant height [m] and a peak
-/// period [s], of 40 sines each.
+/// The same scene with its fairlead moved along x and z by two records of 40 sines each, of a JONSWAP spectrum with a significant height [m] and a
+/// peak period [s].
 pub fn irregular(mut scene: Scene, significant_height: f64, peak_period: f64) -> Scene {
     let spectrum = Spectrum {
         significant_height,

@@ -1,7 +1,7 @@
-//! Cost of a communication point of the taut rope through the C interface: three displacements set, a step made, three forces read.
+//! Cost of a communication step of the taut rope through the C interface: set three displacements, make a step, read three forces.
 //!
-//! `cargo bench -p moorline-fmu --bench communication`. The cost of an internal step is that of the simulation alone, from communication steps of one
-//! and of eight internal steps.
+//! `cargo bench -p moorline-fmu --bench communication`. The simulation alone, with communication steps of one and of eight internal steps,
+//! gives the cost of an internal step.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -12,14 +12,14 @@ use moorline::scene::Scene;
 use moorline::simulation::Simulation;
 use moorline_host::FmiVersion;
 
-/// Repetitions of which the fastest counts.
+/// Number of repetitions [-]; the fastest one counts.
 const REPETITIONS: usize = 40;
-/// Timed communication steps.
+/// Number of timed communication steps [-].
 const STEPS: usize = 400;
 /// Communication step [s]: one internal step.
 const STEP: f64 = 0.05;
 
-/// Displacements of the fairlead at communication points `step` [s] apart [m].
+/// Returns the displacements [m] of the fairlead at communication points spaced `step` [s] apart.
 fn displacements(step: f64) -> Vec<[f64; 3]> {
     let at = |t: f64| {
         [
@@ -31,7 +31,7 @@ fn displacements(step: f64) -> Vec<[f64; 3]> {
     (0..STEPS).map(|k| at(k as f64 * step)).collect()
 }
 
-/// Least time of a communication point of `step` [s] of the simulation alone [ns], and its internal steps.
+/// Returns the least wall time per communication step of `step` [s] without FMI [ns], and the number of internal steps per communication step [-].
 fn alone(scene: &Scene, step: f64) -> (f64, f64) {
     let mut simulation = Simulation::new(scene).expect("an equilibrium");
     let (start, table) = (simulation.snapshot().clone(), displacements(step));
@@ -50,7 +50,7 @@ fn alone(scene: &Scene, step: f64) -> (f64, f64) {
     (1e9 * best / STEPS as f64, internal as f64 / STEPS as f64)
 }
 
-/// Least time of a communication point through the C interface [ns].
+/// Returns the least wall time per communication step through the C interface [ns].
 fn hosted(version: FmiVersion, text: &str) -> f64 {
     let fmu = common::open_scene(version, text);
     let inputs = ["x", "y", "z"].map(|axis| fmu.reference(&format!("fairlead.{axis}")).expect("an input"));

@@ -1,6 +1,6 @@
-//! Handles, texts, states and callbacks: all unsafe code of the FMU library except that of [`moorline_boundary`], with its reasons.
+//! Handles, texts, states and callbacks: all unsafe code of the FMU library except [`moorline_boundary`], with its safety arguments.
 //!
-//! Guarantees of the host (FMI 2.0.4 section 2.1, FMI 3.0.2 section 2.2): a handle is what instantiate returned and is
+//! Guarantees of the host (FMI 2.0.4 section 2.1, FMI 3.0.2 section 2.2): a handle was returned by instantiate and is
 //! not used after free; no two calls use one handle at once; a pointer with a length points to that many values that
 //! stay valid during the call; a text ends with a zero byte. Everything else is checked here.
 
@@ -22,24 +22,24 @@ pub(crate) struct Handle {
     instance: Instance,
     version: FmiVersion,
     sink: Sink,
-    /// The host's callback within communication steps.
+    /// The host's callback for intermediate updates.
     update: Option<Update>,
-    /// True after a call panicked: only free is served from then on.
+    /// True after a call has panicked; from then on only `free` is accepted.
     is_poisoned: bool,
-    /// Text given to the host; it lives until the next one.
+    /// Text returned to the host; valid until the next one replaces it.
     text: CString,
 }
 
-/// Callback of a host within communication steps.
+/// Intermediate-update callback of a host.
 #[derive(Clone, Copy)]
 pub(crate) struct Update {
     pub(crate) callback: fmi3IntermediateUpdateCallback,
     pub(crate) environment: *mut c_void,
-    /// True if the host may end a step there.
+    /// True if the host may end the communication step during the callback.
     pub(crate) may_end: bool,
 }
 
-/// Calls the host at a time [s] within a step; returns whether it ends the step.
+/// Calls the host at a time [s] within a communication step; returns whether the host ends the step.
 ///
 /// # Safety
 /// `handle` is null or a live handle that no other call is using; its instance is not borrowed, since the host calls it.
@@ -136,12 +136,12 @@ impl Sink {
     }
 }
 
-/// A text for C; zero bytes, which C cannot carry, become spaces.
+/// Converts a text for C; zero bytes, which a C string cannot contain, become spaces.
 fn c_text(text: &str) -> CString {
     CString::new(text.replace('\0', " ")).unwrap_or_default()
 }
 
-/// Makes an instance and returns its handle; null and a message where it is refused. The message is sent even while
+/// Creates an instance and returns its handle; a refused instance gives null and a message. The message is sent even if
 /// logging is off: without an instance there is no other way to report the reason.
 pub(crate) fn instantiate(
     version: FmiVersion,
@@ -184,7 +184,7 @@ pub(crate) unsafe fn free(handle: *mut c_void) {
     let _ = guard(move || drop(handle));
 }
 
-/// Serves one call on an instance: guard, log, status.
+/// Carries out one call on an instance: catches a panic, sends the log messages and returns the status.
 ///
 /// # Safety
 /// `handle` is null or a live handle that no other call is using.
@@ -246,7 +246,7 @@ impl Handle {
     }
 }
 
-/// Keeps a text in the handle and returns its address.
+/// Stores a text in the handle and returns its address.
 ///
 /// # Safety
 /// As for [`call`].
@@ -268,7 +268,7 @@ pub(crate) unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), Refusal> 
     Ok(unsafe { pointers::write(pointer, value) }?)
 }
 
-/// A text of the host; `None` if it is null or not UTF-8.
+/// Returns a text of the host; `None` if it is null or not UTF-8.
 ///
 /// # Safety
 /// A pointer that is not null points to a text that ends with a zero byte and lives during `'a`.
@@ -277,7 +277,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a str> {
     unsafe { pointers::text(pointer) }.ok()
 }
 
-/// Path or URI of the host, in any encoding; `None` if it is null.
+/// Returns a path or URI of the host, in any encoding; `None` if it is null.
 ///
 /// # Safety
 /// As for [`text`].
@@ -289,7 +289,7 @@ pub(crate) unsafe fn location<'a>(pointer: *const c_char) -> Option<&'a [u8]> {
     Some(unsafe { CStr::from_ptr(pointer) }.to_bytes())
 }
 
-/// The host's list of texts.
+/// Returns the host's list of texts.
 ///
 /// # Safety
 /// As for [`slice`] and [`text`].
@@ -305,7 +305,7 @@ pub(crate) unsafe fn texts<'a>(pointer: *const *const c_char, count: usize) -> R
         .collect()
 }
 
-/// Saves the state into `*target`, in place where the host passes an earlier state.
+/// Saves the state into `*target`; an earlier state that the host passes is overwritten.
 ///
 /// # Safety
 /// A `target` that is not null points to null or to a state of [`store_state`] that was not freed.
@@ -321,7 +321,7 @@ pub(crate) unsafe fn store_state(target: *mut *mut c_void, snapshot: Snapshot) -
     Ok(())
 }
 
-/// A saved state.
+/// Returns a saved state.
 ///
 /// # Safety
 /// A pointer that is not null came from [`store_state`] and was not freed.
@@ -349,7 +349,7 @@ pub(crate) unsafe fn free_state(target: *mut *mut c_void) -> Result<(), Refusal>
     Ok(())
 }
 
-/// Writes a serialised state of exactly the host's length.
+/// Copies a serialised state to the host; refuses a target of another length.
 pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal> {
     if bytes.len() != target.len() {
         return Err(Refusal(format!(

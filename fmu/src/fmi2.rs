@@ -1,4 +1,4 @@
-//! FMI 2.0: one thin translation per symbol.
+//! FMI 2.0: each function of the standard translates one call.
 //!
 //! Safety of every function here: the host keeps the promises listed in [`crate::ffi`]; nothing else is relied on.
 #![allow(non_snake_case, non_upper_case_globals, clippy::too_many_arguments)]
@@ -376,7 +376,7 @@ unsafe extern "C" fn fmi2DoStep(
     }
 }
 
-/// Steps are carried out in the call, so the last one is complete when a host can query it.
+/// Returns the status of the last step. Steps are synchronous, so the last one is complete when the host queries it.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2GetStatus(
     c: fmi2Component,

@@ -1,4 +1,4 @@
-//! FMI 3.0: one thin translation per symbol.
+//! FMI 3.0: each function of the standard translates one call.
 //!
 //! Safety of every function here: the host keeps the promises listed in [`crate::ffi`]; nothing else is relied on.
 #![allow(non_snake_case, clippy::too_many_arguments)]

@@ -1,8 +1,8 @@
-//! The FMI state machine over a simulation, for both versions of FMI. Safe code without pointers.
+//! FMI state machine over a simulation, for both versions of FMI. Safe code without pointers.
 //!
-//! Sources: FMI 2.0.4 section 4.2.4 (state machine of co-simulation), FMI 3.0.2 section 4.2. Two choices within them:
-//! a refused call leaves everything unchanged, so the instance continues; and a step that fails is an error, not
-//! `Discard`, since a smaller communication step cannot help a solver that has already substepped.
+//! Sources: FMI 2.0.4 section 4.2.4 (state machine of co-simulation), FMI 3.0.2 section 4.2. The standard leaves two choices open:
+//! here, a refused call leaves everything unchanged, so the instance remains usable; and a failed step returns `Error`, not
+//! `Discard`, since the solver has already tried shorter internal steps and a smaller communication step would not help.
 
 mod access;
 mod derivatives;
@@ -20,7 +20,7 @@ use crate::log::{Log, Topic};
 use crate::resources;
 use crate::saved::{Phase, Snapshot};
 
-/// Reason why a call was refused or failed, in words for the host's log.
+/// Reason why a call was refused or failed: a message for the host's log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Refusal(pub(crate) String);
 
@@ -38,12 +38,12 @@ impl From<&str> for Refusal {
 
 type Outcome = Result<(), Refusal>;
 
-/// Difference between the clocks of host and instance that counts as rounding, relative to the step [-].
+/// Difference between the clocks of host and instance that is attributed to rounding, relative to the step [-].
 const TIME_TOLERANCE: f64 = 1e-6;
-/// Part of a step by which rounding of the host's clock may change it [-].
+/// Greatest relative change of a step by rounding of the host's clock [-]; a larger one is refused.
 const RESOLUTION: f64 = 1e-4;
 
-/// One instance.
+/// FMU instance.
 #[derive(Debug)]
 pub(crate) struct Instance {
     packaged: Scene,
@@ -58,22 +58,22 @@ pub(crate) struct Instance {
     stop_time: Option<f64>,
     time: f64,
     inputs: HostInputs,
-    /// Inputs at which the statics were solved last.
+    /// Inputs used in the last solution of the statics.
     start: Inputs,
-    /// Statics with the present parameters and inputs, or the end of the last step; `None` until they are solved.
+    /// Statics with the current parameters and inputs, or the state after the last step; `None` until the statics are solved.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
-    /// Notes on the scene that were logged.
+    /// Notes on the scene that have been logged.
     noted: Vec<Note>,
-    /// Observes the steps, where warnings are logged.
+    /// Produces notes on the steps; present if warnings are logged.
     watch: Option<Watch>,
     step_status: Status,
-    /// True if the host gives all displacements within communication steps.
+    /// True if the host sets all displacements during intermediate updates.
     is_updated: bool,
 }
 
 impl Instance {
-    /// Reads the scene from the resources and checks the host's token against it.
+    /// Reads the scene from the resources and compares the host's token with the scene's.
     pub(crate) fn new(
         version: FmiVersion,
         token: Option<&str>,
@@ -115,7 +115,7 @@ impl Instance {
         Ok(instance)
     }
 
-    /// Notes on the scene with its present parameters, each once.
+    /// Logs the notes on the scene with its current parameters, each once.
     fn log_plausibility(&mut self) {
         if !self.log.keeps(Topic::Warning) {
             return;
@@ -128,7 +128,7 @@ impl Instance {
         }
     }
 
-    /// Notes on the present state of the simulation, each once.
+    /// Logs the notes on the current state of the simulation, each once.
     fn log_watch(&mut self) {
         let simulation = self
             .simulation
@@ -158,15 +158,15 @@ impl Instance {
         Err(Refusal(format!("out of order: not allowed {now}")))
     }
 
-    /// Turns log categories on or off; no name means all.
+    /// Turns log categories on or off; an empty list means all.
     pub(crate) fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Outcome {
         self.log
             .select(on, categories)
             .map_err(|name| Refusal(format!("there is no log category \"{name}\"")))
     }
 
-    /// Sets start and end [s]. The host's tolerance is not used: it refers to the integration error, and the parameter `solver.tolerance` to the fairlead
-    /// tension.
+    /// Sets start and end time [s]. The host's tolerance is not used: it refers to the integration error, whereas `solver.tolerance` refers to
+    /// the fairlead tension.
     pub(crate) fn set_up(&mut self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
         self.expect_phase(&[Phase::Instantiated])?;
         if !start.is_finite() {
@@ -208,7 +208,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Logs the integrators chosen.
+    /// Logs the selected integrators.
     fn log_choices(&mut self) {
         let Some(simulation) = &self.simulation else {
             return;
@@ -224,7 +224,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Returns to the state just after instantiation; the log keeps its settings.
+    /// Returns to the state after instantiation; the log keeps its settings.
     pub(crate) fn reset(&mut self) -> Outcome {
         self.expect_no_update()?;
         self.scene.clone_from(&self.packaged);
@@ -240,8 +240,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Static equilibrium with the present parameters and displacements, unless it is already solved. Always solved
-    /// from the same first guess, so that it does not depend on earlier inputs.
+    /// Solves the static equilibrium with the current parameters and inputs, unless it is already solved. The solution always starts
+    /// from the same initial guess, so that it does not depend on earlier inputs.
     fn solve_statics(&mut self) -> Result<&mut Simulation, Refusal> {
         if self.simulation.is_none() {
             self.start.clone_from(self.inputs.given());
@@ -253,7 +253,7 @@ impl Instance {
         Ok(self.simulation.as_mut().expect("was there or was just solved"))
     }
 
-    /// Computes from the host's time `at` to `at + step` [s].
+    /// Advances from the host's time `at` to `at + step` [s].
     pub(crate) fn do_step(&mut self, at: f64, step: f64) -> Outcome {
         let outcome = self.advance(at, step);
         self.step_status = match outcome {
@@ -263,7 +263,7 @@ impl Instance {
         outcome
     }
 
-    /// Status of the last step.
+    /// Returns the status of the last step.
     pub(crate) fn step_status(&self) -> Status {
         self.step_status
     }
@@ -315,17 +315,17 @@ impl Instance {
             .expect("solved at the end of initialization");
         simulation.set_inputs(self.inputs.given());
         simulation.advance(step).map_err(|e| e.to_string())?;
-        self.time = at + step; // the host's clock, so that rounding does not add up
+        self.time = at + step; // the host's clock, so that rounding errors do not accumulate
         self.log_watch();
         Ok(())
     }
 
-    /// Time that the last successful step reached [s].
+    /// Returns the end of the last successful step [s].
     pub(crate) fn time(&self) -> f64 {
         self.time
     }
 
-    /// All that changes.
+    /// Returns a copy of everything that changes during a simulation.
     pub(crate) fn snapshot(&self) -> Snapshot {
         Snapshot {
             phase: self.phase,
@@ -350,7 +350,7 @@ impl Instance {
             .collect()
     }
 
-    /// Goes back to a saved state.
+    /// Restores a saved state.
     pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
         self.expect_no_update()?;
         let (own, new) = (self.parameters(&self.scene), &snapshot.parameters);
@@ -408,10 +408,10 @@ impl Instance {
     }
 }
 
-/// Static equilibrium at a time [s] and the given inputs, always from the same first guess, from which the flow of the water begins to act. The nodes
-/// must be those of the interface.
+/// Solves the static equilibrium at a time [s] with the given inputs, always from the same initial guess. The water flow acts from this state on.
+/// Refuses a model whose nodes differ from those of the interface.
 fn statics(scene: &Scene, interface: &Interface, time: f64, inputs: &Inputs) -> Result<Simulation, Refusal> {
-    // choices that the package leaves open are not tried again: the interface has the mesh of the rules
+    // values that the packaged scene leaves open are not selected by trials: the interface has the mesh of the rules
     let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
     interface.check_nodes(simulation.model())?;
     simulation.set_inputs(inputs);
@@ -433,7 +433,7 @@ pub(crate) mod tests {
     const SCENE: &str = include_str!("../../tests/scenes/hand.toml");
 
     thread_local! {
-        /// Statics solved on this thread [-].
+        /// Number of static solutions on this thread [-].
         static STATICS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
     }
 
@@ -521,7 +521,7 @@ pub(crate) mod tests {
         );
     }
 
-    /// Warnings in the log.
+    /// Removes and returns the warnings in the log.
     fn warnings(instance: &mut Instance) -> Vec<String> {
         let messages = instance.log.take().into_iter();
         let warnings = messages.filter(|(topic, _)| *topic == Topic::Warning);
@@ -577,7 +577,7 @@ pub(crate) mod tests {
         assert_eq!(real(&mut instance, "hand.x"), 0.0);
     }
 
-    /// An instance of the scene in water whose flow the host gives, started.
+    /// Returns an instance, started, of the scene in water whose flow the host sets.
     fn hosted(version: FmiVersion) -> Instance {
         let water = "[water]\ndensity = 1025.0\nflow = \"host\"\n[line_types.rope]\ndiameter = 0.01\ndrag_normal = 1.2\n";
         let mut instance = instance_of(&SCENE.replace("[line_types.rope]\n", water), version);

@@ -1,14 +1,14 @@
-//! Messages on their way to the host: kept by the instance, handed over at the end of each call.
+//! Log messages: the instance collects them and passes them to the host at the end of each call.
 
 use moorline::output::description::LOG_CATEGORIES;
 use moorline_host::Status;
 
-/// Kind of a message; each has its category in the description.
+/// Kind of a message; each kind has a category in the model description.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Topic {
-    /// Choices made, with their reasons.
+    /// Choices of the solver, with their reasons.
     Event,
-    /// Carried out with a reservation.
+    /// Carried out, with a reservation.
     Warning,
     /// Refused or failed.
     Error,
@@ -17,7 +17,7 @@ pub(crate) enum Topic {
 }
 
 impl Topic {
-    /// Name of the category, as declared in the description.
+    /// Name of the category in the model description.
     pub(crate) fn category(self) -> &'static str {
         LOG_CATEGORIES[self as usize].0
     }
@@ -32,7 +32,7 @@ impl Topic {
     }
 }
 
-/// Messages not yet handed over, and the categories that the host has selected.
+/// Messages not yet sent, and the categories that the host has selected.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     enabled: [bool; LOG_CATEGORIES.len()],
@@ -40,7 +40,7 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// All categories on or off.
+    /// Returns an empty log with all categories on or off.
     pub(crate) fn new(on: bool) -> Log {
         Log {
             enabled: [on; LOG_CATEGORIES.len()],
@@ -48,7 +48,7 @@ impl Log {
         }
     }
 
-    /// Turns categories on or off; no name means all. An unknown name is returned and changes nothing.
+    /// Turns categories on or off; an empty list means all. `on` with names turns the others off. An unknown name is returned and changes nothing.
     pub(crate) fn select(&mut self, on: bool, categories: &[&str]) -> Result<(), String> {
         if categories.is_empty() {
             self.enabled = [on; LOG_CATEGORIES.len()];
@@ -82,12 +82,12 @@ impl Log {
         }
     }
 
-    /// Returns whether there is nothing to pass on.
+    /// Returns whether no messages are pending.
     pub(crate) fn is_empty(&self) -> bool {
         self.messages.is_empty()
     }
 
-    /// Passes the messages on.
+    /// Removes and returns the pending messages.
     pub(crate) fn take(&mut self) -> Vec<(Topic, String)> {
         std::mem::take(&mut self.messages)
     }

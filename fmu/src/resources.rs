@@ -1,4 +1,4 @@
-//! Location of the FMU's resources: FMI 2.0 gives a URI, FMI 3.0 a path, and hosts give both in many forms.
+//! Location of the FMU's resources. FMI 2.0 passes a URI and FMI 3.0 a path; hosts write both in many forms.
 //!
 //! Source: RFC 8089 (file URIs) with its appendix E on common deviations; FMI 2.0.4 section 2.1.5, FMI 3.0.2 section 2.3.1.
 
@@ -8,10 +8,10 @@ use std::path::PathBuf;
 use moorline::output::package::SCENE_FILE;
 use moorline::scene::input_file;
 
-/// Text of the FMU's scene.
+/// Reads the text of the FMU's scene.
 ///
 /// # Errors
-/// Names the place of the failed search.
+/// The location is missing or unusable, or the scene cannot be read there; the message includes the path.
 pub(crate) fn read_scene(location: Option<&[u8]>) -> Result<String, String> {
     let location = location
         .filter(|location| !location.is_empty())
@@ -30,14 +30,14 @@ pub(crate) fn read_scene(location: Option<&[u8]>) -> Result<String, String> {
     Ok(text)
 }
 
-/// A path of these bytes, which on Unix need not be UTF-8.
+/// Converts bytes to a path, which on Unix need not be UTF-8.
 #[cfg(unix)]
 fn path_of(bytes: Vec<u8>) -> Result<PathBuf, String> {
     use std::os::unix::ffi::OsStringExt;
     Ok(std::ffi::OsString::from_vec(bytes).into())
 }
 
-/// A path of these bytes.
+/// Converts bytes to a path.
 #[cfg(not(unix))]
 fn path_of(bytes: Vec<u8>) -> Result<PathBuf, String> {
     let text = String::from_utf8(bytes)
@@ -45,7 +45,7 @@ fn path_of(bytes: Vec<u8>) -> Result<PathBuf, String> {
     Ok(text.into())
 }
 
-/// The scheme of a URI that has `//` behind it; a drive letter is none.
+/// Returns the scheme of a URI with `//` after the colon; a drive letter is not a scheme.
 fn scheme(location: &[u8]) -> Option<&str> {
     let end = location.windows(3).position(|three| three == b"://")?;
     let scheme = std::str::from_utf8(&location[..end]).ok()?;
@@ -54,7 +54,7 @@ fn scheme(location: &[u8]) -> Option<&str> {
     (end > 1 && begins && scheme.chars().all(letters)).then_some(scheme)
 }
 
-/// Folders that a resource location may mean, the likeliest first; never empty.
+/// Folders that a resource location may refer to, the most likely first; never empty.
 fn candidates(location: &[u8], windows: bool) -> Result<Vec<Vec<u8>>, String> {
     let is_file = location
         .get(..5)
@@ -69,7 +69,7 @@ fn candidates(location: &[u8], windows: bool) -> Result<Vec<Vec<u8>>, String> {
         };
     }
     let raw = path_of_uri(&location[5..], windows)?;
-    // A host that does not escape may name a folder that holds a per cent sign.
+    // A host that does not escape characters may pass a folder name with a per cent sign.
     let mut folders = vec![raw.clone()];
     let decoded = percent_decoded(&raw);
     if decoded != raw {
@@ -78,18 +78,18 @@ fn candidates(location: &[u8], windows: bool) -> Result<Vec<Vec<u8>>, String> {
     Ok(folders)
 }
 
-/// Path of the part after `file:`, still escaped.
+/// Returns the path in the part of a URI after `file:`, still escaped.
 fn path_of_uri(rest: &[u8], windows: bool) -> Result<Vec<u8>, String> {
     let path = match rest.strip_prefix(b"//") {
         None => rest,                         // file:/p, or file:p
-        Some(rest) if is_drive(rest) => rest, // file://C:/p, one slash short
+        Some(rest) if is_drive(rest) => rest, // file://C:/p, with one slash missing
         Some(rest) => {
             let end = rest.iter().position(|byte| *byte == b'/');
             let (host, path) = rest.split_at(end.unwrap_or(rest.len()));
             if host.is_empty() || host.eq_ignore_ascii_case(b"localhost") {
                 path
             } else if windows {
-                return Ok([b"//", host, path].concat()); // a share
+                return Ok([b"//", host, path].concat()); // a network share
             } else {
                 return Err(format!(
                     "the resource location names the host \"{}\": file:///path or a path would be right",
@@ -114,7 +114,7 @@ fn is_drive(path: &[u8]) -> bool {
     matches!(path, [letter, b':' | b'|', ..] if letter.is_ascii_alphabetic())
 }
 
-/// Replaces %XX. A per cent sign without two digits stays.
+/// Decodes %XX. A per cent sign without two hexadecimal digits is kept.
 fn percent_decoded(text: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text;

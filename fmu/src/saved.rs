@@ -1,4 +1,4 @@
-//! A saved state of an instance, in memory and as bytes.
+//! Saved state of an instance, in memory and as bytes.
 
 use moorline::interface::HostInputs;
 use moorline::output::sealed::{self, Unreadable};
@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum Phase {
     /// After instantiation or reset.
     Instantiated,
-    /// Between entering and leaving initialization mode.
+    /// In initialization mode.
     Initialization,
-    /// Stepping.
+    /// In step mode.
     Step,
     /// After terminate.
     Terminated,
@@ -20,7 +20,7 @@ pub(crate) enum Phase {
     Intermediate,
 }
 
-/// All that changes in an instance.
+/// Everything that changes in an instance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Snapshot {
     pub(crate) phase: Phase,
@@ -28,31 +28,31 @@ pub(crate) struct Snapshot {
     pub(crate) start_time: f64,
     /// End of the simulation [s].
     pub(crate) stop_time: Option<f64>,
-    /// The last communication point [s].
+    /// Last communication point [s].
     pub(crate) time: f64,
     /// Parameters in the order of the interface.
     pub(crate) parameters: Vec<f64>,
     pub(crate) inputs: HostInputs,
-    /// Inputs at which the statics were solved: the solver's choices there, such as its step limits, are not in its state and are made again from them.
+    /// Inputs used in the static solution. Quantities derived from it, such as step limits, are not part of the solver's state and are computed again.
     pub(crate) start: Inputs,
-    /// The solver's state, once there is one.
+    /// State of the solver; `None` before the statics are solved.
     pub(crate) solver: Option<simulation::Snapshot>,
 }
 
 const MARK: &str = "moorline state 2";
 
-/// Beginning of the states of the FMU with a token.
+/// Returns the first bytes of the states of the FMU with this token.
 fn mark(token: &str) -> Vec<u8> {
     [MARK, token].concat().into_bytes()
 }
 
 impl Snapshot {
-    /// As bytes that only an FMU with the same token reads.
+    /// Serialises the state; only an FMU with the same token accepts the bytes.
     pub(crate) fn to_bytes(&self, token: &str) -> Vec<u8> {
         sealed::seal(&mark(token), self)
     }
 
-    /// Reads the bytes of [`Snapshot::to_bytes`].
+    /// Reads bytes written by [`Snapshot::to_bytes`].
     pub(crate) fn from_bytes(bytes: &[u8], token: &str) -> Result<Snapshot, String> {
         sealed::open(&mark(token), bytes).map_err(|reason| {
             let reason = match reason {

@@ -1,6 +1,6 @@
 //! Macros for the symbols of both versions that differ in their names alone. They use [`crate::ffi`] and the constant `VERSION` of the file that calls them.
 
-/// Asserts at compile time that every function of the standard is there with the standard's signature.
+/// Asserts at compile time that every function of the standard is defined with its standard signature.
 macro_rules! assert_complete {
     ($($name:ident: $type:ident = fn($($argument:ty),*) -> $result:ty;)*) => {
         $(const _: $type = $name;)*
@@ -20,7 +20,7 @@ macro_rules! refuse {
     };
 }
 
-/// Functions of a handle alone.
+/// Functions whose only argument is the handle.
 macro_rules! transitions {
     ($($name:ident: $method:ident;)*) => {
         $(

@@ -1,4 +1,4 @@
-//! Nothing is allocated in a step: counted by an allocator that counts.
+//! A step does not allocate: an allocator that counts its calls verifies this.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -12,16 +12,16 @@ thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
 }
 
-// SAFETY: every call is handed on to the system's allocator as it came.
+// SAFETY: every call is forwarded unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller keeps the contract of `alloc`.
+        // SAFETY: the caller fulfils the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps the contract of `dealloc`.
+        // SAFETY: the caller fulfils the contract of `dealloc`.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -47,7 +47,7 @@ const INTEGRATORS: [Integrator; 4] = [
     Integrator::Bossak,
 ];
 
-/// Allocations in steps that a host drives, which also gives a flow of the water where the scene asks for it.
+/// Counts the allocations in steps driven by a host, which also sets the water flow if the scene requires it.
 fn allocations_of_a_host(scene: &Scene) -> usize {
     let mut simulation = Simulation::new(scene).unwrap();
     let fairlead = simulation.model().point_index("fairlead").unwrap();
@@ -63,7 +63,7 @@ fn allocations_of_a_host(scene: &Scene) -> usize {
             simulation.advance(0.05).unwrap();
         }
     };
-    drive(0..5); // buffers grow to their sizes
+    drive(0..5); // buffers grow to their final sizes
     let before = COUNT.with(Cell::get);
     drive(5..200);
     COUNT.with(Cell::get) - before
@@ -95,7 +95,7 @@ fn a_step_in_the_flow_of_a_host_allocates_nothing() {
     }
 }
 
-/// Allocations in 100 steps of a scene on its own motion, after as many in which buffers grow to their sizes.
+/// Counts the allocations in 100 steps of a scene with its own motion, after 100 steps in which buffers grow to their final sizes.
 fn allocations(text: &str, elements: Option<usize>) -> usize {
     let mut scene = Scene::from_toml(text).unwrap();
     scene.solver.elements = elements;
@@ -103,7 +103,7 @@ fn allocations(text: &str, elements: Option<usize>) -> usize {
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.follow_scene().unwrap();
     let mut advance = |steps: usize| (0..steps).for_each(|_| simulation.advance(0.05).unwrap());
-    advance(100); // on both sides of a span of waves
+    advance(100); // past a boundary between spans of wave samples
     let before = COUNT.with(Cell::get);
     advance(100);
     COUNT.with(Cell::get) - before

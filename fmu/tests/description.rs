@@ -1,5 +1,5 @@
-//! The descriptions in `modelDescription/` are those that the program writes for `scenes/oc3_catenary.toml`: a change of
-//! the interface shows in the diff. After a change that is meant, write them anew:
+//! The descriptions in `modelDescription/` match the output of the program for `scenes/oc3_catenary.toml`, so a change of
+//! the interface shows in the diff. After an intended change, regenerate them:
 //! `MOORLINE_UPDATE=1 cargo test -p moorline-fmu --test description`.
 
 use std::path::Path;

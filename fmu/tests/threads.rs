@@ -1,10 +1,10 @@
-//! An instance that shares its lines among threads: freed and unloaded like any other.
+//! An instance that distributes its lines over threads is freed, and its library unloaded, like any other.
 
 mod common;
 
 use moorline_host::FmiVersion;
 
-/// Two lines that share nothing, on two threads.
+/// Two separate lines, on two threads.
 fn two_lines() -> String {
     let second = common::SCENE.split("[[points]]").skip(1).collect::<Vec<_>>();
     let second = format!("[[points]]{}", second.join("[[points]]"));

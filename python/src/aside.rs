@@ -1,4 +1,4 @@
-//! Work on another thread, while the thread of Python reports progress and listens for Ctrl-C.
+//! Work on another thread, while the Python thread reports progress and checks for Ctrl-C.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -9,7 +9,7 @@ use std::time::Duration;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// Time between two checks for a signal.
+/// Interval between checks for signals.
 const LISTEN_EVERY: Duration = Duration::from_millis(50);
 
 /// State shared by the two threads.
@@ -21,22 +21,22 @@ pub(crate) struct Control {
 }
 
 impl Control {
-    /// Returns true once the work is to end, its result being of no use.
+    /// Returns whether the work is to stop because its result is no longer needed.
     pub(crate) fn stops(&self) -> bool {
         self.stops.load(Ordering::Relaxed)
     }
 
-    /// Adds steps that are to be made.
+    /// Adds steps to be made to the total.
     pub(crate) fn expect(&self, steps: usize) {
         self.total.fetch_add(steps, Ordering::Relaxed);
     }
 
-    /// One more step is made.
+    /// Counts one step as made.
     pub(crate) fn step(&self) {
         self.done.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Steps made, and those known to be made in all [-].
+    /// Returns the number of steps made, and the total number of steps known so far [-].
     fn steps(&self) -> (usize, usize) {
         (
             self.done.load(Ordering::Relaxed),
@@ -45,11 +45,12 @@ impl Control {
     }
 }
 
-/// Does `work` on another thread, without the lock of the interpreter, and returns its result. `progress` is called with the numbers of steps
-/// made and to be made.
+/// Runs `work` on another thread, without the interpreter lock, and returns its result. `progress` is called with the number of steps
+/// made and the total.
 ///
 /// # Errors
-/// An exception of a signal, such as `KeyboardInterrupt`, or of `progress`. The work then ends at its next check of the [`Control`], and is not waited for.
+/// An exception from a signal, such as `KeyboardInterrupt`, or from `progress`: the work stops at its next check of the [`Control`] and is not waited
+/// for. A panic of the work becomes a `RuntimeError`.
 pub(crate) fn aside<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -59,7 +60,7 @@ pub(crate) fn aside<T: Send + 'static>(
     let (sender, receiver) = channel();
     let worker = thread::Builder::new().name("moorline".to_string()).spawn({
         let control = control.clone();
-        // the receiver is gone if the work was abandoned
+        // sending fails if the work was abandoned and the receiver is gone
         move || drop(sender.send(work(&control)))
     })?;
     let mut receiver = receiver;

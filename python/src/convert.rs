@@ -1,4 +1,4 @@
-//! Values of Python as TOML, and JSON as values of Python.
+//! Conversion of Python values to TOML, and of JSON to Python values.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
@@ -7,10 +7,10 @@ use toml::Value as Toml;
 
 use crate::errors::Failure;
 
-/// Reads a dict as a table of TOML. `at` is the key path of the dict.
+/// Converts a dict to a TOML table. `at` is the key path of the dict.
 ///
 /// # Errors
-/// The place of a value that TOML cannot hold.
+/// The key path of a value that TOML cannot represent.
 pub(crate) fn table(dict: &Bound<'_, PyDict>, at: &str) -> Result<toml::Table, Failure> {
     let mut table = toml::Table::new();
     for (key, value) in dict {
@@ -52,7 +52,7 @@ fn value_of(value: &Bound<'_, PyAny>, at: &str) -> Result<Toml, Failure> {
         });
         return Ok(Toml::Array(elements.collect::<Result<_, _>>()?));
     }
-    // arrays and numbers of numpy; paths
+    // numpy arrays and numbers; paths
     for way in ["tolist", "__fspath__"] {
         if let Ok(plain) = value.call_method0(way) {
             return value_of(&plain, at);
@@ -74,7 +74,7 @@ fn no_value(value: &Bound<'_, PyAny>, at: &str) -> Failure {
     Failure::of_key(at, problem)
 }
 
-/// JSON as dicts, lists and numbers.
+/// Converts JSON to dicts, lists and numbers.
 pub(crate) fn json<'py>(py: Python<'py>, value: &Json) -> PyResult<Bound<'py, PyAny>> {
     Ok(match value {
         Json::Null => py.None().into_bound(py),

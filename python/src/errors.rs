@@ -11,43 +11,43 @@ use pyo3::exceptions::PyNotImplementedError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-/// Error on the way to an exception; needs no interpreter.
+/// Error that becomes an exception; it can be created without the interpreter.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// A scene file cannot be read or has mistakes.
     Load(LoadError),
-    /// Mistakes in a scene that has no text, at least one.
+    /// Mistakes in a scene without text; at least one.
     Scene(Vec<SceneError>),
-    /// No static equilibrium.
+    /// No static equilibrium was found.
     Statics(StaticsError),
-    /// No natural modes.
+    /// No natural modes were found.
     Modes(ModesError),
     /// A step failed.
     Step(StepError),
-    /// A result is not a finite number: its name, and the sentence.
+    /// A result is not a finite number: its name, and the message.
     Result(String, String),
     /// An argument is wrong: its name, and the problem.
     Input(String, String),
-    /// A file cannot be written: its name, and the sentence.
+    /// A file cannot be written: its name, and the message.
     Output(String, String),
-    /// A call by MoorDyn's interface failed.
+    /// A call to MoorDyn's interface failed.
     MoorDyn(moorline_system::Failure),
     /// The work was abandoned.
     Interrupted,
 }
 
 impl Failure {
-    /// A mistake at a key path of a scene that is no text.
+    /// Returns a mistake at a key path of a scene without text.
     pub(crate) fn of_key(at: &str, problem: String) -> Failure {
         Failure::Scene(vec![SceneError::new(at, problem)])
     }
 
-    /// A wrong argument.
+    /// Returns the failure for a wrong argument.
     pub(crate) fn of_argument(name: &str, problem: impl Into<String>) -> Failure {
         Failure::Input(name.to_string(), problem.into())
     }
 
-    /// A mistake in a scene that shows only when it is made discrete.
+    /// Returns a mistake that is found only when the scene is discretised.
     pub(crate) fn of_scene(mistake: SceneError, loaded: &LoadedScene) -> Failure {
         let mistake = loaded.locate(mistake);
         match mistake.span {
@@ -60,7 +60,7 @@ impl Failure {
         }
     }
 
-    /// A simulation that cannot be built.
+    /// Returns the failure of a simulation that cannot be built.
     pub(crate) fn of_simulation(error: simulation::Error, loaded: &LoadedScene) -> Failure {
         match error {
             simulation::Error::Scene(mistake) => Failure::of_scene(mistake, loaded),
@@ -68,7 +68,7 @@ impl Failure {
         }
     }
 
-    /// An FMU that was not written to a file.
+    /// Returns the failure of an FMU that was not written to a file.
     pub(crate) fn of_package(error: PackageError, loaded: &LoadedScene, target: String) -> Failure {
         match error {
             PackageError::Scene(mistake) => Failure::of_scene(mistake, loaded),
@@ -76,7 +76,7 @@ impl Failure {
         }
     }
 
-    /// Class and message of the exception.
+    /// Returns the class and message of the exception.
     fn class_and_message(&self) -> (&'static str, String) {
         match self {
             Failure::Load(error) if error.mistakes().len() > 1 => ("SceneError", error.list()),
@@ -122,7 +122,7 @@ impl Failure {
         }
     }
 
-    /// The exception, to be raised or returned.
+    /// Returns the exception, to be raised or returned.
     pub(crate) fn raised(&self, py: Python<'_>) -> PyErr {
         if let Failure::MoorDyn(failure) = self
             && failure.code == Code::NotImplemented
@@ -140,7 +140,7 @@ impl Failure {
     }
 }
 
-/// Class of the exception for a code of MoorDyn's interface.
+/// Returns the class of the exception for a code of MoorDyn's interface.
 fn class_of(code: Code) -> &'static str {
     match code {
         Code::InvalidInputFile => "SceneError",
@@ -169,7 +169,7 @@ impl From<StepError> for Failure {
     }
 }
 
-/// Place, problem, line and column of the first mistake, and a list of those of all.
+/// Sets place, problem, line and column of the first mistake, and a list with those of all mistakes.
 fn set_mistakes(mistakes: &[SceneError], text: Option<&str>, facts: &Bound<'_, PyDict>) -> PyResult<()> {
     let list = PyList::empty(facts.py());
     for mistake in mistakes {
@@ -184,7 +184,7 @@ fn set_mistakes(mistakes: &[SceneError], text: Option<&str>, facts: &Bound<'_, P
     facts.set_item("mistakes", list)
 }
 
-/// Message without the remedy behind its last semicolon, and the remedy.
+/// Splits a message at its first semicolon into the problem and the advice.
 fn split_advice(message: &str) -> (&str, Option<&str>) {
     match message.split_once("; ") {
         Some((problem, advice)) => (problem, Some(advice)),

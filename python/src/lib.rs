@@ -1,15 +1,15 @@
-//! The extension module `moorline._moorline`: the interface from Python to the library. Nothing is computed here.
+//! Extension module `moorline._moorline`: the Python interface of the library. It contains no computations.
 //!
 //! | module | content |
 //! |---|---|
 //! | [`scene`] | scenes and decks, statics, modes, FMUs |
-//! | [`simulation`] | a simulation that Python steps, and its saved state |
-//! | [`moordyn`] | a mooring by MoorDyn's interface |
+//! | [`simulation`] | simulation stepped from Python, and its saved state |
+//! | [`moordyn`] | mooring with MoorDyn's interface |
 //! | [`runs`] | runs of a scene's own motion, one or many |
 //! | [`sweep`] | load cases |
-//! | [`motion`], [`parameters`] | columns of a motion, values of parameters |
-//! | [`aside`] | work on another thread while this one listens for Ctrl-C |
-//! | [`convert`] | values of Python from and to those of TOML and JSON |
+//! | [`motion`], [`parameters`] | motion from columns, values of parameters |
+//! | [`aside`] | work on another thread while the Python thread checks for Ctrl-C |
+//! | [`convert`] | Python values to TOML, and JSON to Python values |
 //! | [`errors`] | errors as exceptions |
 //!
 //! The classes and functions that users import are described in `package/moorline/_moorline.pyi`.
@@ -32,13 +32,13 @@ use std::path::{Path, PathBuf};
 use moorline_cli::Library;
 use pyo3::prelude::*;
 
-/// Folder of the package, which holds the FMU libraries.
+/// Returns the folder of the package, which contains the FMU libraries.
 fn package_folder(py: Python<'_>) -> PyResult<PathBuf> {
     let file: PathBuf = py.import("moorline")?.getattr("__file__")?.extract()?;
     Ok(file.parent().unwrap_or(Path::new(".")).to_path_buf())
 }
 
-/// Runs the program `moorline` with its arguments, of which the first is its name, and returns the exit code.
+/// Runs the program `moorline` with its arguments, the first of which is its name, and returns the exit code.
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
     let folder = package_folder(py)?;

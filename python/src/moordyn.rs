@@ -1,4 +1,4 @@
-//! A mooring as scripts of MoorDyn's Python package see it: `moorline_system`, whose objects count from 0 in the deck's order, as a class.
+//! Mooring for scripts that use MoorDyn's Python package: a class around `moorline_system`, whose objects count from 0 in the deck's order.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -13,7 +13,7 @@ use pyo3::types::PyBytes;
 
 use crate::errors::Failure;
 
-/// Quantities of nodes by their names in Python.
+/// Nodal quantities by their names in Python.
 const QUANTITIES: [(&str, Quantity); 9] = [
     ("position", Quantity::Position),
     ("velocity", Quantity::Velocity),
@@ -26,7 +26,7 @@ const QUANTITIES: [(&str, Quantity); 9] = [
     ("seabed", Quantity::Seabed),
 ];
 
-/// Value of an object.
+/// Value of a property of an object.
 #[derive(IntoPyObject)]
 pub(crate) enum Value {
     Flag(bool),
@@ -51,10 +51,10 @@ fn unknown(what: &str) -> moorline_system::Failure {
     moorline_system::Failure::value(format!("there is no quantity {what:?}"))
 }
 
-/// A mooring by MoorDyn's interface, read from a deck.
+/// A mooring with MoorDyn's interface, read from a deck.
 #[pyclass(frozen, module = "moorline")]
 pub(crate) struct MoorDyn {
-    /// None once it is closed.
+    /// `None` after `close`.
     system: Mutex<Option<System>>,
 }
 
@@ -79,17 +79,17 @@ impl MoorDyn {
         })
     }
 
-    /// Ends its use: every later call is refused.
+    /// Closes the system: all later calls are refused.
     fn close(&self) {
         *self.system.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 
-    /// Number of coupled degrees of freedom.
+    /// Returns the number of coupled degrees of freedom.
     fn degrees_of_freedom(&self) -> Result<usize, Failure> {
         self.call(|system| Ok(system.deck.degrees_of_freedom()))
     }
 
-    /// Numbers of bodies, rods, points and lines.
+    /// Returns the numbers of bodies, rods, points and lines.
     fn counts(&self) -> Result<[usize; 4], Failure> {
         self.call(|system| {
             let lists = &system.deck.lists;
@@ -102,7 +102,7 @@ impl MoorDyn {
         })
     }
 
-    /// Least levels of the messages that the console, and the file, take.
+    /// Sets the lowest levels of messages written to the console and to the file.
     #[pyo3(signature = (*, console=None, file=None))]
     fn set_levels(&self, console: Option<i32>, file: Option<i32>) -> Result<(), Failure> {
         self.call(|system| {
@@ -115,12 +115,12 @@ impl MoorDyn {
         })
     }
 
-    /// Writes messages to a file too.
+    /// Writes messages to a file as well.
     fn set_log_file(&self, path: PathBuf) -> Result<(), Failure> {
         self.call(|system| system.log.set_file(&path))
     }
 
-    /// Writes a message of a level.
+    /// Writes a message at a level.
     fn write_log(&self, level: i32, message: &str) -> Result<(), Failure> {
         self.call(|system| {
             system.log.write(level, message);
@@ -128,13 +128,13 @@ impl MoorDyn {
         })
     }
 
-    /// Starts at coupled positions [m, rad] with velocities [m/s, rad/s]: in static equilibrium, or on catenaries.
+    /// Starts at coupled positions [m, rad] with velocities [m/s, rad/s]: in static equilibrium, or on catenaries if `is_approximate`.
     #[pyo3(signature = (x, v, is_approximate=false))]
     fn start(&self, py: Python<'_>, x: Vec<f64>, v: Vec<f64>, is_approximate: bool) -> Result<(), Failure> {
         py.detach(|| self.call(|system| system.start(&x, &v, is_approximate)))
     }
 
-    /// Steps by dt [s] from time t [s], and returns the forces at the end [N, N m].
+    /// Steps by dt [s] from time t [s] and returns the forces at the end of the step [N, N m].
     fn step(&self, py: Python<'_>, x: Vec<f64>, v: Vec<f64>, t: f64, dt: f64) -> Result<Vec<f64>, Failure> {
         py.detach(|| {
             self.call(|system| {
@@ -146,12 +146,12 @@ impl MoorDyn {
         })
     }
 
-    /// Internal step [s], Courant number [-] and time scheme, as the deck or the script gives them.
+    /// Returns the internal time step [s], the Courant number [-] and the time scheme, as set by the deck or the script.
     fn scheme(&self) -> Result<(f64, f64, String), Failure> {
         self.call(|system| Ok((system.dt, system.cfl, system.scheme.clone())))
     }
 
-    /// Sets the upper limit of the internal step [s], the Courant number [-] or the time scheme; nothing follows from the last two.
+    /// Sets the upper limit of the internal time step [s], the Courant number [-] or the time scheme; the last two have no effect.
     #[pyo3(signature = (*, dt=None, cfl=None, name=None))]
     fn set_scheme(&self, dt: Option<f64>, cfl: Option<f64>, name: Option<&str>) -> Result<(), Failure> {
         self.call(|system| {
@@ -161,14 +161,14 @@ impl MoorDyn {
         })
     }
 
-    /// The state as bytes.
+    /// Returns the state as bytes.
     fn to_bytes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>, Failure> {
         let words = self.call(|system| system.serialize())?;
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Goes back to a state.
+    /// Restores a state.
     fn restore(&self, data: &[u8]) -> Result<(), Failure> {
         let (words, _) = data.as_chunks();
         let words: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
@@ -180,7 +180,7 @@ impl MoorDyn {
         self.call(|system| system.save(&path))
     }
 
-    /// Goes back to the state of a file.
+    /// Restores the state from a file.
     fn load(&self, path: PathBuf) -> Result<(), Failure> {
         self.call(|system| system.load(&path))
     }
@@ -191,12 +191,12 @@ impl MoorDyn {
         self.call(|system| system.save_vtk(&path, line))
     }
 
-    /// Breaks a line off a point.
+    /// Detaches a line from a point.
     fn break_line(&self, point: usize, line: usize) -> Result<(), Failure> {
         self.call(|system| system.break_line(point, line))
     }
 
-    /// Velocity [m/s] and acceleration [m/s²] of the water at a place, and elevation of the surface there [m].
+    /// Returns velocity [m/s] and acceleration [m/s²] of the water at a position, and the surface elevation there [m].
     fn flow(&self, place: [f64; 3]) -> Result<([f64; 3], [f64; 3], f64), Failure> {
         self.call(|system| {
             let flow = system.flow(place)?;
@@ -204,17 +204,17 @@ impl MoorDyn {
         })
     }
 
-    /// Depth of the seabed at a place [m].
+    /// Returns the depth of the seabed at a horizontal position [m].
     fn depth_at(&self, x: f64, y: f64) -> Result<f64, Failure> {
         self.call(|system| system.depth_at(x, y))
     }
 
-    /// Mean and least depth of the seabed [m].
+    /// Returns the mean and least depth of the seabed [m].
     fn depths(&self) -> Result<[f64; 2], Failure> {
         self.call(|system| system.depths())
     }
 
-    /// A value of a body, by name.
+    /// Returns a property of a body, by name.
     fn body(&self, index: usize, what: &str) -> Result<Value, Failure> {
         self.call(|system| {
             Ok(match what {
@@ -229,7 +229,7 @@ impl MoorDyn {
         })
     }
 
-    /// A value of a rod, or of one of its nodes, by name.
+    /// Returns a property of a rod, or of one of its nodes, by name.
     #[pyo3(signature = (index, what, node=0))]
     fn rod(&self, index: usize, what: &str, node: usize) -> Result<Value, Failure> {
         self.call(|system| {
@@ -248,7 +248,7 @@ impl MoorDyn {
         })
     }
 
-    /// A value of a point, by name; `ends` are the lines there, each with its end: 0 is A, 1 is B.
+    /// Returns a property of a point, by name; `ends` are the attached lines, each with its end at the point: 0 for A, 1 for B.
     fn point(&self, index: usize, what: &str) -> Result<Value, Failure> {
         self.call(|system| {
             Ok(match what {
@@ -264,7 +264,7 @@ impl MoorDyn {
         })
     }
 
-    /// A value of a line, or of one of its nodes, by name.
+    /// Returns a property of a line, or of one of its nodes, by name.
     #[pyo3(signature = (index, what, node=0))]
     fn line(&self, index: usize, what: &str, node: usize) -> Result<Value, Failure> {
         let quantity = QUANTITIES.iter().find(|(name, _)| *name == what);
@@ -290,7 +290,7 @@ impl MoorDyn {
         })
     }
 
-    /// Sets the unstretched length [m] or the axial stiffness [N] of a line, before the start only.
+    /// Sets the unstretched length [m] or the axial stiffness [N] of a line; only before the start.
     #[pyo3(signature = (index, *, unstretched_length=None, constant_stiffness=None))]
     fn set_line(
         &self,

@@ -1,4 +1,4 @@
-//! The motion of a scene from columns in memory, which are named as in a motion file.
+//! Motion of a scene from columns in memory, which are named as in a motion file.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,16 @@ use moorline::scene::{MotionPath, MotionRow, Scene};
 use crate::errors::Failure;
 use crate::parameters;
 
-/// Axes of a body, by the last part of a column's name.
+/// Axes of a body, as in the last part of a column's name.
 const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 /// Column of the time [s].
 const TIME: &str = "time";
 
-/// Scene with the motion of columns such as `time` and `fairlead.x`; it replaces the motions that the scene has for these bodies.
+/// Returns the scene with the motion in columns such as `time` and `fairlead.x`, which replaces the scene's motions of these bodies.
 /// The run lasts until `duration` [s], or until the last time.
 ///
 /// # Errors
-/// The column, the mistake and a correction.
+/// The failure names the column, the mistake and a correction.
 pub(crate) fn with_columns(
     mut scene: Scene,
     columns: &[(String, Vec<f64>)],

@@ -1,4 +1,4 @@
-//! Parameters of a scene by the names of the FMU.
+//! Parameters of a scene, with the names of the FMU.
 
 use moorline::interface::{Binding, Interface, Layout, Variable};
 use moorline::model::Model;
@@ -7,14 +7,14 @@ use moorline::scene::{LoadedScene, Scene};
 
 use crate::errors::Failure;
 
-/// The table of inputs, outputs and parameters of a scene.
+/// Returns the table of inputs, outputs and parameters of a scene.
 pub(crate) fn interface(loaded: &LoadedScene) -> Result<Interface, Failure> {
     let scene = &loaded.scene;
     let made = Model::new(scene).and_then(|model| Interface::new(scene, &model, Layout::Scalars));
     made.map_err(|mistake| Failure::of_scene(mistake, loaded))
 }
 
-/// Names and values of all parameters.
+/// Returns names and values of all parameters.
 pub(crate) fn values(loaded: &LoadedScene) -> Result<Vec<(String, f64)>, Failure> {
     let interface = interface(loaded)?;
     let value = |variable: &Variable| match &variable.binding {
@@ -24,10 +24,10 @@ pub(crate) fn values(loaded: &LoadedScene) -> Result<Vec<(String, f64)>, Failure
     Ok(interface.variables().iter().filter_map(value).collect())
 }
 
-/// The scene with other values of some parameters.
+/// Returns the scene with other values of some parameters.
 ///
 /// # Errors
-/// A name that is no parameter, or a value that the scene cannot have.
+/// A name is not that of a parameter, or a value is not valid in the scene.
 pub(crate) fn with_values(loaded: &LoadedScene, values: &[(String, f64)]) -> Result<Scene, Failure> {
     let mut scene = loaded.scene.clone();
     let interface = interface(loaded)?;
@@ -57,7 +57,7 @@ pub(crate) fn with_values(loaded: &LoadedScene, values: &[(String, f64)]) -> Res
     check(scene)
 }
 
-/// Refuses a scene that a change has made invalid.
+/// Refuses a scene that a modification has made invalid.
 pub(crate) fn check(scene: Scene) -> Result<Scene, Failure> {
     let mistakes = scene.mistakes();
     match mistakes.is_empty() {
@@ -66,7 +66,7 @@ pub(crate) fn check(scene: Scene) -> Result<Scene, Failure> {
     }
 }
 
-/// Refusal of a name that is none of a kind.
+/// Returns the failure for an unknown name, with a suggestion.
 pub(crate) fn unknown<'n>(name: &str, kind: &str, known: impl Iterator<Item = &'n str> + Clone) -> Failure {
     let suggestion = match nearest(name, known.clone()) {
         Some(near) => format!("did you mean `{near}`?"),

@@ -1,4 +1,4 @@
-//! Runs of a scene with its own motion: one, or many on all cores. The rows are those of `moorline run`.
+//! Runs of scenes with their own motion: one, or many on all cores. The rows are those of `moorline run`.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,12 +20,12 @@ use crate::errors::Failure;
 use crate::parameters;
 use crate::scene::Scene;
 
-/// Parts of a run to be kept.
+/// Parts of a run to be stored.
 #[derive(Debug, Clone, Default)]
 struct Kept {
-    /// Columns in addition to the time; all where absent.
+    /// Columns in addition to the time; `None` stores all.
     columns: Option<Vec<String>>,
-    /// Interval of shapes [s]; none where absent.
+    /// Interval of line shapes [s]; `None` stores no shapes.
     shapes: Option<f64>,
 }
 
@@ -33,22 +33,22 @@ struct Kept {
 #[derive(Debug, Default)]
 struct Rows {
     columns: Vec<(Column, Vec<f64>)>,
-    /// Names of the lines and their shapes in time.
+    /// Names of the lines and their shapes over time.
     shapes: Option<(Vec<String>, Vec<Frame>)>,
     notes: Vec<String>,
     substeps: u64,
     wall: Duration,
 }
 
-/// A run between two rows.
+/// Run between two rows.
 struct Run<'r> {
     loaded: &'r LoadedScene,
     times: Times,
     simulation: Simulation,
     recorder: Recorder,
-    /// Places of the kept columns in a row.
+    /// Indices of the stored columns in a row.
     kept: Vec<usize>,
-    /// Rows from one shape to the next [-].
+    /// Number of rows from one shape to the next [-].
     stride: Option<usize>,
     watch: Watch,
     rows: Rows,
@@ -121,7 +121,7 @@ impl<'r> Run<'r> {
         Ok(())
     }
 
-    /// Adds the row of the present state.
+    /// Adds a row with the current state.
     fn add(&mut self, index: usize) -> Result<(), Failure> {
         let now = self.times.at(index);
         let no_result = |problem| Failure::Result("the run".to_string(), problem);
@@ -143,7 +143,7 @@ impl Rows {
         self.notes.extend(notes);
     }
 
-    /// The table of `moorline.results`.
+    /// Returns the table of `moorline.results`.
     fn table<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (columns, units, descriptions) = (PyDict::new(py), PyDict::new(py), PyDict::new(py));
         for (column, values) in self.columns {
@@ -179,7 +179,7 @@ impl Rows {
 
 type Shapes<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, numpy::PyArray2<f64>>);
 
-/// Positions and tensions of the nodes of a line in time; nodes that a winch has not paid out are at the winch.
+/// Returns positions and tensions of the nodes of a line over time; nodes that a winch has not paid out are at the winch.
 fn shapes_of<'py>(py: Python<'py>, frames: &[Frame], line: usize) -> PyResult<Shapes<'py>> {
     let nodes = frames
         .iter()
@@ -203,7 +203,7 @@ fn shapes_of<'py>(py: Python<'py>, frames: &[Frame], line: usize) -> PyResult<Sh
     ))
 }
 
-/// Places of columns by name, after that of the time.
+/// Returns the indices of the named columns, after the index of the time.
 fn places(all: &[Column], names: &[String]) -> Result<Vec<usize>, Failure> {
     let known = all.iter().map(|column| column.name.as_str());
     let place = |name: &String| {
@@ -220,10 +220,10 @@ fn places(all: &[Column], names: &[String]) -> Result<Vec<usize>, Failure> {
     Ok(places)
 }
 
-/// End of a run.
+/// Result of a run.
 #[derive(Debug)]
 struct Outcome {
-    /// Rows up to the end; none where the run did not start.
+    /// Rows up to the end; `None` if the run did not start.
     rows: Option<Rows>,
     failure: Option<Failure>,
 }
@@ -236,7 +236,7 @@ impl Outcome {
         }
     }
 
-    /// The table, or an exception with the table up to the failure.
+    /// Returns the table, or an exception that contains the table up to the failure.
     fn into_python(self, py: Python<'_>) -> PyResult<Result<Bound<'_, PyAny>, PyErr>> {
         let table = self.rows.map(|rows| rows.table(py)).transpose()?;
         let table = table.unwrap_or_else(|| py.None().into_bound(py));
@@ -262,7 +262,7 @@ fn run_one(loaded: &LoadedScene, kept: &Kept, control: &Control) -> Outcome {
     }
 }
 
-/// Steps of a run [-].
+/// Number of steps of a run [-].
 fn count(loaded: &LoadedScene) -> usize {
     let output = &loaded.scene.output;
     Times::new(output.duration, output.interval).count
@@ -321,7 +321,7 @@ pub(crate) fn batch<'py>(
     Ok(list)
 }
 
-/// Runs of all scenes, in their order: each thread takes the next scene when it is done with one.
+/// Runs all scenes and returns the results in the same order: an idle thread takes the next scene.
 fn run_all(scenes: &[Scene], kept: &Kept, threads: usize, control: &Control) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
     let done: Vec<Mutex<Option<Outcome>>> = scenes.iter().map(|_| Mutex::default()).collect();
@@ -352,7 +352,7 @@ fn run_all(scenes: &[Scene], kept: &Kept, threads: usize, control: &Control) -> 
         .collect()
 }
 
-/// The scene on one thread: the cores are shared among the cases. Results do not depend on it.
+/// Returns the scene set to one thread, since the cores are shared among the scenes. Results do not depend on it.
 fn alone(loaded: Arc<LoadedScene>) -> Arc<LoadedScene> {
     let mut alone = (*loaded).clone();
     alone.scene.solver.threads = Threads::Number(1);

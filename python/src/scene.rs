@@ -1,4 +1,4 @@
-//! Scenes: reading, changing, statics, modes, FMUs.
+//! Scenes: reading, modification, statics, modes, FMUs.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,15 +21,15 @@ use crate::convert;
 use crate::errors::Failure;
 use crate::{motion, package_folder, parameters};
 
-/// Name of a text in messages.
+/// Name of a scene text in messages.
 const TEXT: &str = "<text>";
 
-/// A mooring as the user described it. A scene does not change: methods return other scenes.
+/// A mooring as described by the user. A scene does not change: methods return new scenes.
 #[pyclass(frozen, module = "moorline")]
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
     pub(crate) loaded: Arc<LoadedScene>,
-    /// The same with its discretisation, once it has been selected.
+    /// The scene with its discretisation, once selected.
     discretised: Arc<OnceLock<Arc<LoadedScene>>>,
 }
 
@@ -43,13 +43,13 @@ impl From<LoadedScene> for Scene {
 }
 
 impl Scene {
-    /// Reads a text whose files stand relative to a folder.
+    /// Reads a text; its file names are relative to a folder.
     fn of_text(text: String, folder: Option<PathBuf>) -> Result<Scene, Failure> {
         let path = folder.unwrap_or_default().join(TEXT);
         Ok(load_text(&path, text)?.into())
     }
 
-    /// A scene that has its discretisation.
+    /// Returns a scene that already has its discretisation.
     pub(crate) fn of_discretised(loaded: Arc<LoadedScene>) -> Scene {
         Scene {
             loaded: loaded.clone(),
@@ -57,7 +57,7 @@ impl Scene {
         }
     }
 
-    /// The same description with other content, which is no longer that of the text.
+    /// Returns a copy with other content, which no longer corresponds to the text.
     fn with(&self, scene: moorline::scene::Scene) -> Scene {
         let mut changed = (*self.loaded).clone();
         let notes = changed.change(scene);
@@ -65,7 +65,7 @@ impl Scene {
         changed.into()
     }
 
-    /// The scene with elements, integrator and step, selected on first use.
+    /// Returns the scene with elements, integrator and time step, selected on first use.
     pub(crate) fn discretise(&self) -> Arc<LoadedScene> {
         let select = || match discretisation::select(&self.loaded.scene) {
             None => self.loaded.clone(),
@@ -82,7 +82,7 @@ impl Scene {
         self.discretised.get_or_init(select).clone()
     }
 
-    /// The scene at rest: an equilibrium is that of the sea without waves.
+    /// Returns the scene at rest and its simulation: the equilibrium is that in still water, without waves.
     fn at_rest(&self, elements: bool) -> Result<(LoadedScene, Simulation), Failure> {
         let mut loaded = (*self.loaded).clone();
         let scene = &mut loaded.scene;
@@ -101,13 +101,13 @@ impl Scene {
     }
 }
 
-/// Calls a function of `moorline.results` with JSON.
+/// Calls a function of `moorline.results` with a JSON value.
 fn result<'py>(py: Python<'py>, function: &str, value: &serde_json::Value) -> PyResult<Bound<'py, PyAny>> {
     let module = py.import("moorline.results")?;
     module.getattr(function)?.call1((convert::json(py, value)?,))
 }
 
-/// Columns of a DataFrame or a dict of arrays, by `moorline.motion`.
+/// Converts a DataFrame or a dict of arrays to columns, by `moorline.motion`.
 fn columns(motion: &Bound<'_, PyAny>) -> PyResult<Vec<(String, Vec<f64>)>> {
     let columns = motion
         .py()
@@ -124,8 +124,8 @@ fn columns(motion: &Bound<'_, PyAny>) -> PyResult<Vec<(String, Vec<f64>)>> {
 
 #[pymethods]
 impl Scene {
-    /// Reads a scene, or a deck of MoorDyn or MAP++. For a deck: depth of the water [m]; name of the one vessel that its coupled
-    /// points ride on; reference positions of vessels by name [m].
+    /// Reads a scene, or a deck of MoorDyn or MAP++. For a deck: depth of the water [m]; name of the only vessel, which carries its coupled
+    /// points; reference positions of vessels by name [m].
     #[staticmethod]
     #[pyo3(signature = (path, *, depth=None, vessel=None, positions=None))]
     fn load(
@@ -142,14 +142,14 @@ impl Scene {
         Ok(load_with(&path, &supplement).map_err(Failure::Load)?.into())
     }
 
-    /// Reads a scene from TOML. The files that it names stand relative to the folder.
+    /// Reads a scene from TOML. File names in it are relative to the folder.
     #[staticmethod]
     #[pyo3(signature = (text, *, folder=None))]
     fn from_toml(text: String, folder: Option<PathBuf>) -> PyResult<Scene> {
         Ok(Scene::of_text(text, folder)?)
     }
 
-    /// Reads a scene from a dict with the keys of the scene format. Arrays and numbers of numpy are lists and numbers.
+    /// Reads a scene from a dict with the keys of the scene format. Numpy arrays and numbers are accepted as lists and numbers.
     #[staticmethod]
     #[pyo3(signature = (scene, *, folder=None))]
     fn from_dict(scene: &Bound<'_, PyDict>, folder: Option<PathBuf>) -> PyResult<Scene> {
@@ -158,12 +158,12 @@ impl Scene {
         Ok(Scene::of_text(text, folder).map_err(without_lines)?)
     }
 
-    /// The scene as TOML that needs no other file and is read back to the same numbers, bit for bit.
+    /// Returns the scene as TOML that refers to no other file and is read back to the same numbers, bit for bit.
     fn to_toml(&self) -> String {
         self.loaded.scene.to_toml()
     }
 
-    /// The scene as a dict, with the keys of `to_toml`.
+    /// Returns the scene as a dict, with the keys of `to_toml`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("tomllib")?.getattr("loads")?.call1((self.to_toml(),))
     }
@@ -195,13 +195,13 @@ impl Scene {
         vessels.map(|vessel| vessel.name.as_str()).collect()
     }
 
-    /// Remarks on a scene that can be used as it is.
+    /// Remarks on a valid scene.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.loaded.notes.iter().map(ToString::to_string).collect()
     }
 
-    /// What the scene models and what it does not, in sentences.
+    /// Describes in sentences which effects the scene models and which it does not.
     fn in_words(&self) -> String {
         self.loaded.scene.in_words()
     }
@@ -212,7 +212,7 @@ impl Scene {
         Ok(parameters::values(&self.loaded)?.into_iter().collect())
     }
 
-    /// The scene with other values of some parameters, such as `chain.drag_normal`.
+    /// Returns the scene with other values of some parameters, such as `chain.drag_normal`.
     fn with_parameters(&self, values: &Bound<'_, PyDict>) -> PyResult<Scene> {
         let values = values
             .iter()
@@ -221,7 +221,8 @@ impl Scene {
         Ok(self.with(parameters::with_values(&self.loaded, &values)?))
     }
 
-    /// The scene with the motion of columns, which lasts as long as they do; with another duration [s] or interval of rows [s].
+    /// Returns the scene with the motion in columns, whose length sets the duration unless `duration` [s] is given; `interval` is the output
+    /// interval [s].
     #[pyo3(signature = (motion=None, *, duration=None, interval=None))]
     fn with_motion(
         &self,
@@ -241,14 +242,15 @@ impl Scene {
         Ok(self.with(scene))
     }
 
-    /// The scene with elements, integrator and step. Where they are left open, trials of about a second select them.
+    /// Returns the scene with its discretisation: elements, integrator and time step. Values that the scene leaves open are selected by
+    /// convergence trials, which take about a second.
     fn discretised(&self, py: Python<'_>) -> PyResult<Scene> {
         let scene = self.clone();
         let loaded = aside(py, None, move |_| scene.discretise())?;
         Ok(Scene::of_discretised(loaded))
     }
 
-    /// Static equilibrium at rest, without waves.
+    /// Returns the static equilibrium without waves.
     fn statics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let scene = self.clone();
         let solved = aside(py, None, move |_| {
@@ -259,7 +261,7 @@ impl Scene {
         result(py, "statics", &solved??)
     }
 
-    /// The lowest natural modes about the static equilibrium.
+    /// Returns the lowest natural modes about the static equilibrium.
     #[pyo3(signature = (count=10))]
     fn modes<'py>(&self, py: Python<'py>, count: usize) -> PyResult<Bound<'py, PyAny>> {
         let scene = self.clone();
@@ -288,14 +290,14 @@ impl Scene {
         format!("<moorline.Scene {:?}: {lines}, {points}, {vessels}>", scene.title)
     }
 
-    /// For pickle: the scene as TOML that needs no other file.
+    /// Supports pickle: the scene as TOML that refers to no other file.
     fn __reduce__(slf: &Bound<'_, Scene>) -> PyResult<(Py<PyAny>, (String,))> {
         let read = slf.get_type().getattr("from_toml")?;
         Ok((read.unbind(), (slf.get().to_toml(),)))
     }
 }
 
-/// Mistakes in a dict have a key path; lines of the text that was made of it mean nothing.
+/// Removes line numbers from mistakes in a dict: they would refer to an intermediate text. The key path remains.
 fn without_lines(failure: Failure) -> Failure {
     match failure {
         Failure::Load(LoadError::Scene { mut mistakes, .. }) => {
@@ -306,7 +308,7 @@ fn without_lines(failure: Failure) -> Failure {
     }
 }
 
-/// Packages a scene as an FMU of FMI 2.0 or 3.0.
+/// Packages a scene as an FMU for FMI 2.0 or 3.0.
 #[pyfunction]
 #[pyo3(signature = (scene, path, fmi=2))]
 pub(crate) fn fmu(py: Python<'_>, scene: &Scene, path: PathBuf, fmi: u8) -> PyResult<()> {
@@ -328,7 +330,7 @@ fn package(scene: &Scene, target: &Path, version: FmiVersion, folder: &Path) -> 
     let name = target.display().to_string();
     check_file(target).map_err(|error| Failure::Output(name.clone(), error.to_string()))?;
     let loaded = scene.discretise();
-    // A scene without an equilibrium would make an FMU that no host can start.
+    // An FMU of a scene without an equilibrium could not be started by any host.
     Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?;
     let binaries = Library::In(folder).find();
     let written =

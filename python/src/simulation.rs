@@ -1,4 +1,4 @@
-//! A simulation that Python steps, and its saved state.
+//! Simulation stepped from Python, and its saved state.
 
 use std::collections::HashMap;
 use std::ffi::CString;
@@ -22,14 +22,14 @@ use crate::errors::Failure;
 use crate::parameters;
 use crate::scene::Scene;
 
-/// Time [s] and inputs at which the statics were solved: choices that are made there, such as step limits, are not part of a snapshot.
+/// Time [s] and inputs of the static solution. Quantities derived from it, such as step limits, are not part of a snapshot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Start {
     time: f64,
     given: Inputs,
 }
 
-/// Static equilibrium at a start, always from the same first guess.
+/// Solves the static equilibrium of a start, always from the same initial guess.
 fn begin(loaded: &LoadedScene, start: &Start) -> Result<Mooring, Failure> {
     let fail = |error: simulation::Error| Failure::of_simulation(error, loaded);
     let mut mooring = Mooring::new(&loaded.scene).map_err(fail)?;
@@ -39,7 +39,7 @@ fn begin(loaded: &LoadedScene, start: &Start) -> Result<Mooring, Failure> {
 }
 
 const MARK: &[u8] = concat!("moorline python 2 ", env!("CARGO_PKG_VERSION"), "\n").as_bytes();
-/// Bytes of a check sum.
+/// Length of a check sum [bytes].
 const SUM: usize = 32;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,19 +51,19 @@ struct Saved {
     snapshot: simulation::Snapshot,
 }
 
-/// All that changes in a simulation.
+/// Saved state: everything that changes in a simulation.
 #[pyclass(frozen, module = "moorline")]
 #[derive(Debug, Clone)]
 pub(crate) struct State(Arc<Saved>);
 
 #[pymethods]
 impl State {
-    /// The state as bytes, which this version of moorline reads.
+    /// Returns the state as bytes, which only this version of moorline reads.
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &sealed::seal(MARK, &*self.0))
     }
 
-    /// Reads the bytes of `to_bytes`.
+    /// Reads bytes written by `to_bytes`.
     #[staticmethod]
     fn from_bytes(data: &[u8]) -> PyResult<State> {
         let saved = sealed::open(MARK, data).map_err(|reason| {
@@ -76,7 +76,7 @@ impl State {
         Ok(State(Arc::new(saved)))
     }
 
-    /// For pickle.
+    /// Supports pickle.
     fn __reduce__<'py>(slf: &Bound<'py, State>) -> PyResult<(Py<PyAny>, (Bound<'py, PyBytes>,))> {
         let read = slf.get_type().getattr("from_bytes")?;
         Ok((read.unbind(), (slf.get().to_bytes(slf.py()),)))
@@ -89,9 +89,9 @@ struct Table {
     loaded: Arc<LoadedScene>,
     interface: Interface,
     rows: HashMap<String, usize>,
-    /// Rows of the inputs in the order of an array.
+    /// Rows of the inputs, in the order of an input array.
     inputs: Vec<usize>,
-    /// Rows of the outputs in the order of an array.
+    /// Rows of the outputs, in the order of an output array.
     outputs: Vec<usize>,
     /// SHA-256 of the scene.
     sum: [u8; SUM],
@@ -109,7 +109,7 @@ impl Table {
         };
         let is_input = |variable: &Variable| match variable.binding {
             Binding::Velocity { .. } => velocities,
-            Binding::Flow { .. } => false, // `set_flow` gives it
+            Binding::Flow { .. } => false, // set by `set_flow`
             _ => variable.causality == Causality::Input,
         };
         let names = interface.variables().iter().enumerate();
@@ -133,7 +133,7 @@ impl Table {
         rows.iter().map(|&row| self.variable(row).name.as_str()).collect()
     }
 
-    /// The input of a name.
+    /// Returns the input with a name.
     fn input(&self, name: &str) -> Result<&Variable, Failure> {
         let variable = self.rows.get(name).map(|&row| self.variable(row));
         let is_input = |variable: &&Variable| variable.causality == Causality::Input;
@@ -149,7 +149,7 @@ impl Table {
         })
     }
 
-    /// The variable of a name.
+    /// Returns the variable with a name.
     fn named(&self, name: &str) -> Result<&Variable, Failure> {
         let row = self.rows.get(name).map(|&row| self.variable(row));
         let names = || {
@@ -161,7 +161,7 @@ impl Table {
         row.ok_or_else(|| parameters::unknown(name, "variable", names()))
     }
 
-    /// The variables of names.
+    /// Returns the variables with these names.
     fn all_named(&self, names: &[String]) -> Result<Vec<&Variable>, Failure> {
         names.iter().map(|name| self.named(name)).collect()
     }
@@ -184,7 +184,7 @@ impl Table {
         Ok(())
     }
 
-    /// Sets the inputs of Python: nothing, an array in the order of the inputs, or a dict.
+    /// Sets the inputs from Python: None, an array in the order of the inputs, or a dict.
     fn set_all(&self, given: &mut Inputs, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
         if inputs.is_none() {
             return Ok(());
@@ -242,7 +242,7 @@ fn check(variable: &Variable, value: f64) -> Result<(), Failure> {
     }
 }
 
-/// Copies the vectors of nodes into an array of rows, a new one where none is given.
+/// Copies nodal vectors into the rows of an array; a new array if none is given.
 fn rows<'py>(
     py: Python<'py>,
     nodes: &[Vector3<f64>],
@@ -266,7 +266,7 @@ fn rows<'py>(
     Ok(out)
 }
 
-/// The mooring, which computes forces when they are read and so is for one thread at a time.
+/// Mooring for access by one thread at a time, since reading forces computes them.
 #[derive(Debug)]
 struct Held(Mutex<Mooring>);
 
@@ -292,8 +292,8 @@ impl Clone for Held {
 
 /// A mooring that a host steps in time.
 ///
-/// It starts in static equilibrium at the inputs of the start. Inputs are those at the present time; the path of a fairlead is
-/// continued smoothly from them over the next step.
+/// It starts in static equilibrium with the inputs of the start. Inputs refer to the current time; the path of a fairlead is
+/// extrapolated smoothly from them over the next step.
 #[pyclass(module = "moorline")]
 #[derive(Debug, Clone)]
 pub(crate) struct Simulation {
@@ -315,13 +315,13 @@ fn warn_of(py: Python<'_>, note: &Note) -> PyResult<()> {
 }
 
 impl Simulation {
-    /// Issues Python warnings on the present state, each once.
+    /// Issues Python warnings on the current state, each once.
     fn warn(&mut self, py: Python<'_>) -> PyResult<()> {
         let mut notes = self.watch.look(self.mooring.change()).into_iter();
         notes.try_for_each(|note| warn_of(py, &self.table.loaded.locate_note(note)))
     }
 
-    /// Value of a scalar output now.
+    /// Returns the current value of a scalar output.
     fn output(&self, mooring: &Mooring, variable: &Variable) -> Result<f64, Failure> {
         let mut value = [f64::NAN];
         let read = Interface::read(variable, mooring, &mut value);
@@ -331,7 +331,7 @@ impl Simulation {
         })
     }
 
-    /// A line that takes a flow of the water.
+    /// Returns the index of a line whose water flow the host sets.
     fn line_in_flow(&self, name: &str) -> Result<usize, Failure> {
         let line = Self::line(&self.mooring.read(), name)?;
         match self.given.flow.node_count(line) {
@@ -351,7 +351,7 @@ impl Simulation {
 
 #[pymethods]
 impl Simulation {
-    /// Solves the static equilibrium. With `velocities`, arrays of inputs hold velocities too; otherwise these are derived.
+    /// Solves the static equilibrium. With `velocities`, input arrays include velocities; otherwise velocities are derived.
     #[new]
     #[pyo3(signature = (scene, *, inputs=None, start_time=0.0, velocities=false))]
     fn new(
@@ -394,7 +394,7 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// The scene, with its discretisation.
+    /// The scene with its discretisation.
     #[getter]
     fn scene(&self) -> Scene {
         Scene::of_discretised(self.table.loaded.clone())
@@ -406,19 +406,19 @@ impl Simulation {
         self.mooring.read().time()
     }
 
-    /// Names of the inputs in the order of an array.
+    /// Names of the inputs, in the order of an input array.
     #[getter]
     fn input_names(&self) -> Vec<&str> {
         self.table.names(&self.table.inputs)
     }
 
-    /// Names of the outputs in the order of an array.
+    /// Names of the outputs, in the order of an output array.
     #[getter]
     fn output_names(&self) -> Vec<&str> {
         self.table.names(&self.table.outputs)
     }
 
-    /// Unit of every input, output and parameter.
+    /// Units of all inputs, outputs and parameters, by name.
     #[getter]
     fn units(&self) -> HashMap<&str, &str> {
         let variables = self.table.interface.variables().iter();
@@ -427,8 +427,8 @@ impl Simulation {
             .collect()
     }
 
-    /// Sets inputs, by names or as an array in the order of `input_names`, and steps from the present time to `h` [s] later. An input
-    /// that is not named keeps its value; a velocity of None is derived from the displacements. Likely mistakes are warned of once.
+    /// Sets inputs, by name or as an array in the order of `input_names`, and steps by `h` [s] from the current time. An input
+    /// that is not named keeps its value; a velocity of None is derived from the displacements. Warns once of likely mistakes.
     fn advance(&mut self, py: Python<'_>, inputs: &Bound<'_, PyAny>, h: f64) -> PyResult<()> {
         if !(h.is_finite() && h >= 0.0) {
             return Err(
@@ -473,7 +473,7 @@ impl Simulation {
         })
     }
 
-    /// All outputs in the order of `output_names`; written into `out` where that is given.
+    /// Returns all outputs in the order of `output_names`, in `out` if given.
     #[pyo3(signature = (out=None))]
     fn outputs<'py>(
         &self,
@@ -500,8 +500,8 @@ impl Simulation {
         Ok(out)
     }
 
-    /// Derivatives of outputs by inputs, displacements and velocities at the end of the last step: a row an output, a column an input. The
-    /// scene asks for them with `derivatives = true` in `[output]`.
+    /// Returns the derivatives of outputs with respect to inputs, displacements and velocities, at the end of the last step: one row per output, one
+    /// column per input. Requires `derivatives = true` in `[output]` of the scene.
     fn derivatives<'py>(
         &self,
         py: Python<'py>,
@@ -524,7 +524,7 @@ impl Simulation {
         Ok(matrix)
     }
 
-    /// Rates of outputs in time, per second, at the end of the last step. The scene asks for them with `derivatives = true` in `[output]`.
+    /// Returns the time derivatives of outputs [per second] at the end of the last step. Requires `derivatives = true` in `[output]` of the scene.
     fn rates<'py>(&self, py: Python<'py>, outputs: Vec<String>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let rows = self.table.all_named(&outputs)?;
         let rates = py.detach(|| Interface::rates(&rows, &self.mooring.read()));
@@ -532,7 +532,7 @@ impl Simulation {
         Ok(PyArray1::from_vec(py, rates))
     }
 
-    /// Positions of the nodes of a line from end A to end B [m], a row a node; written into `out` where that is given.
+    /// Returns the positions of the nodes of a line from end A to end B [m], one row per node, in `out` if given.
     #[pyo3(signature = (line, out=None))]
     fn positions<'py>(
         &self,
@@ -545,7 +545,7 @@ impl Simulation {
         rows(py, nodes, out)
     }
 
-    /// Velocities of the nodes of a line from end A to end B [m/s], a row a node; written into `out` where that is given.
+    /// Returns the velocities of the nodes of a line from end A to end B [m/s], one row per node, in `out` if given.
     #[pyo3(signature = (line, out=None))]
     fn velocities<'py>(
         &self,
@@ -558,8 +558,8 @@ impl Simulation {
         rows(py, nodes, out)
     }
 
-    /// Places of the nodes of a line from end A to end B for which the flow of the water is due next [m], a row a node; written into `out` where
-    /// that is given.
+    /// Returns the positions at which the water flow is required next, for the nodes of a line from end A to end B [m], one row per node, in `out`
+    /// if given.
     #[pyo3(signature = (line, out=None))]
     fn flow_places<'py>(
         &self,
@@ -574,7 +574,7 @@ impl Simulation {
         rows(py, &places, out)
     }
 
-    /// Sets velocities [m/s] and accelerations [m/s²] of the water at these places, a row a node, for the coming steps.
+    /// Sets velocities [m/s] and accelerations [m/s²] of the water at these positions, one row per node, for the following steps.
     fn set_flow(
         &mut self,
         line: &str,
@@ -603,7 +603,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Position, velocity and force of a point.
+    /// Returns position, velocity and force of a point.
     fn point<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let mooring = self.mooring.read();
         let points = mooring.model().points.iter().map(|point| point.name.as_str());
@@ -622,7 +622,7 @@ impl Simulation {
             .call1((position, velocity, PyArray1::from_vec(py, force)))
     }
 
-    /// Forces of a line on its supports at end A and end B [N], a row an end.
+    /// Returns the forces of a line on its supports at end A and end B [N], one row per end.
     fn end_forces<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let mooring = self.mooring.read();
         let line = Self::line(&mooring, line)?;
@@ -630,7 +630,7 @@ impl Simulation {
         rows(py, &forces, None)
     }
 
-    /// Effective tensions at the nodes of a line [N]; at the ends the size of the force.
+    /// Returns the effective tensions at the nodes of a line [N]; at the ends, the magnitude of the force.
     fn tensions<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mooring = self.mooring.read();
         Ok(PyArray1::from_slice(
@@ -639,7 +639,8 @@ impl Simulation {
         ))
     }
 
-    /// Tensions of the segments next to the nodes of a line [N]: of one at an end, the mean of two between the ends, as in MoorDyn.
+    /// Returns the segment tensions at the nodes of a line [N]: of the end segment at an end, otherwise the mean of the two adjacent segments,
+    /// as in MoorDyn.
     fn segment_tensions<'py>(&self, py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mooring = self.mooring.read();
         let line = Self::line(&mooring, line)?;
@@ -650,7 +651,7 @@ impl Simulation {
         ))
     }
 
-    /// All that changes. A simulation that is restored to it continues to the same bits.
+    /// Saves the state. A simulation restored to it continues bit for bit.
     fn save(&self) -> State {
         State(Arc::new(Saved {
             scene: self.table.sum,
@@ -660,7 +661,7 @@ impl Simulation {
         }))
     }
 
-    /// Goes back to a saved state, of this or another simulation of the same scene.
+    /// Restores a state saved by this or another simulation of the same scene.
     fn restore(&mut self, py: Python<'_>, state: &State) -> PyResult<()> {
         let saved = state.0.clone();
         if saved.scene != self.table.sum {
@@ -679,7 +680,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// A second simulation in the same state.
+    /// Returns a second simulation in the same state.
     fn copy(&self) -> Simulation {
         self.clone()
     }

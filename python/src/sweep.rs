@@ -1,4 +1,4 @@
-//! Load cases: all on this machine, or one by one for another scheduler.
+//! Load cases: all of them on this machine, or one by one for another scheduler.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -16,7 +16,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::aside::aside;
 use crate::errors::Failure;
 
-/// The cases of a sweep, and once it is opened its folder.
+/// The cases of a sweep, and its folder once opened.
 #[pyclass(frozen, module = "moorline._moorline")]
 #[derive(Debug)]
 pub(crate) struct Sweep {
@@ -25,7 +25,7 @@ pub(crate) struct Sweep {
     sweep: Mutex<Option<moorline_sweep::Sweep>>,
 }
 
-/// A remark on a case.
+/// Text of a note on a case.
 fn of_case(case: &Case, note: impl std::fmt::Display) -> String {
     format!("case {}: {note}", case.number)
 }
@@ -84,18 +84,18 @@ impl Sweep {
         })
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     fn __len__(&self) -> usize {
         self.cases.len()
     }
 
-    /// Fingerprint of the cases and of all files that they name.
+    /// Returns the fingerprint of the cases and of all files that they refer to.
     fn fingerprint(&self) -> PyResult<String> {
         let sum = fingerprint(&self.cases).map_err(of_output)?;
         Ok(sum.iter().map(|byte| format!("{byte:02x}")).collect())
     }
 
-    /// Opens the folder of the sweep, and returns the numbers of the cases that have not ended there.
+    /// Opens the folder of the sweep and returns the numbers of the cases that have not been completed there.
     #[pyo3(signature = (folder, series=false))]
     fn open(&self, folder: PathBuf, series: bool) -> PyResult<Vec<usize>> {
         let sweep = moorline_sweep::Sweep::open(&self.cases, &folder, series).map_err(of_sweep)?;
@@ -106,10 +106,10 @@ impl Sweep {
 
     /// Closes the folder.
     fn close(&self, py: Python<'_>) {
-        py.detach(|| *self.lock() = None); // after the end of a run that was given up
+        py.detach(|| *self.lock() = None); // after the end of a run that was abandoned
     }
 
-    /// Runs a case by its number and returns its row as bytes. `folder` is that of a sweep with series.
+    /// Runs a case by its number and returns its row as bytes. `folder` is the folder of a sweep that stores time series.
     #[pyo3(signature = (number, folder=None))]
     fn run_case<'py>(
         &self,
@@ -132,14 +132,14 @@ impl Sweep {
         Ok(PyBytes::new(py, &row.to_bytes()))
     }
 
-    /// Keeps the row of a case that ended elsewhere.
+    /// Adds the row of a case that was run elsewhere.
     fn add(&self, row: &[u8]) -> PyResult<()> {
         let row = Row::of_bytes(row, &self.cases);
         let row = row.ok_or_else(|| Failure::of_argument("row", "these bytes are no row of this sweep"))?;
         Ok(self.opened(|sweep| sweep.add(row))?)
     }
 
-    /// Runs the cases that are left on all cores, and writes the table. Ctrl-C ends it, with the table of the cases that have ended.
+    /// Runs the remaining cases on all cores and writes the table. Ctrl-C stops the sweep and leaves the table of the completed cases.
     #[pyo3(signature = (progress=None))]
     fn run(slf: Bound<'_, Self>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let py = slf.py();
@@ -154,7 +154,7 @@ impl Sweep {
         Ok(())
     }
 
-    /// Writes the table of the cases that have ended, and returns it.
+    /// Writes the table of the completed cases and returns it.
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let table = self.opened(|sweep| {
             sweep.write_table()?;
@@ -182,7 +182,7 @@ impl Sweep {
     }
 }
 
-/// Values of a column as an array of numpy.
+/// Returns the values of a column as a numpy array.
 fn array<'py>(
     py: Python<'py>,
     column: &Column,

@@ -7,8 +7,8 @@ use crate::simulation::Simulation;
 /// Run time above which a note is given [s]: an hour.
 const LONG: f64 = 3600.0;
 
-/// Returns a note on a scene whose run in communication steps of a length [s] takes longer than an hour on one thread, by the step costs used to choose
-/// integrators; waves are not counted. The note is on the network that takes longest.
+/// Returns a note on a scene whose run, in communication steps of a given length [s], is expected to take longer than an hour on one thread. The
+/// estimate uses the step costs from which integrators are chosen and excludes waves. The note is on the network that takes longest.
 pub fn expense(scene: &Scene, simulation: &Simulation, interval: f64) -> Option<Note> {
     let (model, duration) = (simulation.model(), scene.output.duration);
     let (mut time, mut longest, mut note) = (0.0, 0.0, None);

@@ -1,5 +1,5 @@
-//! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, raw or low-passed, or the positions of three
-//! of its points.
+//! Time histories to which the tolerance of a scene refers: the tension at the driven end of a line, unfiltered or low-pass filtered, or the
+//! positions of three of its points.
 
 use crate::math::hermite::Hermite;
 use crate::math::low_pass::low_pass;
@@ -8,9 +8,9 @@ use crate::model::{self, Model};
 use crate::scene::{Scene, ToleranceOf};
 use crate::simulation::{STILL_TENSION, Simulation};
 
-/// Least deviation of positions to which their errors are related, over the length of the line [-].
+/// Least deviation of positions to which their errors are related, relative to the length of the line [-].
 const STILL_POSITION: f64 = 1e-3;
-/// Points of a line whose positions are compared, by unstretched length from end A over that of the line [-].
+/// Points of a line whose positions are compared, by unstretched length from end A relative to that of the line [-].
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// History of a line in a trial.
@@ -25,7 +25,7 @@ pub(super) struct History {
 enum Kind {
     /// Tension at an end.
     Tension { end: model::End, filter: Option<Filter> },
-    /// Positions on a line of a length [m].
+    /// Positions on a line of a given length [m].
     Positions { length: f64 },
 }
 
@@ -39,7 +39,7 @@ struct Filter {
 }
 
 impl History {
-    /// An empty history of a line.
+    /// Empty history of a line.
     pub(super) fn of(scene: &Scene, model: &Model, line: usize) -> History {
         let sections = scene.lines[line].sections.iter();
         let filter = Filter {
@@ -77,7 +77,7 @@ impl History {
         }
     }
 
-    /// Filters the complete history where its kind requires it.
+    /// Filters the complete history if its kind requires it.
     pub(super) fn complete(&mut self) {
         if let Kind::Tension {
             filter: Some(Filter { interval, cut_off }),
@@ -88,14 +88,14 @@ impl History {
         }
     }
 
-    /// RMS of the difference from another history, in its unit.
+    /// RMS of the difference from another history, in the history's unit.
     pub(super) fn difference(&self, other: &History) -> f64 {
         let both = self.series.iter().zip(&other.series);
         let squares = both.map(|(own, right)| mean_square(own.iter().zip(right).map(|(a, b)| a - b)));
         squares.sum::<f64>().sqrt()
     }
 
-    /// Standard deviation, of positions in space, or the least value used, in its unit.
+    /// Standard deviation, of positions in space, or the least value used if that is greater, in the history's unit.
     pub(super) fn deviation(&self) -> f64 {
         let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
         let squares = self.series.iter().map(|series| {
@@ -110,7 +110,7 @@ impl History {
     }
 }
 
-/// Coordinates [m] of the points of a line at [`PLACES`], by cubics through its nodes.
+/// Coordinates of the points of a line at [`PLACES`] [m], from cubics through its nodes.
 fn positions(simulation: &Simulation, line: usize) -> Vec<f64> {
     let nodes = simulation.profile(line);
     let s: Vec<f64> = nodes.iter().map(|node| node.s).collect();

@@ -1,6 +1,6 @@
-//! Networks of lines that are copies of one another: the same lines between points at the same positions except for a displacement along the seabed, moved
-//! in the same way. The errors of their meshes are the same, over any time in waves, so one network of each kind is tried. Networks with beams are not
-//! tried, and do not prevent the trials of the others.
+//! Networks of lines that are copies of one another: the same lines between points at the same positions except for a displacement along the seabed,
+//! with the same motion. Over a long time in waves, the errors of their meshes are equal, so one network of each kind is tried. Networks with beams
+//! are not tried and do not prevent trials of the others.
 
 use std::collections::BTreeMap;
 
@@ -8,21 +8,21 @@ use crate::scene::{Line, MotionPath, Point, Scene, Vessel};
 
 use super::{Discretisation, Mesh, Networks, elements_of, short_sections};
 
-/// Distance within which two positions count as the same [m].
+/// Greatest distance at which two positions are taken as the same [m].
 const SAME_PLACE: f64 = 1e-3;
 
 /// The networks of a scene by kind.
 pub(super) struct Kinds {
-    /// For every network, the first one of its kind.
+    /// First network of the same kind, for every network.
     first: Vec<usize>,
-    /// Scene with the first network of each kind, and nothing of the others.
+    /// Scene reduced to the first network of each kind.
     pub(super) scene: Scene,
-    /// Lines of that scene in the whole one.
+    /// Index in the whole scene of every line of the reduced scene.
     lines: Vec<usize>,
 }
 
 impl Kinds {
-    /// None if every network is to be tried, or none can be.
+    /// Returns the kinds; `None` if every network must be tried or none can be.
     pub(super) fn of(scene: &Scene, networks: &Networks) -> Option<Kinds> {
         let level = scene
             .seabed
@@ -46,7 +46,7 @@ impl Kinds {
         })
     }
 
-    /// Result for the whole scene, from that for the scene with one network of each kind.
+    /// Returns the result for the whole scene from the result for the reduced scene.
     pub(super) fn expanded(
         &self,
         found: &Discretisation,
@@ -91,7 +91,7 @@ impl Kinds {
     }
 }
 
-/// Some of the lines of a scene, with their points and the vessels and motions of these.
+/// Lines of a scene, with their points and the vessels and motions of these.
 #[derive(PartialEq)]
 struct Part {
     lines: Vec<Line>,
@@ -118,7 +118,7 @@ impl Part {
         }
     }
 
-    /// The scene with this part alone.
+    /// Returns the scene reduced to this part.
     fn in_place_of_all(self, scene: &Scene) -> Scene {
         let mut reduced = scene.clone();
         reduced.lines = self.lines;
@@ -129,7 +129,7 @@ impl Part {
         reduced
     }
 
-    /// Replaces names by numbers, and measures positions along the seabed from its first vessel or point, in steps of [`SAME_PLACE`].
+    /// Replaces names by numbers, and positions by whole numbers of [`SAME_PLACE`], horizontally from the first vessel or point.
     fn displaced(mut self) -> Part {
         let vessels = self.vessels.iter().map(|vessel| vessel.position);
         let mut places = vessels.chain(self.points.iter().map(|point| point.position));
@@ -161,7 +161,7 @@ impl Part {
     }
 }
 
-/// Renames one of a part's points or vessels.
+/// Renames a point or vessel of a part.
 fn number(numbers: &mut BTreeMap<String, String>, name: &mut String, number: String) {
     numbers.insert(std::mem::replace(name, number.clone()), number);
 }

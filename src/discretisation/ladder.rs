@@ -7,18 +7,18 @@ use super::trials::Run;
 use super::{AIM, ELEMENTS_MAX, Mesh, Trial, short_sections};
 use crate::scene::Scene;
 
-/// Elements of a line alone that are tried [-].
+/// Mesh levels, by the elements of an isolated line [-].
 pub(super) const LEVELS: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320];
-/// Elements below those of the level that are worth a trial, over them [-].
+/// Greatest ratio of a number of elements between levels to that of the level for which a trial is worthwhile [-].
 const FEWER: f64 = 0.93;
 /// Least ratio of the elements of a finer option to those of the mesh found [-].
 const FINER_RATIO: f64 = 1.08;
 
-/// Runs of a network on finer and finer meshes.
+/// Runs of a network on increasingly fine meshes.
 #[derive(Debug)]
 pub(super) struct Ladder {
     lines: Vec<usize>,
-    /// True if the elements of any line are left open. The mesh of other networks is given, so that they are run once, as a reference for other steps.
+    /// True if the elements of any line are left open. Other networks have a given mesh and are run once, as a reference for other steps.
     open: bool,
     /// True if a mesh that passes is compared with one more level.
     confirms: bool,
@@ -26,9 +26,9 @@ pub(super) struct Ladder {
     coarsest: usize,
     runs: Vec<Rc<Run>>,
     trials: Vec<Trial>,
-    /// True if the error of the last trial is small enough. A run on the next level may still reject it.
+    /// True if the error of the last trial is small enough. A run on the next level may reject it.
     passed: bool,
-    /// Elements whose error is small enough, once there are such [-].
+    /// Number of elements whose error is small enough, once found [-].
     found: Option<usize>,
 }
 
@@ -46,7 +46,7 @@ impl Ladder {
         }
     }
 
-    /// Starts again, for shorter steps, a level below the mesh found, or below the last one assessed. The errors of coarser meshes are kept.
+    /// Restarts with shorter steps, a level below the mesh found or the last one assessed. The errors of coarser meshes are kept.
     pub(super) fn restart(&mut self) {
         let below = self.trials.len().saturating_sub(2);
         self.coarsest = self.trials.get(below).map_or(LEVELS[0], |trial| trial.elements);
@@ -60,13 +60,13 @@ impl Ladder {
         self.found.is_none() && elements >= self.coarsest
     }
 
-    /// Returns whether finer runs are needed until the error is small enough.
+    /// Returns whether finer runs are needed to reach a small enough error.
     pub(super) fn is_open(&self) -> bool {
         self.open && self.found.is_none()
     }
 
-    /// Adds a finer run, and confirms the mesh that passed before it, or assesses the mesh of half its elements. A run on the same mesh as
-    /// the one before adds no information: short elements at clamps, touchdowns and ends of sections can make the meshes of several levels equal.
+    /// Adds a finer run. Confirms the mesh that passed before it, or assesses the mesh with half the elements. A run on the same mesh as the previous
+    /// one adds no information: short elements at clamps, touchdowns and ends of sections can make the meshes of several levels equal.
     pub(super) fn climb(&mut self, run: Rc<Run>, aim: f64) {
         if self.runs.last().is_some_and(|last| last.lengths == run.lengths) {
             return;
@@ -92,12 +92,12 @@ impl Ladder {
         }
     }
 
-    /// Drops all runs, since a finer mesh could not be solved.
+    /// Drops all runs after a finer mesh could not be solved.
     pub(super) fn drop_runs(&mut self) {
         self.runs.clear();
     }
 
-    /// Compares the mesh that passed with the last run; returns whether its error is still small enough.
+    /// Compares the mesh that passed with the last run; returns whether its error remains small enough.
     fn is_confirmed(&mut self, aim: f64) -> bool {
         let ([.., passed, _, _, fine], Some(trial)) = (&self.runs[..], self.trials.last_mut()) else {
             return false;
@@ -109,13 +109,13 @@ impl Ladder {
         trial.error <= aim
     }
 
-    /// Takes the mesh of the last trial if that passed.
+    /// Adopts the mesh of the last trial if it passed.
     pub(super) fn settle(&mut self) {
         let last = self.trials.last().filter(|_| self.passed);
         self.found = self.found.or(last.map(|trial| trial.elements));
     }
 
-    /// Run on the mesh found, or else on the last one assessed.
+    /// Returns the run on the mesh found, or else on the last one assessed.
     pub(super) fn assessed(&self) -> Option<&Run> {
         let elements = self.trials.last()?.elements;
         let run = self.runs.iter().find(|run| run.elements == elements)?;
@@ -128,7 +128,8 @@ impl Ladder {
         self.runs.last().map_or(Vec::new(), of_run)
     }
 
-    /// Error of a run [-], of the order of the last three runs, 1 where it is unknown; that of its steps alone where the mesh is given.
+    /// Estimated error of a run [-]: its distance to the finest run, with the factor given by the last three runs, or 1 where this is undefined. If
+    /// the mesh is given, the error of the steps alone. `None` with too few runs.
     pub(super) fn error(&self, run: &Run) -> Option<f64> {
         let (coarse, middle, fine) = match &self.runs[..] {
             [.., coarse, middle, fine] => (coarse, middle, fine),
@@ -139,7 +140,7 @@ impl Ladder {
         Some(distance(run, fine) * if smooth.is_finite() { smooth } else { 1.0 })
     }
 
-    /// Elements between a level that is too coarse and the next, which is not, where they are worth a trial.
+    /// Number of elements between the last level that is too coarse and the next one, if it is worth a trial.
     pub(super) fn between(&self, aim: f64) -> Option<usize> {
         let [.., before, found] = &self.trials[..] else {
             return None;
@@ -152,13 +153,13 @@ impl Ladder {
         )
     }
 
-    /// Elements half-way from a mesh that is too coarse to the one found, where they are worth a trial.
+    /// Number of elements halfway from a mesh that is too coarse to the one found, if it is worth a trial.
     pub(super) fn halfway(&self, coarse: usize) -> Option<usize> {
         let found = self.found?;
         worthwhile(((coarse * found) as f64).sqrt(), found)
     }
 
-    /// A mesh that was tried, and the levels between it and the finest, with their errors: as tried, or extrapolated at the first order.
+    /// A mesh that was tried and the levels between it and the finest, with their errors: as tried, or extrapolated at first order.
     pub(super) fn above(&self, mesh: &Mesh) -> Vec<Trial> {
         let least = FINER_RATIO * mesh.elements as f64;
         let finest = self.runs.last().map_or(0, |run| run.elements);
@@ -179,8 +180,8 @@ impl Ladder {
         levels
     }
 
-    /// Mesh that follows from the trials, with the error where it was tried between mesh levels; none before the
-    /// first trial. The error of a mesh that is given is unknown and not counted.
+    /// Returns the mesh that follows from the trials, with the error of a trial between levels if there is one; `None` before the first trial. The
+    /// error of a given mesh is unknown and stated as 0.
     pub(super) fn mesh(&self, between: Option<Trial>, tolerance: f64) -> Option<Mesh> {
         if !self.open {
             return Some(Mesh::by_rule(self.lines.clone(), tolerance));
@@ -209,18 +210,18 @@ impl Ladder {
     }
 }
 
-/// A number of elements, rounded up, where it is well below those of the mesh found.
+/// Returns a number of elements, rounded up, if it is well below that of the mesh found.
 fn worthwhile(elements: f64, found: usize) -> Option<usize> {
     let elements = elements.ceil() as usize;
     (elements as f64 <= FEWER * found as f64).then_some(elements)
 }
 
-/// Error of a run [-] that falls with the square of its steps or elements, by comparison with one with half of them.
+/// Error of a run [-] that falls with the square of its steps or elements, from its distance to a run with half the step or twice the elements.
 pub(super) fn smooth_error(run: &Run, halved: &Run) -> f64 {
     4.0 / 3.0 * distance(run, halved)
 }
 
-/// Error of the coarsest of three runs whose elements grow by √2 [-].
+/// Error of the coarsest of three runs whose numbers of elements grow by √2 [-].
 fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
     let whole = distance(coarse, fine);
     if whole == 0.0 {
@@ -230,8 +231,8 @@ fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
     (smooth * whole).max(distance(middle, fine))
 }
 
-/// RMS of the difference of two runs over the deviation of the second, or the least that counts if that is more [-], of the line where it is
-/// greatest: lines that hardly move need no relative accuracy of their small variation.
+/// RMS difference of two runs over the deviation of the second, or over the least deviation used, for the line where this ratio is greatest [-]: the
+/// small variation of lines that hardly move needs no relative accuracy.
 fn distance(run: &Run, reference: &Run) -> f64 {
     let lines = run.histories.iter().zip(&reference.histories);
     let of_line = |(own, right): (&History, &History)| match right.deviation() {

@@ -1,39 +1,41 @@
-//! Mesh, integrator and step that keep a stated error, found by trial runs on the scene's motion.
+//! Selection of mesh, integrator and time step for a stated error, by convergence trials with the scene's motion.
 //!
-//! The error of a line that slackens and lands does not follow from lengths, speeds and periods: n times the RMS error of the fairlead's
-//! tension lies between 0.45 and 2 for chains of similar shape and motion, and the error falls with n² where nothing slackens. A scene
-//! with a motion is therefore run on a ladder of meshes, n_j = 5, 7, 10, 14 …, over a few periods. With the relative RMS distance d(j, k)
-//! of two runs, the error of the mesh n_j is estimated as
+//! The error of a line that slackens and lands does not follow from lengths, speeds and periods: n times the RMS error of the fairlead's tension lies
+//! between 0.45 and 2 for chains of similar shape and motion, and the error falls with n² if nothing slackens. A scene with a motion is therefore run
+//! on increasingly fine mesh levels, n_j = 5, 7, 10, 14 …, over a few periods. With the relative RMS distance d(j, k) of two runs, the error of the
+//! mesh n_j is estimated as
 //!
 //!   e_j = max(c d(j, j+2), d(j+1, j+2)),     c = 2 − min(1, d(j, j+1)/d(j, j+2)),
 //!
-//! where n_{j+2} has twice the elements. If the errors of the meshes are uncorrelated, d(j, j+2) ≈ e_j and
-//! c ≈ 1; if they fall with n², d(j, j+2) = ¾ e_j, d(j, j+1) = ½ e_j and c = 4/3. On 21 scenes e_j was
-//! 0.66 to 1.4 times the error of meshes with 0.5 to 6 %, and less than 0.8 on one in twelve: nodes that land cause errors that fall with n and are
-//! correlated between meshes. The mesh is the coarsest whose e_j is below 0.7 of the tolerance, interpolated between the mesh levels and tried once more there.
+//! where n_{j+2} has twice the elements. If the errors of the meshes are uncorrelated, d(j, j+2) ≈ e_j and c ≈ 1; if they fall with n², d(j, j+2) = ¾
+//! e_j, d(j, j+1) = ½ e_j and c = 4/3. On 21 scenes, e_j was 0.66 to 1.4 times the error of meshes with errors of 0.5 to 6 %, and less than 0.8 times
+//! on one in twelve: nodes that land cause errors that fall with n and are correlated between meshes. The mesh selected is the coarsest whose e_j is
+//! below 0.7 of the tolerance, interpolated between mesh levels and tried once more there.
 //!
 //! Every network of lines has a separate mesh: its error is that of the line with the greatest error, over the
 //! standard deviation of that line's tension. All networks run together, at the elements of the mesh level until
 //! their error is small enough.
 //!
-//! The runs of the ladder take axial-implicit steps where these cost less than explicit ones. Their length is the longest whose error, 4/3 of the
-//! distance to a run with half the step, is a quarter of the tolerance on a coarse mesh; the same is required on the mesh found, or else the ladder
-//! is run again from the level below it, with the step halved as often as an error of second order requires, if the work allows. Of networks that are displaced
-//! copies of one another, moved in the same way, only one is tried, none with beams, and none twice with the same elements and steps.
+//! The runs of the mesh levels take axial-implicit steps if these cost less than explicit ones. Their length is the longest whose error, 4/3 of the
+//! distance to a run with half the step, is a quarter of the tolerance on a coarse mesh. The same is required on the mesh found; otherwise, if the
+//! work allows, the runs are repeated from the level below it, with the step halved as often as an error of second order requires. Of networks that
+//! are displaced copies of one another and move in the same way, only one is tried. Networks with beams are not tried, and no network is tried twice
+//! with the same elements and steps.
 //!
-//! The axial-implicit leapfrog costs two to three times as much per step as the explicit one. It is tried with steps of ½, ¼, … of the longest allowed, on the mesh
-//! found and on finer ones, in the order of cost; the first option that keeps the error against the finest mesh is taken, else steps are explicit.
+//! The axial-implicit leapfrog costs two to three times as much per step as the explicit one. It is tried with steps of ½, ¼, … of the longest
+//! allowed, on the mesh found and on finer ones, in order of cost. The first option that keeps the error against the finest mesh is selected; if
+//! there is none, steps are explicit.
 //!
-//! Where a line bends, or needs fully implicit steps for another reason, all networks are run with the integrators that the rules choose, on lines that bend
-//! in the longest stable steps. The step of the trials and of the run is found in the same way, or extrapolated at first order from the last one tried.
-//! Short elements at clamps and touchdowns are the same on several levels, whose runs then say little about the error: levels with the same mesh count
-//! once, and a mesh whose e_j is small enough is compared with one more level, with e_j at least d(j, j+3).
+//! If a line bends, or needs fully implicit steps for another reason, all networks are run with the integrators that the rules choose, and lines that
+//! bend take the longest stable steps. The step of the trials and of the run is found in the same way, or extrapolated at first order from the last
+//! one tried. Short elements at clamps and touchdowns are the same on several levels, so that runs on these contain little information on the error:
+//! levels with the same mesh count once, and a mesh whose e_j is small enough is compared with one more level, with e_j at least d(j, j+3).
 //!
-//! The trials are bounded by their work, about a second of processor time, or a few seconds where steps are fully implicit; the bound is the same on every
-//! machine. Beyond it, the number of elements n is extrapolated from the last one tried, with an error that falls as 1/n. The RMS of a tension that jumps, at
-//! instants that are off by the time of an element, falls as slowly as n^-½, which is the error stated for such a mesh. Where the motion is not known, the
-//! elements are given or another integrator is needed, as by beams, the elements follow from the tolerance alone. In addition, elements are added until the
-//! tension at rest is within the tolerance of the closed-form catenary, where there is one to compare with.
+//! The work of the trials is limited to about a second of processor time, or a few seconds if steps are fully implicit; the limit is the same on
+//! every machine. Beyond it, the number of elements n is extrapolated from the last one tried, with an error that falls as 1/n. For a tension that
+//! jumps at instants that are off by the time of an element, the RMS error falls only as n^-½, and this error is stated for such a mesh. If the
+//! motion is unknown, the elements are given or another integrator is needed, as for beams, the elements follow from the tolerance alone. In
+//! addition, elements are added until the tension at rest is within the tolerance of the closed-form catenary, if there is one.
 
 mod expense;
 mod history;
@@ -56,18 +58,18 @@ use search::Search;
 
 pub use expense::expense;
 
-/// Part of the tolerance that the estimated error is to keep [-].
+/// Fraction of the tolerance that the estimated error must keep [-].
 const AIM: f64 = 0.7;
-/// Greatest number of elements that is extrapolated to [-].
+/// Greatest number of elements to which trials are extrapolated [-].
 const ELEMENTS_MAX: f64 = 400.0;
 
-/// A mesh that was tried.
+/// Mesh that was tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trial {
-    /// Elements of a line alone [-].
+    /// Elements of an isolated line [-].
     pub elements: usize,
-    /// Estimated RMS error of the tension at the driven end of the network's worst line, over the standard deviation of that tension, or a
-    /// hundredth of its mean [-].
+    /// Estimated RMS error of the tension at the driven end, for the line of the network where it is greatest, over the standard deviation of that
+    /// tension or a hundredth of its mean [-].
     pub error: f64,
 }
 
@@ -76,17 +78,17 @@ pub struct Trial {
 pub struct Mesh {
     /// Lines of the network.
     pub lines: Vec<usize>,
-    /// The meshes whose error could be estimated.
+    /// Meshes whose error could be estimated.
     pub trials: Vec<Trial>,
-    /// Elements of a line alone [-].
+    /// Elements of an isolated line [-].
     pub elements: usize,
-    /// Estimated error with these elements, an upper estimate where they were extrapolated [-].
+    /// Estimated error with these elements [-]; an upper estimate if they were extrapolated.
     pub error: f64,
     /// True if a trial was run on this mesh, or none is needed; false if it was extrapolated, or no trial could be run.
     pub tried: bool,
-    /// Elements of sections that are one element on all levels [-]; none where their error could not be tried.
+    /// Elements of sections that are one element on all levels [-]; `None` if their error could not be tried.
     pub short_sections: Option<usize>,
-    /// Reason for more elements than the motion or the rule requires, where there is one.
+    /// Static error that requires more elements than the motion or the rule, if there is one.
     pub rest: Option<Rest>,
 }
 
@@ -95,12 +97,12 @@ pub struct Mesh {
 pub struct Rest {
     /// Elements that the motion or the rule requires [-].
     pub fewer: usize,
-    /// Relative error of the tension at the driven end against the catenary, with those elements and with the selected ones [-].
+    /// Relative error of the tension at the driven end against the catenary, with these elements and with the selected ones [-].
     pub errors: [f64; 2],
 }
 
 impl Mesh {
-    /// Mesh that follows from the tolerance [-] alone.
+    /// Returns the mesh that follows from the tolerance alone [-].
     fn by_rule(lines: Vec<usize>, tolerance: f64) -> Mesh {
         Mesh {
             lines,
@@ -122,16 +124,16 @@ impl Mesh {
 /// Result of the trials of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Discretisation {
-    /// The scene with its elements and, where that is cheaper, the axial-implicit leapfrog with its step.
+    /// The scene with its elements and, if they are cheaper, axial-implicit steps.
     pub scene: Scene,
-    /// The mesh of every network whose elements are open.
+    /// Mesh of every network whose elements are left open.
     pub meshes: Vec<Mesh>,
-    /// Time of the scene that was tried [s].
+    /// Duration of the trials in the scene's time [s].
     pub duration: f64,
 }
 
 impl Discretisation {
-    /// Sentences that describe the result.
+    /// Describes the result in sentences.
     pub fn in_words(&self) -> Vec<String> {
         let mut kinds: Vec<Vec<&Mesh>> = Vec::new();
         for mesh in &self.meshes {
@@ -164,8 +166,8 @@ impl Discretisation {
         said
     }
 
-    /// Returns a note for each mesh whose error is expected to exceed the tolerance: it was extrapolated, or it has the greatest number of
-    /// elements that is selected; and for each whose error, or that of its short sections, could not be tried.
+    /// Returns a note for each mesh whose error is expected to exceed the tolerance, because it was extrapolated or has the greatest number of
+    /// elements that is selected, and for each mesh whose error, or that of its short sections, could not be tried.
     pub fn shortfalls(&self) -> Vec<Note> {
         let tolerance = self.scene.solver.tolerance;
         let of_mesh = |mesh: &Mesh| {
@@ -204,7 +206,7 @@ impl Discretisation {
         self.meshes.iter().any(|mesh| mesh.rest.is_some())
     }
 
-    /// Names of the lines of networks of one kind.
+    /// Names of the lines of networks with equal meshes.
     fn names(&self, kind: &[&Mesh]) -> String {
         let lines = kind.iter().flat_map(|mesh| &mesh.lines);
         let names: Vec<&str> = lines.map(|&line| &self.scene.lines[line].name[..]).collect();
@@ -260,7 +262,7 @@ impl Discretisation {
     }
 }
 
-/// Selects the open choices of a scene by trials; none where nothing is open or the rules apply.
+/// Selects the discretisation that a scene leaves open, by trials; `None` if nothing is left open or the rules apply.
 pub fn select(scene: &Scene) -> Option<Discretisation> {
     if !is_open(scene) {
         return None;
@@ -286,8 +288,8 @@ fn tried(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     })
 }
 
-/// Solves the equilibrium of a scene ([`Simulation::at_rest`]) on a mesh selected for it, without trials of a motion. Returns the mesh too
-/// where it is not that of the rule.
+/// Solves the equilibrium of a scene ([`Simulation::at_rest`]) on a mesh selected without trials of a motion. Also returns the discretisation if its
+/// mesh differs from that of the rule.
 ///
 /// # Errors
 /// As [`Simulation::at_rest`].
@@ -327,13 +329,13 @@ fn tried_in_motion(scene: &Scene, networks: &Networks, search: &mut Search) -> O
     })
 }
 
-/// Elements of a line alone in every network [-].
+/// Elements of an isolated line in every network [-].
 fn elements_of(meshes: &[Mesh]) -> Vec<usize> {
     meshes.iter().map(|mesh| mesh.elements).collect()
 }
 
-/// The scene with the mesh of the rule, or with more elements where it needs them at rest, and its simulation where that was started; `given` is
-/// a simulation on the mesh of the rule.
+/// Returns the scene with the mesh of the rule, or with more elements if it needs them at rest, and its simulation if one was started; `given` is a
+/// simulation on the mesh of the rule.
 fn without_trials(
     scene: &Scene,
     networks: &Networks,
@@ -354,7 +356,7 @@ fn without_trials(
     Some((found, refined))
 }
 
-/// Scene with its discretisation: as [`select`] finds it, or unchanged where nothing is left open.
+/// Returns the scene with its discretisation: as [`select`] finds it, or unchanged if nothing is left open.
 pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
     match select(scene) {
         Some(found) => Cow::Owned(found.scene),
@@ -362,8 +364,8 @@ pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
     }
 }
 
-/// Scene with a discretisation that is as fine as each of those found for its lines in other motions and seas: for every network the greatest number of
-/// elements; integrator and shortest step if all agree on the integrator, else those of the scene. None if nothing was found.
+/// Returns the scene with a discretisation as fine as each of those found for its lines in other motions and seas: the greatest number of elements
+/// for every network; integrator and shortest step if all agree on the integrator, else those of the scene. `None` if nothing was found.
 pub fn finest(scene: &Scene, found: &[Discretisation]) -> Option<Scene> {
     let networks = Networks::of(scene)?;
     let open: Vec<usize> = (0..networks.lines.len()).filter(|&i| networks.open[i]).collect();
@@ -389,14 +391,13 @@ pub fn finest(scene: &Scene, found: &[Discretisation]) -> Option<Scene> {
     Some(finest)
 }
 
-/// Scene with its present mesh, regardless of later settings: as [`select`] finds it, or by rule. None where all
-/// elements are given.
+/// Returns the scene with its present mesh fixed, regardless of later settings: as [`select`] finds it, or by rule. `None` if all elements are given.
 pub fn frozen(scene: &Scene) -> Option<Scene> {
     let selected = select(scene).map(|found| found.scene);
     selected.or_else(|| by_rule(scene))
 }
 
-/// Scene with the mesh that follows from its tolerance alone. None where all elements are given.
+/// Returns the scene with the mesh that follows from its tolerance alone. `None` if all elements are given.
 pub fn by_rule(scene: &Scene) -> Option<Scene> {
     let mut held = is_open(scene).then(|| scene.clone())?;
     held.solver.elements = Some(line_elements(scene.solver.tolerance).round() as usize);
@@ -408,14 +409,14 @@ fn is_open(scene: &Scene) -> bool {
     scene.solver.elements.is_none() && scene.lines.iter().any(Line::is_open)
 }
 
-/// The lines of a scene, by network.
+/// Lines of a scene, by network.
 struct Networks {
     lines: Vec<Vec<usize>>,
     /// True if the elements of any line of a network are left open.
     open: Vec<bool>,
     /// True if a line of a network is a beam, whose integrator is not tried.
     beams: Vec<bool>,
-    /// Elements of every line over those of a line alone [-].
+    /// Elements of every line relative to those of an isolated line [-].
     shares: Vec<f64>,
 }
 
@@ -424,7 +425,7 @@ impl Networks {
         Some(Networks::new(scene, &Model::new(scene).ok()?))
     }
 
-    /// Networks of a model of the scene.
+    /// Returns the networks of a model of the scene.
     fn new(scene: &Scene, model: &Model) -> Networks {
         let networks = model.networks.iter();
         let lines: Vec<Vec<usize>> = networks.map(|network| network.lines.clone()).collect();
@@ -438,7 +439,7 @@ impl Networks {
         }
     }
 
-    /// Values for the networks whose elements are open, from one value per network.
+    /// Returns the values of the networks whose elements are open, from one value per network.
     fn open<'a, T>(&'a self, values: &'a [T]) -> impl Iterator<Item = &'a T> {
         values
             .iter()
@@ -447,7 +448,7 @@ impl Networks {
             .map(|(value, _)| value)
     }
 
-    /// Scene with `elements` elements of a line alone in every network.
+    /// Returns the scene with these elements of an isolated line in every network [-].
     fn with_elements(&self, scene: &Scene, elements: &[usize]) -> Scene {
         let mut scene = scene.clone();
         let first = self.open(elements).next().copied();

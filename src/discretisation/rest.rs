@@ -1,14 +1,14 @@
-//! Elements that a line needs at rest, by comparison with the tension of its closed-form catenary.
+//! Number of elements that a line needs at rest, by comparison with the tension of its closed-form catenary.
 
 use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Rest};
 use crate::scene::{InitialShape, Scene};
 use crate::simulation::Simulation;
 
-/// Fraction of an error at rest that the most elements must remove to be worthwhile, if they do not keep the tolerance [-].
+/// Fraction of an error at rest that additional elements must remove to be adopted if the tolerance is still exceeded [-].
 const GAIN: f64 = 0.5;
 
-/// Adds elements to the meshes whose tension at rest does not keep the tolerance; none where more do not help. `given` is a simulation on
-/// these meshes. Returns one on the finer meshes, where it was started.
+/// Adds elements to the meshes whose tension at rest exceeds the tolerance, unless more elements do not help. `given` is a simulation on these
+/// meshes. Returns a simulation on the finer meshes if one was started.
 pub(super) fn refine(
     scene: &Scene,
     networks: &Networks,
@@ -50,8 +50,8 @@ pub(super) fn refine(
     finest.filter(|_| same)
 }
 
-/// Greatest error of the tension at the driven ends of the lines of every network at rest against their closed-form catenaries [-], 0 where no
-/// line of a network has one; none where no line at all has one.
+/// Greatest error of the tension at the driven ends of the lines of every network at rest against their closed-form catenaries [-]; 0 for a network
+/// without a closed form, `None` if no line has one.
 fn errors(scene: &Scene, networks: &Networks, simulation: &Simulation) -> Option<Vec<f64>> {
     let model = simulation.model();
     let of_line = |line: usize| {

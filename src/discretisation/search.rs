@@ -1,4 +1,4 @@
-//! The meshes, integrator and step of a scene, by trial runs.
+//! Search for the meshes, integrator and step of a scene by trial runs.
 
 use std::rc::Rc;
 
@@ -10,19 +10,19 @@ use crate::model::Model;
 use crate::scene::{Integrator, Scene};
 use crate::simulation::Simulation;
 
-/// Part of the tolerance for the error of the steps of the ladder [-].
+/// Fraction of the tolerance allowed for the error of the steps in the runs of the mesh levels [-].
 const FINER: f64 = 0.25;
-/// Elements of a line alone on which the step of the ladder is sought [-].
+/// Elements of an isolated line on which the step for the mesh levels is determined [-].
 const COARSE: usize = 7;
-/// Part of the cost below which another step is adopted [-].
+/// Fraction of the cost below which another step is adopted [-].
 const WORTH: f64 = 0.8;
 /// Greatest ratio of errors over which a step is extrapolated [-].
 const EXCESS_MAX: f64 = 100.0;
-/// Halvings of the longest axial-implicit step that are tried [-].
+/// Greatest number of halvings of the longest axial-implicit step [-].
 const HALVINGS: u32 = 8;
-/// Greatest number of trials of meshes between two levels [-].
+/// Greatest number of trials between two mesh levels [-].
 const TRIALS_BETWEEN: usize = 2;
-/// Ratio of the expected error to the one allowed, above which an option is not tried [-].
+/// Ratio of the expected to the allowed error above which an option is not tried [-].
 const EXPECTED_MAX: f64 = 1.2;
 
 /// State of the search.
@@ -30,7 +30,7 @@ pub(super) struct Search<'a> {
     trials: Trials<'a>,
     /// Mesh levels of every network.
     ladders: Vec<Ladder>,
-    /// Axial-implicit or fully implicit step whose error is small [s]; none where steps follow from the scene's integrator.
+    /// Axial-implicit or fully implicit step whose error is small [s]; `None` if steps follow from the scene's integrator.
     step: Option<f64>,
 }
 
@@ -62,7 +62,7 @@ impl<'a> Search<'a> {
         self.scene().solver.tolerance
     }
 
-    /// Steps that the scene's integrator takes by rule, with a small error.
+    /// Steps of the scene's integrator by rule, with a small error.
     fn by_rule(&self) -> Steps {
         Steps {
             integrator: self.scene().solver.integrator,
@@ -71,7 +71,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Axial-implicit steps [s], or fully implicit ones where these are needed.
+    /// Axial-implicit steps [s], or fully implicit ones if these are needed.
     fn implicit(&self, step: f64) -> Steps {
         Steps {
             integrator: match self.trials.implicit {
@@ -83,7 +83,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Steps that add little to the error of a mesh, explicit ones where they cost less.
+    /// Steps that add little to the error of a mesh: explicit if these cost less.
     fn at_level(&self, elements: &[usize]) -> Steps {
         match self.step {
             Some(step) if self.trials.implicit || self.saves(elements, step) => self.implicit(step),
@@ -91,13 +91,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns whether axial-implicit steps [s] cost well below explicit ones.
+    /// Returns whether axial-implicit steps [s] cost considerably less than explicit ones.
     fn saves(&self, elements: &[usize], step: f64) -> bool {
         let explicit = self.explicit_cost(elements);
         explicit.is_some_and(|explicit| explicit.axial_implicit_work(step) < WORTH * explicit.work)
     }
 
-    /// Mesh of every network; none where the trials give no result.
+    /// Returns the mesh of every network; `None` if the trials give no result.
     pub(super) fn meshes(&mut self) -> Option<Vec<Mesh>> {
         let tolerance = self.tolerance();
         self.step = self.coarse_step();
@@ -107,10 +107,10 @@ impl<'a> Search<'a> {
             if excess <= 1.0 {
                 break;
             }
-            let shorter = 0.5_f64.powf((0.5 * excess.log2()).ceil()); // of second order at best
+            let shorter = 0.5_f64.powf((0.5 * excess.log2()).ceil()); // at best second order
             if !self.trials.allow(spent / shorter) {
                 let part = 1.0 / excess.min(EXCESS_MAX);
-                self.step = Some(part * step); // nodes that land leave the first order
+                self.step = Some(part * step); // landing nodes leave the error at first order
                 break;
             }
             self.step = Some(shorter * step);
@@ -124,8 +124,8 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// Doubles the elements of sections that are one element on all levels, until their error and that of the mesh are within the tolerance together. Meshes
-    /// on which they are not in the end count as not tried.
+    /// Doubles the elements of sections that are one element on all levels, until their error together with that of the mesh is within the tolerance.
+    /// Meshes that still exceed the tolerance are marked as not tried.
     pub(super) fn refine_short_sections(&mut self, meshes: &mut [Mesh]) {
         let ladders = self.ladders.iter();
         let short = ladders.flat_map(|ladder| ladder.short_sections(self.scene()));
@@ -175,13 +175,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Runs on these meshes; none where they give no result.
+    /// Runs on these meshes; `None` if they give no result.
     fn run_on(&mut self, meshes: &[Mesh]) -> Option<Vec<Rc<Run>>> {
         let elements = elements_of(meshes);
         self.trials.run(&elements, self.at_level(&elements)).ok()?
     }
 
-    /// Longest axial-implicit step whose error on a coarse mesh is small [s], none where explicit steps cost less; the longest step allowed where steps
+    /// Longest axial-implicit step whose error on a coarse mesh is small [s], `None` if explicit steps cost less; the longest step allowed if steps
     /// are fully implicit.
     fn coarse_step(&mut self) -> Option<f64> {
         if self.scene().solver.integrator != Integrator::Auto {
@@ -211,8 +211,8 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Ratio of the error of implicit steps of at most `step` [s] to the part of the tolerance that it may take [-], on the meshes found, or else on the
-    /// last ones assessed, and the longest of these steps [s]; 0 where the error cannot be determined.
+    /// Ratio of the error of implicit steps of at most `step` [s] to the part of the tolerance allowed for it [-], on the meshes found or else the
+    /// last ones assessed, and the longest of these steps [s]. The ratio is 0 if the error cannot be determined.
     fn excess(&mut self, step: f64) -> (f64, f64) {
         let assessed = self.ladders.iter().map(Ladder::assessed);
         let elements: Vec<usize> = assessed
@@ -236,7 +236,7 @@ impl<'a> Search<'a> {
         (errors.fold(0.0, f64::max) / most, step)
     }
 
-    /// Runs the scene with more and more elements in those networks that need them. Returns the cost in explicit steps of an element [-].
+    /// Runs the scene with increasing numbers of elements in the networks that need them. Returns the cost in explicit steps of an element [-].
     fn climb(&mut self, aim: f64) -> f64 {
         let before = self.trials.work();
         let mut last = 0.0;
@@ -272,7 +272,7 @@ impl<'a> Search<'a> {
         self.trials.work() - before
     }
 
-    /// Runs the scene up to twice with elements between mesh levels where they are worth a trial; the trials that keep the error.
+    /// Runs the scene up to twice with numbers of elements between mesh levels if they are worth a trial; returns the trials that keep the error.
     fn between(&mut self, aim: f64) -> Vec<Option<Trial>> {
         let mut wanted: Vec<Option<usize>> = self.ladders.iter().map(|ladder| ladder.between(aim)).collect();
         let mut trials = vec![None; wanted.len()];
@@ -298,8 +298,8 @@ impl<'a> Search<'a> {
         trials
     }
 
-    /// The scene with a mesh for every network, and the cheapest integrator and step that keep the error, where these meshes were `tried`; longer steps on finer
-    /// meshes may be cheaper, which then replace them.
+    /// Returns the scene with a mesh for every network and, if these meshes were `tried`, the cheapest integrator and step that keep the error. If
+    /// longer steps on finer meshes are cheaper, the finer meshes replace `meshes`.
     pub(super) fn settled(&mut self, meshes: &mut [Mesh], tried: bool) -> Scene {
         let mut scene = self.trials.with(&elements_of(meshes));
         if scene.solver.integrator != Integrator::Auto {
@@ -322,9 +322,9 @@ impl<'a> Search<'a> {
         self.implicit(step).of(self.trials.with(&elements_of(meshes)))
     }
 
-    /// The cheapest axial-implicit steps [s] that keep the error, on these meshes or on finer ones, where they cost less than explicit ones, with the trials of the
-    /// meshes. Errors of meshes and steps add as squares, so that a failed trial gives the error of its step; options that are expected to fail by it
-    /// are left out.
+    /// Returns the cheapest axial-implicit steps [s] that keep the error on these meshes or finer ones, with the trials of the meshes; `None` if they
+    /// do not cost less than explicit ones. Errors of meshes and steps add as squares, so that a failed trial gives the error of its step; options
+    /// expected to fail because of it are skipped.
     fn axial_implicit(&mut self, meshes: &[Mesh]) -> Option<(f64, Vec<Trial>)> {
         let explicit = self.explicit_cost(&elements_of(meshes))?;
         let (most, aim) = (WORTH * explicit.work, AIM * self.tolerance());
@@ -348,8 +348,8 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Axial-implicit steps [s] and meshes, with the errors of the meshes, in the order of their cost up to `most`: the meshes found, and those of the levels
-    /// between them and the finest.
+    /// Returns axial-implicit steps [s] and meshes with their errors, in order of cost up to `most`: the meshes found, and the levels between them
+    /// and the finest.
     fn options(&self, meshes: &[Mesh], explicit: &Explicit, most: f64) -> Vec<(f64, Vec<Trial>)> {
         let of_ladder = |(ladder, mesh): (&Ladder, &Mesh)| ladder.above(mesh);
         let levels: Vec<Vec<Trial>> = self.ladders.iter().zip(meshes).map(of_ladder).collect();
@@ -373,7 +373,7 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// Errors of meshes with axial-implicit steps [s], infinite where they cost more than `most` or are unknown; none where the run fails.
+    /// Errors of meshes with axial-implicit steps [s], infinite if the steps cost more than `most` or the error is unknown; `None` if the run fails.
     fn trials_with(&mut self, meshes: &[Trial], step: f64, most: f64) -> Option<Vec<Trial>> {
         let elements: Vec<usize> = meshes.iter().map(|mesh| mesh.elements).collect();
         let runs = self.trials.run(&elements, self.implicit(step)).ok()??;
@@ -387,7 +387,7 @@ impl<'a> Search<'a> {
         Some(self.ladders.iter().zip(&runs).map(trial).collect())
     }
 
-    /// Cost of explicit steps; none where the axial-implicit leapfrog is not applicable.
+    /// Cost of explicit steps; `None` if the axial-implicit leapfrog is not applicable.
     fn explicit_cost(&self, elements: &[usize]) -> Option<Explicit> {
         let simulation = Simulation::new(&self.trials.with(elements)).ok()?;
         let model = simulation.model();

@@ -1,19 +1,19 @@
 //! Sections that are one element on all mesh levels.
 //!
-//! Such a section is the same on all levels, whose runs then say nothing about its error: on 2400 m of polyester rope between 150 and 100 m of chain, 5 to
-//! 20 elements agree within 0.1 %, and are all off by 0.9 %. On the mesh found, the run is repeated with twice the elements in these sections until their
-//! error, 4/3 of the distance between the two runs, is small enough.
+//! Such a section is the same on all levels, so that their runs contain no information on its error: on 2400 m of polyester rope between 150 and 100
+//! m of chain, runs with 5 to 20 elements agree within 0.1 % and are all off by 0.9 %. On the mesh found, the run is repeated with twice the elements
+//! in these sections until their error, 4/3 of the distance between the two runs, is small enough.
 
 use super::trials::Run;
 use crate::scene::Scene;
 
-/// Doublings of the elements of short sections, at most [-].
+/// Greatest number of doublings of the elements of short sections [-].
 pub(super) const DOUBLINGS: u32 = 3;
 
-/// Rounding of arc lengths over the length of the line [-].
+/// Tolerance for rounding of arc lengths, relative to the length of the line [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Open sections that are one element of a mesh with these lengths [m], by line and section; none on a line of one section.
+/// Open sections that are one element of a mesh with these lengths [m], by line and section; empty for a line of one section.
 fn of_line(scene: &Scene, line: usize, lengths: &[f64]) -> Vec<(usize, usize)> {
     let sections = &scene.lines[line].sections;
     if sections.len() < 2 {
@@ -45,7 +45,7 @@ pub(super) fn in_run(scene: &Scene, lines: &[usize], run: &Run) -> Vec<(usize, u
         .collect()
 }
 
-/// The scene with elements in some of its sections.
+/// Returns the scene with a given number of elements in some of its sections.
 pub(super) fn with_elements(scene: &Scene, sections: &[(usize, usize)], elements: usize) -> Scene {
     let mut scene = scene.clone();
     for &(line, section) in sections {
@@ -54,7 +54,7 @@ pub(super) fn with_elements(scene: &Scene, sections: &[(usize, usize)], elements
     scene
 }
 
-/// Gives sections that are left open the elements of the same sections of another line, if these are more.
+/// Sets the elements of sections to those of the same sections of another line, if these are more or the elements are left open.
 pub(super) fn take_over(scene: &mut Scene, line: usize, from: &Scene, other: usize) {
     let sections = scene.lines[line].sections.iter_mut();
     for (own, found) in sections.zip(&from.lines[other].sections) {

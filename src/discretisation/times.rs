@@ -1,18 +1,18 @@
-//! Duration and samples of the trials, by the periods of a scene's motion.
+//! Duration and samples of the trials, from the periods of a scene's motion.
 
 use crate::scene::{MotionPath, Scene, ToleranceOf};
 
-/// Periods of the slowest sine that are tried, after the ramp [-].
+/// Number of periods of the slowest sine that are tried, after the ramp [-].
 const PERIODS: f64 = 20.0;
-/// Time that is tried where the motion is a table, or of no period [s].
+/// Duration of a trial if the motion is a table or has no period [s].
 const DURATION: f64 = 200.0;
-/// Samples in a period of the fastest sine, at least [-].
+/// Least number of samples in a period of the fastest sine [-].
 const SAMPLES: f64 = 25.0;
-/// Samples of a low-passed tension in such a period [-]. With fewer, slaps would be aliased to frequencies that pass the filter.
+/// Least number of samples of a low-passed tension in this period [-]. With fewer, slaps would be aliased to frequencies that pass the filter.
 const SAMPLES_TO_FILTER: f64 = 100.0;
-/// Samples in a period that are dense enough for a snap at any phase [-]. Fewer samples have other phases in every period.
+/// Number of samples in a period from which on a snap is sampled at any phase [-]. If there are fewer, their phases change from period to period.
 const PHASES: f64 = 100.0;
-/// Fraction of the interval by which the samples move from one period to the next [-]: 1 − 1/golden ratio, which spreads them evenly.
+/// Fraction of the interval by which the samples shift from one period to the next [-]: 1 − 1/golden ratio, which spreads them evenly.
 const SHIFT: f64 = 0.381_966;
 
 /// Periods and duration of a scene's motion.
@@ -26,7 +26,7 @@ pub(super) struct MotionTimes {
 }
 
 impl MotionTimes {
-    /// None for a scene that gives no motion.
+    /// Returns the times; `None` for a scene without a motion.
     pub(super) fn of(scene: &Scene) -> Option<MotionTimes> {
         scene.motions().next()?;
         let in_waves = scene.water.as_ref().is_some_and(|water| water.waves.is_some());
@@ -48,7 +48,7 @@ impl MotionTimes {
         })
     }
 
-    /// Interval of the samples [s] where that of the output is `interval` [s].
+    /// Interval of the samples [s]; `interval` is that of the output [s].
     pub(super) fn sample_interval(&self, interval: f64, tolerance_of: ToleranceOf) -> f64 {
         let samples = match tolerance_of {
             ToleranceOf::LowPassedTension => SAMPLES_TO_FILTER,
@@ -57,7 +57,7 @@ impl MotionTimes {
         interval.min(self.shortest / samples)
     }
 
-    /// Returns an interval of samples [s] that is a little shorter where so few samples would miss the same snap in every period.
+    /// Returns a slightly shorter sample interval [s] if samples are so few that they would miss the same snap in every period.
     pub(super) fn spread(&self, interval: f64) -> f64 {
         let samples = self.shortest / interval;
         if samples < PHASES {

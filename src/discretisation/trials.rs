@@ -11,9 +11,9 @@ use crate::model::Model;
 use crate::scene::{Integrator, Scene};
 use crate::simulation::{Error, Simulation};
 
-/// Explicit steps of an element that all trials may take [-].
+/// Greatest work of all trials, in explicit steps of an element [-].
 const WORK_MAX: f64 = 1e8;
-/// The same where steps are fully implicit [-].
+/// Greatest work of all trials if steps are fully implicit, in explicit steps of an element [-].
 const IMPLICIT_WORK_MAX: f64 = 4e8;
 
 /// Integrator and steps of a run.
@@ -22,12 +22,12 @@ pub(super) struct Steps {
     pub(super) integrator: Integrator,
     /// Longest step [s].
     pub(super) longest: f64,
-    /// Tolerance that the steps keep where they follow from it [-].
+    /// Tolerance of the steps, if they follow from one [-].
     pub(super) tolerance: f64,
 }
 
 impl Steps {
-    /// The scene with these steps.
+    /// Returns the scene with these steps.
     pub(super) fn of(self, mut scene: Scene) -> Scene {
         scene.solver.integrator = self.integrator;
         scene.solver.time_step_max = self.longest;
@@ -36,15 +36,15 @@ impl Steps {
     }
 }
 
-/// Result of one run for the lines of a network.
+/// Result of a run for the lines of a network.
 #[derive(Debug)]
 pub(super) struct Run {
-    /// Elements of a line alone [-].
+    /// Elements of an isolated line [-].
     pub(super) elements: usize,
     steps: Steps,
     /// Lengths of the elements of every line [m].
     pub(super) lengths: Vec<Vec<f64>>,
-    /// History of every line after the start.
+    /// History of every line after the initial part.
     pub(super) histories: Vec<History>,
     /// Longest step of any network [s].
     pub(super) step: f64,
@@ -57,20 +57,21 @@ pub(super) struct Trials<'a> {
     networks: &'a Networks,
     /// Scene with the duration and the samples of the trials.
     scene: Scene,
-    /// First sample that is evaluated.
+    /// Index of the first sample that is evaluated.
     from: usize,
     /// Longest step of the trials [s].
     pub(super) longest_step: f64,
-    /// True if a line may need fully implicit steps, for example because it bends. All networks are then run with the integrators that the rules choose.
+    /// True if a line may need fully implicit steps, for example because it bends. All networks are then run with the integrators that the rules
+    /// choose.
     pub(super) implicit: bool,
     /// Runs of every network.
     runs: Vec<Vec<Rc<Run>>>,
-    /// Explicit steps of an element so far [-].
+    /// Work so far, in explicit steps of an element [-].
     work: f64,
 }
 
 impl<'a> Trials<'a> {
-    /// None for a scene that gives no motion.
+    /// Prepares the trials; `None` for a scene without a motion.
     pub(super) fn new(scene: &Scene, model: &Model, networks: &'a Networks) -> Option<Trials<'a>> {
         let times = MotionTimes::of(scene)?;
         let mut scene = scene.clone();
@@ -95,18 +96,18 @@ impl<'a> Trials<'a> {
         &self.scene
     }
 
-    /// Changes the scene, and drops the runs of the one before, which is returned.
+    /// Replaces the scene and drops the runs of the previous one, which is returned.
     pub(super) fn replace_scene(&mut self, scene: Scene) -> Scene {
         self.runs.iter_mut().for_each(Vec::clear);
         std::mem::replace(&mut self.scene, scene)
     }
 
-    /// Scene with `elements` elements in every network.
+    /// Returns the scene with these elements in every network [-].
     pub(super) fn with(&self, elements: &[usize]) -> Scene {
         self.networks.with_elements(&self.scene, elements)
     }
 
-    /// Explicit steps of an element so far [-].
+    /// Work so far, in explicit steps of an element [-].
     pub(super) fn work(&self) -> f64 {
         self.work
     }
@@ -124,14 +125,14 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Fewest elements that a network has been run with [-].
+    /// Least number of elements with which a network has been run [-].
     pub(super) fn coarsest(&self, network: usize) -> usize {
         let elements = self.runs[network].iter().map(|run| run.elements);
         elements.min().unwrap_or(LEVELS[0])
     }
 
-    /// Runs of all networks with a number of elements in each [-]; none where a line needs an integrator that is not tried. Networks do not affect each other, so one
-    /// whose run is known takes the fewest elements that it has been run with.
+    /// Returns runs of all networks with these elements [-]; `None` if a line needs an integrator that is not tried. Networks do not affect each
+    /// other, so a network whose run is known takes the least number of elements with which it has been run.
     pub(super) fn run(&mut self, elements: &[usize], steps: Steps) -> Result<Option<Vec<Rc<Run>>>, Error> {
         let known = |trials: &Trials, network: usize| {
             let given = !trials.networks.open[network];
@@ -191,7 +192,7 @@ impl<'a> Trials<'a> {
         )))
     }
 
-    /// Cost of a step of the costliest integrator in explicit ones [-]; none where one is not tried.
+    /// Cost of a step of the costliest integrator, in explicit steps [-]; `None` if one is not tried.
     fn weight(&self, simulation: &Simulation) -> Option<f64> {
         let weight = |integrator| match integrator {
             Integrator::Leapfrog => Some(1.0),
@@ -205,7 +206,7 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Results of a run by network; `cost` is that of all its steps, in explicit ones [-].
+    /// Results of a run by network; `cost` is that of all its steps, in explicit steps [-].
     fn of_networks(
         &self,
         elements: &[usize],
@@ -236,7 +237,7 @@ impl<'a> Trials<'a> {
     }
 }
 
-/// Returns whether a line, though no beam, cannot take the steps of a leapfrog, or bends: short elements then cost less in fully implicit steps.
+/// Returns whether a line other than a beam bends or cannot take the steps of a leapfrog: with short elements, fully implicit steps then cost less.
 fn may_need_implicit_steps(model: &Model) -> bool {
     let mut lines = model.lines.iter();
     lines.any(|line| line.beam.is_none() && (line.bending.is_some() || !line.serves_leapfrog()))

@@ -1,4 +1,4 @@
-//! One communication step of a whole model: every network by its integrator, in as many internal steps as it needs.
+//! One communication step of a whole model: each network is advanced by its integrator, in as many internal steps as it needs.
 
 mod communication;
 
@@ -17,57 +17,54 @@ use crate::physics::airy::Waves;
 use crate::scene::{Integrator, Reconstruction};
 use communication::{Communication, Scratch, Solver, within_guard};
 
-/// Rounding of times, over a step [-].
+/// Tolerance for rounding of times, relative to a step [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Work done in a step.
+/// Computational work of a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
-    /// Internal steps, of the network with the most.
+    /// Largest number of internal steps of any network.
     pub substeps: usize,
-    /// Force evaluations of the explicit leapfrog, closed-form catenaries of quasi-static networks that have them, factorised systems of
-    /// the other integrators, of all networks.
+    /// Sum over all networks: force evaluations of the explicit leapfrog, closed-form catenaries of quasi-static networks that have them, and
+    /// factorised systems of the other integrators.
     pub solves: usize,
 }
 
 /// Result of a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Done {
-    /// Work of the integrators.
+    /// Computational work of the integrators.
     pub counters: Counters,
-    /// Flow of energy; zero without a balance.
+    /// Energy flow; zero if the scene has no energy balance.
     pub flow: Flow,
 }
 
-/// Scratch of all networks and the state being built.
+/// Integrators of all networks, their workspaces and the state under construction.
 #[derive(Debug, Clone)]
 pub struct Integrators {
     networks: Vec<NetworkSolver>,
-    /// Scratch per thread.
     scratch: Vec<Scratch>,
     sea: SeaWork,
-    /// State before a step that is integrated in parts.
+    /// State before a communication step that is integrated in parts.
     before: State,
     /// Paid-out lengths of the winches, by line; empty where there are none.
     winch_paths: Vec<AxisPath>,
-    /// True if the leapfrogs still hold the state that they handed back last.
+    /// True if the leapfrogs' striped layout still holds the current state.
     holds: bool,
     threads: ThreadPool,
     estimate: WorkEstimate,
 }
 
-/// Integrator of a network.
 #[derive(Debug, Clone)]
 struct NetworkSolver {
     choice: Choice,
     solver: Solver,
-    /// Outcome of the present step.
     outcome: Result<Done, StepError>,
 }
 
 impl Integrators {
-    /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` returns the static
-    /// tension of a line [N].
+    /// Chooses the integrators and allocates all workspaces for a model that starts from `state`; `tension` returns the
+    /// static tension of a line [N].
     pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Integrators {
         let networks: Vec<NetworkSolver> = model
             .networks
@@ -97,7 +94,7 @@ impl Integrators {
         }
     }
 
-    /// Discards the leapfrogs' copy of the state. Required when the state is not the one that
+    /// Discards the leapfrogs' copy of the state. Required before a step from a state other than the one that
     /// [`Self::advance`] left.
     pub fn forget(&mut self) {
         self.holds = false;
@@ -114,12 +111,12 @@ impl Integrators {
         self.networks.iter().map(|network| &network.choice)
     }
 
-    /// Describes the number of threads for steps of a length [s], with the reason.
+    /// Describes the number of threads for communication steps of `length` [s], with the reason.
     pub fn threads_in_words(&self, length: f64) -> String {
         self.estimate.describe(length)
     }
 
-    /// Stored energy of the networks; no kinetic energy where they are quasi-static.
+    /// Stored energy of the networks [J]; quasi-static networks have no kinetic energy.
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
         for (NetworkSolver { solver, .. }, network) in self.networks.iter().zip(&model.networks) {
@@ -132,7 +129,7 @@ impl Integrators {
         sum
     }
 
-    /// Kinetic energy of the networks with a leapfrog, whose flow counts it as dissipated [J].
+    /// Kinetic energy of the networks with a leapfrog [J]. The dissipation in their energy flow contains it.
     pub fn kinetic_energy_of_leapfrogs(&self, model: &Model, state: &State) -> f64 {
         let solvers = self.networks.iter().zip(&model.networks);
         let served = solvers.filter(|(network, _)| network.solver.is_leapfrog());
@@ -157,10 +154,10 @@ impl Integrators {
         next.clone_from(state);
     }
 
-    /// Advances `state` by `length` [s]; `held` returns the kinematics of held points in that time.
+    /// Advances `state` by `length` [s]; `held` returns the kinematics of a prescribed point at a time [s] within the step.
     ///
     /// # Errors
-    /// The state is untouched; the error names the place and a remedy.
+    /// A network could not be advanced; the state is unchanged.
     pub fn advance(
         &mut self,
         model: &Model,
@@ -174,8 +171,8 @@ impl Integrators {
         }
     }
 
-    /// [`Self::advance`] in waves: in parts where the step is longer than the span over which the waves can be
-    /// extrapolated.
+    /// [`Self::advance`] in waves. The step is divided into parts where the spans between wave samples do not cover it
+    /// ([`SeaWork::reach`]).
     fn advance_in(
         &mut self,
         waves: &Waves,
@@ -220,8 +217,8 @@ impl Integrators {
         }
     }
 
-    /// Refuses a communication step of `whole` [s] in parts of `part` [s] that would take too many internal steps:
-    /// the limit applies to the communication step, regardless of the number of its parts.
+    /// Refuses a communication step of `whole` [s] in parts of `part` [s] that would take too many internal steps: the limit
+    /// applies to the sum over all parts.
     #[cold]
     #[inline(never)]
     fn check_length(
@@ -245,13 +242,13 @@ impl Integrators {
         choices.try_for_each(|(number, choice)| step.check_length(number, choice, part))
     }
 
-    /// Samples the waves where one of their spans is over; returns whether one was.
+    /// Samples the waves for all spans that have ended; returns whether there were any.
     fn renew_waves(&mut self, model: &Model, waves: &Waves, state: &mut State, step: f64) -> bool {
         let threads = (&mut self.threads, self.estimate.threads_for_waves());
         self.sea.renew((model, waves), state, step, threads)
     }
 
-    /// Advances `state` by `length` [s], with the wave kinematics of that time in place.
+    /// Advances `state` by `length` [s], for which the wave kinematics have been sampled.
     fn pass(
         &mut self,
         model: &Model,
@@ -287,7 +284,7 @@ impl Integrators {
         let next = &mut self.scratch[0].next;
         next.time = state.time + length;
         place_held(model, next, held);
-        // all but the waves, which are kept
+        // the waves of `state` are kept
         state.time = next.time;
         std::mem::swap(&mut state.points, &mut next.points);
         std::mem::swap(&mut state.lines, &mut next.lines);
@@ -295,7 +292,6 @@ impl Integrators {
         Ok(total)
     }
 
-    /// Prepares scratch for this number of threads for a step from `state`.
     fn prepare_scratch(&mut self, state: &State, threads: usize) {
         while self.scratch.len() < threads {
             self.scratch.push(self.scratch[0].clone());
@@ -307,7 +303,7 @@ impl Integrators {
         }
     }
 
-    /// Moves the networks that other threads advanced to the first thread's next state.
+    /// Moves the networks that other threads advanced to the `next` state of the first thread.
     fn exchange_parts(&mut self, model: &Model, threads: usize) {
         let [own, others @ ..] = &mut self.scratch[..threads] else {
             return;
@@ -345,8 +341,8 @@ impl Done {
     }
 }
 
-/// Sets held points, and the velocities of the end nodes of all lines except quasi-static ones, to their values at
-/// the time of `state`.
+/// Sets the points that follow `held`, and the velocities of the end nodes of all lines except quasi-static ones, to their
+/// values at the time of `state`.
 fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
     for (index, point) in state.points.iter_mut().enumerate() {
         if !matches!(model.points[index].role, Role::Fixed | Role::Free(_)) {
@@ -371,7 +367,7 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
         if let (Some(winch), Some(winch_state)) = (&line.winch, shape.winch_state) {
             let chord = shape.position[last] - shape.position[last - 1];
             let length = winch.end_length(last, winch_state.change);
-            shape.velocity[last] -= winch_state.rate / length * chord; // that of the material
+            shape.velocity[last] -= winch_state.rate / length * chord; // velocity of the material
         }
     }
 }

@@ -1,26 +1,26 @@
 //! Energy- and momentum-conserving steps of a geometrically exact beam.
 //!
-//! From t to t + Δt a node goes from (φ, v, Λ, W) to (φ₁, v₁, Λ₁, W₁): position, velocity, frame, angular velocity along its directors.
-//! With the unknowns φ₁ and the Cayley vector θ of its turn, Λ₁ = cay(θ) Λ, which is changed by spins of Λ₁,
+//! From t to t + Δt the state of a node changes from (φ, v, Λ, W) to (φ₁, v₁, Λ₁, W₁): position, velocity, frame, angular velocity along its directors.
+//! The unknowns are φ₁ and the Cayley vector θ of the rotation, Λ₁ = cay(θ) Λ; increments of θ follow from spins of Λ₁. They satisfy
 //!
 //!   M̄ (v₁ − v)/Δt = f̄,            ½(v + v₁) Δt = φ₁ − φ,
 //!   (Λ₁J W₁ − ΛJ W)/Δt = m̄,       ½(W + W₁) Δt = Λᵀθ = Λ₁ᵀθ,
 //!
-//! where f̄, m̄ gather −L B̄ᵀS̄ of the elements (the gradient B̄ at the mean of both ends of the step, S̄ the mean
-//! stress), weight, loads, and the forces of water and seabed. The strains are bilinear, so that B̄ is a discrete
-//! gradient: without water, seabed and damping the energy ½ vᵀM v + ½ W·J W + Σ U + Σ w z changes by the work of the
-//! loads alone, and both momenta by their impulses, to rounding.
+//! where f̄ and m̄ are the sums of −L B̄ᵀS̄ of the elements, weight, loads, and the forces of water and seabed. B̄ is the
+//! strain gradient at the mean of both ends of the step, and S̄ the mean stress. The strains are bilinear, so that B̄ is a
+//! discrete gradient: without water, seabed and damping the energy ½ vᵀM v + ½ W·J W + Σ U + Σ w z changes by the work of
+//! the loads alone, and both momenta by their impulses, to rounding.
 //!
 //! Loads are means over the step, so that an impulse is exact wherever the load jumps. Viscous damping adds D (E₁ − E)/Δt to S̄. Added mass
-//! and drag take the tangent in the middle of the step from the angular velocity before it: second order, and not part of the slopes.
-//! J is the lumped rotary inertia; held unknowns follow their points.
+//! and drag use the tangent in the middle of the step, extrapolated with the angular velocity before it: this is of second order and not part of the
+//! slopes. J is the lumped rotary inertia. Prescribed unknowns follow their points.
 //!
-//! The iteration starts from mean rates extrapolated from the last three steps ([`crate::model::Course`]) and reuses a tangent while changes fall
-//! quickly. If that does not converge, it starts from the velocities before the step, with exact tangents.
+//! The iteration starts from mean rates extrapolated from the last three steps ([`crate::model::Course`]) and reuses a factorised tangent stiffness
+//! while the changes decrease quickly. If it does not converge, it restarts from the velocities before the step, with exact tangent stiffness.
 //!
 //! Source: Simo, Tarnow & Doblaré (1995), Int. J. Numer. Methods Eng. 38, 1431-1473 (momenta and Cayley update); Romero & Armero (2002), ibid.
-//! 54, 1683-1716, and Betsch & Steinmann (2003), Multibody Syst. Dyn. 8, 367-391 (directors, discrete gradient). Valid for turns below half a
-//! circle in a step.
+//! 54, 1683-1716, and Betsch & Steinmann (2003), Multibody Syst. Dyn. 8, 367-391 (directors, discrete gradient). Valid for rotations below half a
+//! turn per step.
 
 mod body;
 mod drive;
@@ -50,39 +50,39 @@ pub use drive::{Driven, attitude, drive, held};
 pub use measures::{BeamView, Momentum};
 use nodes::FourNodes;
 
-/// Change of position relative to the beam's length, and of θ, that ends the iteration [-].
+/// Change of position relative to the beam's length, and change of θ, at which the iteration has converged [-].
 const TOLERANCE: f64 = 1e-12;
-/// Sum of all further changes with the same tangent that may be omitted [-].
+/// Negligible sum of all further changes with the same tangent stiffness [-].
 const REMAINDER: f64 = 0.01 * TOLERANCE;
-/// Change [-] below which a change that no longer shrinks is rounding.
+/// Change below which a change that no longer decreases is rounding [-].
 const ROUNDING: f64 = 1e-7;
-/// Greatest change after which the next correction uses the same tangent [-].
+/// Largest change after which the next correction reuses the tangent stiffness [-].
 const REUSED_MAX: f64 = 0.1;
-/// Ratio of successive changes above which the tangent is evaluated again [-].
+/// Ratio of successive changes above which the tangent stiffness is evaluated again [-].
 const FALL: f64 = 0.1;
-/// Greatest number of iterations of a step [-].
+/// Maximum number of iterations of a step [-].
 const SOLVES_MAX: usize = 30;
-/// Largest change of θ in an iteration [-].
+/// Maximum change of θ in an iteration [-].
 const TURN_MAX: f64 = 1.0;
-/// |θ| beyond which a node turns too far in a step [-]: 2 tan(α/2) of 150°.
+/// |θ| from which the rotation of a node in a step is refused [-]: 2 tan(α/2) for α = 150°.
 const THETA_MAX: f64 = 7.5;
 
-/// A beam over one step.
+/// Input of one step of a beam.
 #[derive(Debug, Clone, Copy)]
 pub struct BeamStep<'a> {
     /// Elements of the beam.
     pub beam: &'a Beam,
     /// Lumped mass, weight, drag and contact of the nodes.
     pub nodes: &'a Nodes,
-    /// Supports of the ends, and the mean loads on them over the step.
+    /// Supports of ends A and B, and the mean loads on them over the step.
     pub ends: [BeamEnd; 2],
-    /// Held unknowns of the ends after the step.
+    /// Sections of ends A and B after the step; only their prescribed unknowns are used.
     pub targets: [Section; 2],
     /// Bodies at the free ends.
     pub bodies: [Option<Body<'a>>; 2],
     /// Length of the step [s].
     pub length: f64,
-    /// True if the flow of energy is evaluated.
+    /// True if the energy flow is evaluated.
     pub energy_balance: bool,
 }
 
@@ -101,10 +101,10 @@ pub enum StuckReason {
     /// Newton's method found no solution.
     #[error("the beam's motion over the step could not be found")]
     Diverged,
-    /// A node turns by nearly half a circle in a step.
+    /// A node turns by nearly half a turn in a step.
     #[error("the beam turns by more than 150 degrees in a step")]
     Turned,
-    /// An element is bent or twisted beyond the angle that two sections resolve.
+    /// An element bends or twists by more than its strains can resolve.
     #[error("the beam turns by more than 60 degrees from this node to the next")]
     Folded,
 }
@@ -121,16 +121,16 @@ impl StuckReason {
     }
 }
 
-/// Guess from which the sections after a step are found: the second if the first does not converge.
+/// Initial guess of the sections after a step: the second is used if the first does not converge.
 #[derive(Debug, Clone, Copy)]
 enum Guess {
-    /// The course of the last steps continues.
+    /// Mean rates extrapolated from the last steps.
     Course,
-    /// The velocities before the step continue; every tangent is exact.
+    /// Velocities before the step; the tangent stiffness is evaluated in every iteration.
     Velocity,
 }
 
-/// Scratch of a beam. Nothing in it is read before it is written.
+/// Workspace of a beam. Each step writes all values before it reads them.
 #[derive(Debug, Clone)]
 pub struct BeamWork {
     chain: PivotedChain,
@@ -144,7 +144,7 @@ pub struct BeamWork {
 }
 
 impl BeamWork {
-    /// Scratch for a beam of `nodes` nodes.
+    /// Allocates the workspace for a beam of `nodes` nodes.
     pub fn new(nodes: usize) -> BeamWork {
         let section = Section {
             position: Vector3::zeros(),
@@ -162,7 +162,7 @@ impl BeamWork {
         }
     }
 
-    /// Moves `shape` by one step; returns the number of factorised tangents and the energy that crossed the boundary of the beam.
+    /// Advances `shape` by one step; returns the number of factorised tangents and the energy flow across the boundary of the beam.
     ///
     /// # Errors
     /// The iteration did not converge; the shape is unchanged.
@@ -178,7 +178,7 @@ impl BeamWork {
         Ok((solves, flow))
     }
 
-    /// Finds the sections after the step from a guess; returns the number of factorised tangents.
+    /// Solves for the sections after the step from an initial guess; returns the number of factorised tangents.
     fn converge(&mut self, case: &BeamStep, shape: &LineState, guess: Guess) -> Result<usize, Stuck> {
         self.predict(case, shape, guess);
         let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
@@ -214,7 +214,7 @@ impl BeamWork {
         })
     }
 
-    /// Copies the state before the step and guesses the one after it.
+    /// Copies the state before the step and sets the initial guess of the state after it.
     fn predict(&mut self, case: &BeamStep, shape: &LineState, guess: Guess) {
         let state = beam_state(shape);
         let dt = case.length;
@@ -255,14 +255,13 @@ impl BeamWork {
         });
     }
 
-    /// Mass of a node and of the body there with their added mass [kg], for a tangent and a height [m].
+    /// Mass matrix of a node and of the body there with their added mass [kg], for a tangent [-] and a height [m].
     fn effective_mass(&self, case: &BeamStep, i: usize, tangent: Vector3<f64>, height: f64) -> Matrix3<f64> {
         let body = self.body(case, i);
         let own = body.map_or(0.0, |body| body.point.at(height).mass);
         Matrix3::from_diagonal_element(own) + node_mass(case.nodes, i, tangent)
     }
 
-    /// Body at a node in addition to the line.
     fn body<'a>(&self, case: &BeamStep<'a>, i: usize) -> Option<Body<'a>> {
         let last = self.before.len() - 1;
         let [a, b] = case.bodies;
@@ -273,7 +272,7 @@ impl BeamWork {
         }
     }
 
-    /// Applies the solution of the linear system over a beam of a length [m]; returns the greatest change [-] and the greatest |θ| [-].
+    /// Applies the solution of the linear system to a beam of `length` [m]; returns the largest change [-] and the largest |θ| [-].
     fn correct(&mut self, length: f64) -> (f64, f64) {
         let [moved, turned] = VectorUnit::best().dispatch(nodes::Changes(self)).map(f64::sqrt);
         let part = (TURN_MAX / turned).min(1.0);
@@ -281,7 +280,7 @@ impl BeamWork {
         ((moved / length).max(turned), turn.sqrt())
     }
 
-    /// Node at which position over the length [m] or θ changed most.
+    /// Node with the largest change of position relative to `length` [m], or of θ.
     fn most_changed(&self, length: f64) -> usize {
         let size = |change: &Sextuple| {
             let (position, theta) = split(change);
@@ -292,7 +291,7 @@ impl BeamWork {
         changes.fold((0, 0.0), greater).0
     }
 
-    /// Solves for the changes of positions and the spins, with the `exact` tangent or the one before; false where there is no solution.
+    /// Solves for the changes of positions and the spins, with the `exact` tangent stiffness or the last one; returns false if there is no solution.
     fn solve(&mut self, case: &BeamStep, exact: bool) -> bool {
         self.assemble(case, exact);
         if exact {
@@ -302,7 +301,7 @@ impl BeamWork {
         }
     }
 
-    /// Sets the forces out of balance and, with a `tangent`, their slopes.
+    /// Assembles the residual forces and, if `tangent` is true, minus their slopes.
     fn assemble(&mut self, case: &BeamStep, tangent: bool) {
         VectorUnit::best().dispatch(nodes::SetNodes {
             work: self,
@@ -338,7 +337,6 @@ impl BeamWork {
         }
     }
 
-    /// Adds the drag of a node.
     fn add_drag(&mut self, case: &BeamStep, tangent: bool, i: usize) {
         let Some(k) = drag_of(case.nodes, i) else {
             return;
@@ -349,7 +347,6 @@ impl BeamWork {
         self.add_at_node(i, force, slope);
     }
 
-    /// Adds the forces on the body at a node.
     fn add_body(&mut self, case: &BeamStep, tangent: bool, i: usize) {
         if let Some(body) = self.body(case, i) {
             let step = body.over(self.places(i), case.length);
@@ -357,7 +354,7 @@ impl BeamWork {
         }
     }
 
-    /// Adds a force [N] on a node and minus its slope with the position there [N/m].
+    /// Adds a force [N] on a node and minus its slope with the position of the node [N/m].
     fn add_at_node(&mut self, i: usize, force: Vector3<f64>, slope: Option<Matrix3<f64>>) {
         let mut right = self.chain.right[i].fixed_rows_mut::<3>(0);
         right += force;
@@ -373,7 +370,7 @@ impl BeamWork {
         [&self.before[i].position, &self.now[i].position]
     }
 
-    /// Seabed under the parts of an element.
+    /// Seabed contact of the four parts of an element over the step.
     fn contact(&self, case: &BeamStep, element: usize) -> [(Part, ContactStep); 4] {
         PARTS.map(|part| {
             let Some(contact) = &case.nodes.contact else {
@@ -388,7 +385,6 @@ impl BeamWork {
         })
     }
 
-    /// Adds the seabed under the elements.
     fn add_seabed(&mut self, case: &BeamStep, tangent: bool) {
         for element in 0..case.beam.elements.len() {
             for (part, seabed) in self.contact(case, element) {
@@ -405,7 +401,7 @@ impl BeamWork {
         }
     }
 
-    /// Energy that crossed the boundary of the beam in the step.
+    /// Energy flow across the boundary of the beam over the step [J].
     fn flow(&self, case: &BeamStep, shape: &LineState) -> Flow {
         let mut flow = Flow::default();
         let (dt, last) = (case.length, self.now.len() - 1);
@@ -438,7 +434,7 @@ impl BeamWork {
         flow
     }
 
-    /// Mean forces and moments that hold the end of the beam against its element's stress.
+    /// Mean force [N] and moment [N m] over the step that balance the stress of the end element at an end of the beam.
     fn end_pull(&self, case: &BeamStep, shape: &LineState, end: usize) -> Sextuple {
         let i = end * (case.beam.elements.len() - 1);
         let (element, rest) = (&case.beam.elements[i], &beam_state(shape).rest[i]);
@@ -450,7 +446,7 @@ impl BeamWork {
         join(force, moment)
     }
 
-    /// Work of the loads on the free unknowns of an end, and of the prescribed motion of the held ones [J].
+    /// Work of the loads on the free unknowns of an end, and of the reactions at the prescribed ones [J].
     fn end_work(&self, case: &BeamStep, shape: &LineState, end: usize, node: usize) -> f64 {
         let moved = self.now[node].position - self.before[node].position;
         let change = join(moved, self.theta[node]);
@@ -461,7 +457,7 @@ impl BeamWork {
             .sum()
     }
 
-    /// Energy that water, seabed and mass damping dissipate at a node [J].
+    /// Energy dissipated by water, seabed and mass damping at a node [J].
     fn node_loss(&self, case: &BeamStep, shape: &LineState, i: usize) -> f64 {
         let moved = self.now[i].position - self.before[i].position;
         let mut lost = 0.0;
@@ -480,8 +476,8 @@ impl BeamWork {
         if let Some(damping) = &case.nodes.mass_damping {
             lost += damping[i] / case.length * moved.norm_squared();
         }
-        // An added mass that turns with the line or enters the water accounts for the part that its constant value in
-        // the step leaves out.
+        // The effective mass is constant within a step: the kinetic energy that its change leaves out is added here. The mass
+        // changes where added mass turns with the line or enters the water.
         let before = shape.velocity[i];
         let after = 2.0 / case.length * moved - before;
         let turned = |section: &Section, v: Vector3<f64>| {
@@ -530,8 +526,8 @@ impl BeamWork {
     }
 }
 
-/// Returns whether no correction is needed after two with these changes [-], the second of them with the `exact` tangent or that of the first: changes
-/// with one tangent keep falling as the last one did, and those that do not fall are rounding.
+/// Returns whether no correction is needed after two successive changes [-], the second with the `exact` tangent stiffness or that of the first. Changes
+/// with the same tangent stiffness continue to decrease at the same ratio; small changes that do not decrease are rounding.
 fn is_last(exact: bool, [before, change]: [f64; 2]) -> bool {
     match exact {
         true => change <= ROUNDING && change >= 0.5 * before,
@@ -539,7 +535,7 @@ fn is_last(exact: bool, [before, change]: [f64; 2]) -> bool {
     }
 }
 
-/// Mean stress over a step [s].
+/// Mixture that gives the mean stress over a step [s].
 fn mixture(step: f64) -> Mixture {
     Mixture {
         share: 0.5,
@@ -547,7 +543,6 @@ fn mixture(step: f64) -> Mixture {
     }
 }
 
-/// Part of a line's state that belongs to its beam.
 fn beam_state(shape: &LineState) -> &crate::model::BeamState {
     shape
         .beam
@@ -555,7 +550,7 @@ fn beam_state(shape: &LineState) -> &crate::model::BeamState {
         .expect("a line that is integrated as a beam has a beam's state")
 }
 
-/// Mass of a node with its added mass for a tangent [kg].
+/// Mass matrix of a submerged node with its added mass [kg], for a tangent [-].
 fn node_mass(nodes: &Nodes, i: usize, tangent: Vector3<f64>) -> Matrix3<f64> {
     Slender::new(nodes.masses(i, 0.0)).matrix(tangent)
 }

@@ -1,21 +1,22 @@
-//! Choice of a network's integrator and its largest step.
+//! Choice of a network's integrator and its longest step.
 //!
-//! Of the integrators that can handle a network, the one that costs least per second of motion is chosen. The
-//! explicit leapfrog costs least per step, and uses steps up to its axial limit. Its axial-implicit variant costs
-//! two to three times as much. Its steps follow from accuracy: from the axial waves of single lines and the elastic
-//! oscillation of free points, or, where the scene selects it, the longest that transverse waves allow under the
-//! current tensions: on lindahl_slow 0.7 times as many steps as under three times the static tension throughout, with
-//! the same errors. Generalised-α costs about fifty times as much. It handles networks joined at free points, and single lines
-//! whose slowest wave passes through them within one step of the greatest length allowed, such as a taut line of almost
-//! no mass: they are at rest in every step, at any step size.
+//! The choice is the integrator that can handle the network and costs least per second of motion. The explicit leapfrog
+//! costs least per step, and its steps are limited by axial waves. A step of its axial-implicit variant costs two to
+//! three times as much. The length of these steps follows from accuracy: they resolve the axial waves of single lines and
+//! the elastic oscillation of free points. If the scene selects this variant, its steps are the longest that transverse
+//! waves allow under the current tensions: on lindahl_slow it takes 0.7 times as many steps as under three times the
+//! static tension throughout, with the same errors. A step of generalised-α costs about fifty times as much as an explicit
+//! one. It is considered for networks joined at free points, and for single lines whose slowest wave passes through them
+//! within the longest step allowed, such as a taut line of almost no mass: they are at rest in every step, at any step size.
 //!
-//! Where axial waves are much faster than transverse ones the line stretches quasi-statically, and longer steps do. A host whose positions jump by
-//! ½aΔt² at communication points (`input_reconstruction = "jump"`) starts axial waves there, which the steps then resolve: otherwise they persist
-//! when the host reads the force, which on a cable of 30 elements in steps of 10 ms was off by 6 % on average.
+//! Where axial waves are much faster than transverse ones, the line stretches quasi-statically, and longer steps suffice. A host whose positions jump
+//! by ½aΔt² at communication points (`input_reconstruction = "jump"`) starts axial waves there. The steps then resolve these waves: otherwise they
+//! persist until the host reads the force, which was off by 6 % on average on a cable of 30 elements in steps of 10 ms.
 //!
-//! Lines that bend may cost least in fully implicit steps too: where elements are short their joints are as stiff as a tension of 4EI/l². Their steps,
-//! axial-implicit or fully implicit, are as long as stability allows: trials judge the error of these steps ([`crate::discretisation`]). Lines that mix
-//! strain measures, have nodes without mass or damped joints are integrated fully implicitly at any cost. Beams have a separate integrator.
+//! Fully implicit steps may also cost least for lines that bend: the joints of short elements are as stiff as a tension of 4EI/l². Their steps,
+//! axial-implicit or fully implicit, are as long as stability allows; convergence trials judge the error of these steps ([`crate::discretisation`]).
+//! Lines that mix strain measures, have nodes without mass or have damped joints are always integrated fully implicitly. Beams have a separate
+//! integrator.
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
@@ -25,27 +26,27 @@ use super::limit::{
 use crate::model::{Line, Model, Network, Role};
 use crate::scene::{Integrator, Reconstruction};
 
-/// Ratio to the transverse limit below which steps are not needed for accuracy: where axial waves are much faster
-/// than that, the line stretches quasi-statically [-].
+/// Shortest accurate step relative to the transverse limit [-]: axial waves that would need shorter steps are so fast
+/// that the line stretches quasi-statically.
 const AXIAL_RESOLUTION_MIN: f64 = 0.125;
-/// Margin on the static tension for the transverse limit: snaps exceed it [-].
+/// Factor on the static tension for the transverse limit [-]: snaps exceed the static tension.
 const SNAP_MARGIN: f64 = 3.0;
 
-/// Choice made for a network, for the log and for `check`.
+/// Integrator and step limits chosen for a network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     /// Integrator.
     pub integrator: Integrator,
-    /// Largest internal step [s]; at three times the static tension where [`Self::longest`] is more.
+    /// Longest internal step [s]; where [`Self::longest`] is greater, the limit at three times the static tension.
     pub step_max: f64,
-    /// Longest step, under lesser tensions [s].
+    /// Longest internal step under lower tensions [s].
     pub longest: f64,
-    /// Limit of explicit steps.
+    /// Limit on explicit steps.
     pub explicit: ExplicitLimit,
 }
 
 impl Choice {
-    /// Integrator and step, with the reason.
+    /// Describes the integrator and its steps, with the reason.
     pub fn in_words(&self) -> String {
         let (step, explicit) = (seconds(self.step_max), seconds(self.explicit.step));
         match self.integrator {
@@ -77,7 +78,7 @@ impl Choice {
         }
     }
 
-    /// Choice for a network whose lines carry the static tensions `tension` [N].
+    /// Chooses the integrator of a network; `tension` returns the static tension of a line [N].
     pub fn new(model: &Model, network: &Network, tension: &impl Fn(usize) -> f64) -> Choice {
         let least = |limit: &dyn Fn(&Line) -> f64| {
             let lines = network.lines.iter().map(|&line| limit(&model.lines[line]));
@@ -149,7 +150,7 @@ impl Choice {
     }
 }
 
-/// Time [s] in a suitable multiple of the second, with four digits.
+/// Formats a time [s] in a suitable multiple of the second, with four digits.
 fn seconds(time: f64) -> String {
     let (scale, unit) = match time {
         t if t >= 1.0 => (1.0, "s"),
@@ -161,14 +162,14 @@ fn seconds(time: f64) -> String {
     format!("{} {unit}", rounded.parse().unwrap_or(scale * time))
 }
 
-/// Steps that a network would take [s].
+/// Longest steps of a network with each integrator [s].
 struct Steps {
     explicit: f64,
     axial: f64,
     implicit: f64,
 }
 
-/// Step that resolves the axial waves of jumps at the ends that a host moves [s]; infinite without jumps.
+/// Step that resolves the axial waves from jumps of the ends that a host moves [s]; infinite without jumps.
 fn jump_step(model: &Model, network: &Network) -> f64 {
     let lines = || network.lines.iter().map(|&line| &model.lines[line]);
     let follows = |end: usize| {
@@ -185,7 +186,7 @@ fn jump_step(model: &Model, network: &Network) -> f64 {
     steps.fold(f64::INFINITY, f64::min)
 }
 
-/// Step of generalised-α without jumps of the ends [s]: one that resolves the free points, where generalised-α is a choice.
+/// Step of generalised-α without jumps of the ends [s]. Where other integrators could also be chosen, it resolves the oscillation of free points.
 fn implicit_step(model: &Model, network: &Network) -> f64 {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
     let choosy = lines.all(|line| line.serves_leapfrog() && line.bending.is_none());
@@ -195,7 +196,6 @@ fn implicit_step(model: &Model, network: &Network) -> f64 {
         .fold(model.solver.time_step_max, f64::min)
 }
 
-/// Returns whether a line of a network bends.
 fn bends(model: &Model, network: &Network) -> bool {
     let mut lines = network.lines.iter();
     lines.any(|&line| model.lines[line].bending.is_some())

@@ -1,36 +1,35 @@
-//! Approximate cost of steps, for the choices that depend on it: the cheapest integrator of a network, and the use of
-//! threads.
+//! Approximate cost of steps, on which the choice of a network's integrator and the use of threads depend.
 //!
-//! Times per node, as the bench `step` measures them on whole communication steps of short lines; choices need their
-//! ratios and orders of magnitude only.
+//! The times per node are those of the bench `step`, measured on whole communication steps of short lines. The choices need
+//! only their ratios and orders of magnitude.
 
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 use crate::statics::catenary_network;
 
-/// Time of an explicit step at a node [ns].
+/// Time of an explicit step per node [ns].
 const EXPLICIT: f64 = 12.0;
-/// Time of an axial-implicit step at a node [ns].
+/// Time of an axial-implicit step per node [ns].
 const AXIAL_IMPLICIT: f64 = 36.0;
-/// Time of a fully implicit step at a node [ns].
+/// Time of a fully implicit step per node [ns].
 const IMPLICIT: f64 = 600.0;
-/// Time of a step of a beam at a node [ns].
+/// Time of a beam step per node [ns].
 const BEAM: f64 = 4000.0;
-/// Time of an equilibrium at a node, where there is no closed form [ns].
+/// Time of an equilibrium without closed form, per node [ns].
 const EQUILIBRIUM: f64 = 1500.0;
-/// Time of a closed-form catenary at a node [ns].
+/// Time of a closed-form catenary per node [ns].
 const CATENARY: f64 = 100.0;
 
-/// Cost of a step of generalised-α over that of an explicit one [-].
+/// Cost of a generalised-α step relative to an explicit one [-].
 pub const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
-/// Cost of an axial-implicit step over that of an explicit one for choices without trials, which cannot judge the error of longer steps [-].
+/// Cost of an axial-implicit step relative to an explicit one [-]. Used without convergence trials, which would judge the error of longer steps.
 pub(super) const AXIAL_IMPLICIT_COST: f64 = AXIAL_IMPLICIT / EXPLICIT;
-/// Cost of an axial-implicit step over that of an explicit one as measured, of lines over a seabed and of others [-].
+/// Measured cost of an axial-implicit step relative to an explicit one, for lines over a seabed and for others [-].
 const AXIAL_IMPLICIT_COSTS: [f64; 2] = [2.4, 3.0];
-/// Time to sum a wave component at a node [ns].
+/// Time to add a wave component at a node [ns].
 pub(super) const COMPONENT: f64 = 5.0;
 
-/// Cost of an axial-implicit step of lines over that of an explicit one as measured [-]. Contact with the seabed costs both about the same.
+/// Measured cost of an axial-implicit step of lines relative to an explicit one [-]. Seabed contact adds about the same cost to both.
 pub fn axial_implicit_cost<'a>(mut lines: impl Iterator<Item = &'a Line>) -> f64 {
     let [over_seabed, without] = AXIAL_IMPLICIT_COSTS;
     match lines.any(|line| line.nodes.contact.is_some()) {
@@ -39,7 +38,7 @@ pub fn axial_implicit_cost<'a>(mut lines: impl Iterator<Item = &'a Line>) -> f64
     }
 }
 
-/// Time of a step at a node of a network [ns].
+/// Time of a step of a network per node [ns].
 pub fn node_time(model: &Model, network: &Network, integrator: Integrator) -> f64 {
     match integrator {
         Integrator::Leapfrog | Integrator::Auto => EXPLICIT,

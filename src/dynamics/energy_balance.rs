@@ -1,4 +1,4 @@
-//! Energy balance of the networks: stored energy, external work, dissipation. An observer: it reads the results of a step and changes none of them.
+//! Energy balance of the networks: stored energy, external work, dissipation. It does not change the motion.
 //!
 //! Stored:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z + Σ C  over free nodes, segments, joints, free points and dry segments, with
 //!        C the energy of the buoyancy that dry segments lose; by kind in [`Energy`].
@@ -8,24 +8,24 @@
 //! Dissipation: drag at the velocity relative to the water; axial, bending and mass damping; the seabed, whose springs return some of it. Added mass
 //!        that enters the water, or turns with its line (½ vᵀṀ v), counts as negative dissipation.
 //!
-//! A prescribed end that jumps at a communication point does the work by which the stored energy rises, with all
-//! other nodes in place: no time passes, and no damper acts.
+//! The work of a prescribed end that jumps at a communication point is the increase of the stored energy with all other
+//! nodes in place: the jump takes no time, and dampers do not act.
 //!
-//! The springs of viscoelastic segments store energy, their dampers dissipate it. An end that is released from a prescribed point brings the energy of its
-//! half node, which counts as external work.
+//! The springs of viscoelastic segments store energy, and their dampers dissipate it. When an end is released from a prescribed point, the energy of its
+//! half node is added as external work.
 //!
-//! Algorithmic dissipation: that of an implicit integrator, from the weights that it gives to the forces of a step and those before, by a formula
-//! that is independent of the balance. Segments are moved by the discrete gradient of their energy, which neither produces nor dissipates
-//! energy; the error on joints that turn and surfaces that are pierced within a step is not part of it.
+//! Algorithmic dissipation: dissipation of an implicit integrator, due to its weights of the forces before and after a step. It is evaluated by a
+//! formula that is independent of the balance. The tension of segments is the discrete gradient of their energy, which neither produces nor
+//! dissipates energy. The error on joints that turn, and at the water surface where it is pierced within a step, is not part of it.
 //!
 //! E − E₀ − external work + dissipation + algorithmic dissipation is the error of the time integration.
 //!
 //! In every internal step, the leapfrogs add the work of springs, weight and water on the free nodes: forces at t_n times the mean of the
-//! velocities around it (`leapfrog/balance`, `axial_implicit/balance`). The work that is not kinetic energy when the balance is read has been
-//! dissipated. Energy is exact at t − Δt/2, the time of the velocities, and E is evaluated there. The implicit integrators sum the work of the
-//! forces of each step ([`implicit`]), and so do beams, whose laws are discrete gradients. Quasi-static networks have no kinetic energy; the work of
-//! ends and loads is that of the mean of the forces before and after a step (`at_rest`). Closed-form catenaries are evaluated as a whole, including
-//! the half segments at prescribed ends:
+//! velocities at t_{n−½} and t_{n+½} (`leapfrog/balance`, `axial_implicit/balance`). The part of this work that is not kinetic energy when the balance
+//! is evaluated has been dissipated. Energy is exact at t − Δt/2, the time of the velocities, and E is evaluated there. The implicit integrators sum
+//! the work of the forces of each step ([`implicit`]), and so do beams, whose laws are discrete gradients. Quasi-static networks have no kinetic
+//! energy; the work of ends and loads is that of the mean of the forces before and after a step (`at_rest`). Closed-form catenaries are evaluated as a
+//! whole, including the half segments at prescribed ends:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
 //!
@@ -47,14 +47,14 @@ use crate::physics::slender::Slender;
 
 pub use at_rest::work_at_rest;
 
-/// Energy that enters and leaves a network [J], or its rate [W].
+/// Energy flow into and out of a network [J], or its rate [W].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
     /// Work of prescribed ends, loads and moving water.
     pub external_work: f64,
     /// Dissipation by water, damping and seabed.
     pub dissipation: f64,
-    /// Dissipation by the damping of the integrator, negative where it produces energy.
+    /// Dissipation by the integrator, negative if it produces energy.
     pub algorithmic_dissipation: f64,
 }
 
@@ -76,12 +76,12 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// The sum of all kinds [J].
+    /// Sum of all kinds [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.axial + self.bending + self.shear + self.torsion + self.gravitational
     }
 
-    /// The sum of all kinds except kinetic energy [J].
+    /// Sum of all kinds except kinetic energy [J].
     pub fn at_rest(&self) -> f64 {
         self.total() - self.kinetic
     }
@@ -116,7 +116,7 @@ impl Flow {
         self.algorithmic_dissipation += other.algorithmic_dissipation;
     }
 
-    /// True unless the motion grew without bound within the step.
+    /// Returns false if the motion grew without bound.
     pub fn is_finite(&self) -> bool {
         self.external_work.is_finite()
             && self.dissipation.is_finite()
@@ -134,7 +134,7 @@ impl Flow {
 }
 
 impl EnergyBalance {
-    /// Error of the time integration [J], positive where it has produced energy.
+    /// Error of the time integration [J], positive if it has produced energy.
     pub fn error(&self) -> f64 {
         let Flow {
             external_work,
@@ -145,7 +145,7 @@ impl EnergyBalance {
     }
 }
 
-/// Energy of a network, at the time of its velocities.
+/// Stored energy of a network [J], at the time of its velocities.
 pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
     let mut sum = Energy::default();
     for &line in &network.lines {
@@ -175,13 +175,13 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
     sum
 }
 
-/// Time from the velocities to the positions of a network with a leapfrog [s].
+/// Time from the velocities to the positions of a network with a leapfrog [s]; `None` for other integrators.
 fn half_step(state: &State, network: &Network) -> Option<f64> {
     let shape = &state.lines[network.lines[0]];
     (!shape.half_step.is_unset()).then(|| shape.velocities_before().1)
 }
 
-/// Energy of a line of this shape in the waves of a state.
+/// Stored energy of a line with the state `shape` [J], in the waves of `state`.
 fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) -> Energy {
     let line = &model.lines[index];
     if let Some(view) = BeamView::of(line, shape) {
@@ -240,9 +240,9 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
     energy
 }
 
-/// Flow of energy into a leapfrog's line whose prescribed ends jump to `ends`, positions [m] and velocities [m/s] at the time of the other
-/// velocities, while its nodes stay where they are. The change of kinetic energy due to the rotation of the segments counts as dissipation, as in the flow of a
-/// leapfrog. `moved` is scratch for its shape.
+/// Energy flow into a line of a leapfrog whose prescribed ends jump to `ends` while its other nodes stay in place [J]. `ends` holds positions [m], and
+/// velocities [m/s] at the time of the other velocities. The change of kinetic energy due to the rotation of the segments counts as dissipation, as in
+/// the energy flow of a leapfrog. `moved` is overwritten with the state of the line after the jump.
 pub fn jump_flow(
     model: &Model,
     state: &State,
@@ -289,7 +289,7 @@ fn lacking_energy(surface: &Surface, position: &[Vector3<f64>]) -> f64 {
     segments.map(energy).sum()
 }
 
-/// Line on a winch as laid out `lag` [s] ago, at the time of the leapfrog's velocities.
+/// Line on a winch with the length `lag` [s] ago, at the time of the leapfrog's velocities.
 fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64) -> Line {
     let mut then = line.clone();
     if lag > 0.0 {
@@ -298,8 +298,8 @@ fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64
     then
 }
 
-/// Displacement of the material at a winch relative to the winch in `lag` [s], by which a step at the velocity of the
-/// material misses the winch [m].
+/// Displacement of the material at a winch relative to the winch in `lag` [s], by which a step with the material velocity
+/// misses the winch [m].
 fn material_transport(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     let Some(winch_state) = shape.winch_state else {
         return Vector3::zeros();
@@ -309,13 +309,13 @@ fn material_transport(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> 
     lag * winch_state.half_step[1] / line.segments.length[last - 1] * chord
 }
 
-/// Kinetic energy of a node at a velocity [m/s], with its masses across and along the line [J].
+/// Kinetic energy of a node with a velocity [m/s], from its masses across and along the line [J].
 fn node_motion(line: &Line, shape: &LineState, i: usize, velocity: Vector3<f64>, water: WaterAlong) -> f64 {
     let masses = line.nodes.masses(i, dry_part(line, shape, i, water));
     0.5 * Slender::new(masses).square(velocity, tangent(shape, i))
 }
 
-/// Part of a node that is out of the water [-].
+/// Fraction of a node that is out of the water [-].
 fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 {
     let surface = line.surface.as_ref();
     surface.map_or(0.0, |surface| surface.node_in(water, i, &shape.position).part)
@@ -327,7 +327,7 @@ pub fn released_ends(network: &Network, state: &State) -> usize {
     ends.filter(|released| *released).count()
 }
 
-/// Energy [J] of the half nodes that join their lines by release from held points between two states.
+/// Energy [J] of the half nodes at ends that were released from prescribed points between two states.
 pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State; 2]) -> f64 {
     let mut sum = 0.0;
     for &index in &network.lines {
@@ -344,7 +344,7 @@ pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State;
     sum
 }
 
-/// Kinetic energy and potential energy of weight of the half node at an end, at the time of its velocity [J].
+/// Kinetic and gravitational energy of the half node at an end, at the time of its velocity [J].
 fn end_energy(model: &Model, state: &State, index: usize, end: End) -> f64 {
     let (line, shape) = (&model.lines[index], &state.lines[index]);
     let water = model.water_along(state, index, state.time);
@@ -354,7 +354,7 @@ fn end_energy(model: &Model, state: &State, index: usize, end: End) -> f64 {
         + line.nodes.weight[i] * (shape.position[i].z - lag * velocity.z)
 }
 
-/// Direction of a line at a node [-]: none where its neighbours coincide.
+/// Direction of a line at a node [-], along the chord of its neighbours; zero if they coincide.
 fn tangent(shape: &LineState, i: usize) -> Vector3<f64> {
     let last = shape.position.len() - 1;
     let chord = shape.position[(i + 1).min(last)] - shape.position[i.saturating_sub(1)];

@@ -8,28 +8,28 @@
 //!
 //!   (1 − α_f) M' b' + α_f M a = (1 − α_f) f(r', v', t') + α_f f(r, v, t),   (1 − α_f) b' = (1 − α_m) a' + (α_m − α_f) a.
 //!
-//! With a constant mass this is (1 − α_m) M a' + α_m M a on the left, as it is usually written. a is the acceleration
-//! at a time (α_f − α_m) Δt after that of r and v. With M' a', a mass that turns with its line, or added mass that
-//! enters the water, would be evaluated at the wrong time, and the scheme would be of first order. b' is the acceleration
-//! at t'.
+//! With a constant mass the left side is (1 − α_m) M a' + α_m M a, the usual form. a is the acceleration at a time
+//! (α_f − α_m) Δt after that of r and v, and b' the acceleration at t'. With M' a' instead of M' b', a mass that turns with
+//! its line, or added mass that enters the water, would be evaluated at the wrong time, and the scheme would be of first
+//! order.
 //!
 //! * Generalised-α of spectral radius ρ at infinite frequency: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f,
 //!   β = ¼ (1 − α_m + α_f)².
 //! * Bossak(α, γ): α_m = α ≤ 0, α_f = 0, β = ¼ (1 − α)²; second order for γ = ½ − α.
 //!
-//! The second correction of a step uses the tangent and the factors of the first one, if that is small. Most steps then evaluate one tangent.
+//! The second correction of a step reuses the factorised tangent stiffness of the first one, if the first is small. Most steps then factorise once.
 //!
-//! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The
-//! seabed's damper fades in over two static penetrations above and below the seabed, or over the displacement of the
-//! node in a step if that is larger. A damper that switches on at contact would prevent convergence of Newton's
+//! The tangent stiffness is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`].
+//! The damper of the seabed fades in over two static penetrations above and below the seabed, or over the displacement of
+//! the node in a step if that is larger. A damper that switches on at contact would prevent convergence of Newton's
 //! method. Nodes at rest on the seabed are not affected.
 //!
 //! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer.
-//! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1. In its usual form, the method gains energy without bound
-//! where slack cables snap taut without damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to
-//! 10 ms, ρ = 0.5 and more): the forces before and after a step do not determine the energy that a spring absorbs in
-//! between. The tension of a segment is therefore the discrete gradient of its energy over a step ([`crate::elements`]).
-//! The same cable then never gains energy at any ρ, and conserves it at ρ = 1.
+//! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1. In its usual form, the method gains energy without bound where
+//! slack cables without damping snap taut (a falling dry cable of 20 segments, EA/T = 1e4 and 1e6, Δt = 2 to 10 ms,
+//! ρ = 0.5 and more): the forces before and after a step do not determine the energy that a spring absorbs in between.
+//! The tension of a segment is therefore the discrete gradient of its energy over a step ([`crate::elements`]). The same
+//! cable then never gains energy at any ρ, and conserves it at ρ = 1.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,27 +40,27 @@ use crate::math::block_banded::Pivots;
 use crate::model::{Kinematics, Model, Network, State};
 use crate::scene::{Integrator, Solver};
 
-/// Spectral radius at infinite frequency where the scene gives none [-].
+/// Default spectral radius at infinite frequency [-].
 pub const SPECTRAL_RADIUS: f64 = 0.2;
-/// Bossak's α where the scene gives none [-].
+/// Default of Bossak's α [-].
 pub const BOSSAK_ALPHA: f64 = -0.3;
-/// Last correction relative to the shortest segment [-].
+/// Convergence limit of the correction, relative to the shortest segment [-].
 const NEWTON_TOLERANCE: f64 = 1e-7;
-/// Greatest strain and rotation of a segment in a first correction after which the second, about their square, reuses the tangent [-].
+/// Largest strain and rotation of a segment in the first correction for which the second, about their square, reuses the tangent stiffness [-].
 const REUSED_MAX: f64 = 1e-4;
-/// Greatest number of Newton iterations of a step, one of which may reuse the tangent.
+/// Maximum number of Newton iterations of a step, one of which may reuse the tangent stiffness.
 const ITERATIONS_MAX: usize = 16;
-/// Iterations after which corrections that fall too slowly are taken for a cycle.
+/// Number of iterations after which corrections that decrease too slowly are taken for a cycle.
 const CIRCLING: usize = 6;
-/// Greatest number of parts of a step: twelve halvings.
+/// Maximum number of parts of a step: twelve halvings.
 const PARTS_MAX: usize = 4096;
 
 /// Parameters of the integrator [-].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scheme {
-    /// Weight of the old inertia.
+    /// Weight of the inertia before the step.
     pub alpha_m: f64,
-    /// Weight of the old forces.
+    /// Weight of the forces before the step.
     pub alpha_f: f64,
     /// Newmark's β.
     pub beta: f64,
@@ -69,7 +69,7 @@ pub struct Scheme {
 }
 
 impl Scheme {
-    /// Chung and Hulbert's scheme of spectral radius `rho` at infinite frequency [-], 0 to 1.
+    /// Chung and Hulbert's scheme with the spectral radius `rho` at infinite frequency [-], 0 to 1.
     pub fn generalised_alpha(rho: f64) -> Scheme {
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let gamma = 0.5 - alpha_m + alpha_f;
@@ -81,7 +81,7 @@ impl Scheme {
         }
     }
 
-    /// Bossak's scheme; γ = ½ − α where none is given.
+    /// Bossak's scheme; γ = ½ − α if `gamma` is `None`.
     pub fn bossak(alpha: f64, gamma: Option<f64>) -> Scheme {
         Scheme {
             alpha_m: alpha,
@@ -134,8 +134,8 @@ impl Scheme {
     }
 }
 
-/// Accelerations of a network that satisfy its equation of motion at time `t` [s], for the start of a motion. The
-/// held points move according to `held`. Nodes without mass keep zero.
+/// Sets the accelerations of a network to those that satisfy its equation of motion at time `t` [s], for the start of a
+/// motion. The prescribed points move according to `held`. Nodes without mass get zero acceleration.
 pub fn start<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -185,7 +185,7 @@ fn acceleration(mass: Matrix3<f64>, residual: Vector3<f64>) -> Vector3<f64> {
         .map_or(Vector3::zeros(), |inverse| -(inverse * residual))
 }
 
-/// Sets the held points of a network to their motion at time `t` [s].
+/// Sets the prescribed points of a network to their motion at time `t` [s].
 fn hold<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     network: &Network,
@@ -208,25 +208,25 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
 /// Time span divided into equal steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Start of the step [s].
+    /// Start of the span [s].
     pub start: f64,
-    /// End of the step [s].
+    /// End of the span [s].
     pub end: f64,
     /// Longest step [s].
     pub step_max: f64,
 }
 
-/// Prescribed motion and loads of a network, with the scheme that integrates it.
+/// Prescribed motion of a network, and the scheme that integrates it.
 #[derive(Debug)]
 pub struct Driving<'a, K> {
-    /// Position, velocity and acceleration of held points.
+    /// Kinematics of a prescribed point at a time [s].
     pub kinematics: &'a K,
-    /// The integrator.
+    /// Integration scheme.
     pub scheme: &'a Scheme,
 }
 
-/// Advances one network through a time span; does nothing unless its end is after its start. `state.time` is left to the caller. Calls `observe` after
-/// every internal step, and once more with a step of zero length where ends were released after it.
+/// [`advance`] with a call of `observe` after every internal step, and an additional call with a step of zero length if
+/// ends were released after it.
 ///
 /// # Errors
 /// Newton's method failed even in steps 4096 times smaller; the state is then unchanged.
@@ -274,7 +274,6 @@ impl Span {
     }
 }
 
-/// Data that stay constant from step to step.
 struct Integration<'a, K> {
     model: &'a Model,
     network: &'a Network,
@@ -284,7 +283,7 @@ struct Integration<'a, K> {
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
-    /// Takes the step from `t0` to `t1` [s], in halves where Newton's method fails.
+    /// Takes the step from `t0` to `t1` [s], halved where Newton's method fails.
     fn pass(
         &self,
         [t0, t1]: [f64; 2],
@@ -383,8 +382,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             if !correction.is_finite() {
                 return false;
             }
-            // Where forces are smooth, a part p of Newton's step leaves 1 − p of it; a correction above the midpoint of
-            // that and the last one indicates a cycle.
+            // Where forces are smooth, a fraction p of Newton's step leaves a correction of 1 − p times the last; a
+            // correction above the mean of that and the last one indicates a cycle.
             let left_over = (1.0 - 0.5 * part) * last;
             let circles = iteration >= CIRCLING && correction > left_over.max(tolerance);
             part = if circles { 0.5 } else { 1.0 };
@@ -396,28 +395,26 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
                 self.shift_accelerations(state, before);
                 return true;
             }
-            // In a smooth step the second correction is small with any tangent; otherwise the remaining ones use exact tangents.
+            // In a smooth step the second correction is small even with the last tangent stiffness; all later ones use the exact one.
             again = iteration == 0 && consistent && work.greatest_strain(self.network) <= REUSED_MAX;
         }
         false
     }
 
-    /// Solves with the exact tangent of a state.
     fn solve(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         work.assemble_dynamic::<true>(self.model, self.network, state, t, weights);
         work.add_remembered(self.model, self.network);
         work.solve(self.model, self.number) || self.solve_indefinite(state, t, weights, work)
     }
 
-    /// Solves with the last tangent.
     fn solve_again(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         work.assemble_dynamic::<false>(self.model, self.network, state, t, weights);
         work.add_remembered(self.model, self.network);
         work.solve_again(self.model, self.number)
     }
 
-    /// Solves again if the exact tangent is not positive definite: with row exchanges, since stiff segments
-    /// that turn within the step make it unsymmetric, and with positive semi-definite joints of lines that bend.
+    /// Solves again if the exact tangent stiffness is not positive definite: with row exchanges, since stiff segments that turn
+    /// within the step make it unsymmetric, and with positive semi-definite joints of lines that bend.
     fn solve_indefinite(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         let mut lines = self.model.lines_of(self.network);
         if lines.any(|line| line.bending.is_some()) {
@@ -437,7 +434,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         lengths.copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Predicts the state at constant acceleration.
+    /// Predicts the state after the step with constant accelerations.
     fn predict(&self, state: &mut State, dt: f64) {
         for &index in &self.network.lines {
             let nodes = &mut state.lines[index];
@@ -458,7 +455,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
     }
 
-    /// Converts b' to a' = [(1 − α_f) b' + (α_f − α_m) a] / (1 − α_m) for all nodes and points that forces move.
+    /// Converts b' to a' = [(1 − α_f) b' + (α_f − α_m) a] / (1 − α_m) for all nodes and free points.
     fn shift_accelerations(&self, state: &mut State, before: &State) {
         let Scheme { alpha_m, alpha_f, .. } = *self.scheme;
         let of_new = (1.0 - alpha_f) / (1.0 - alpha_m);

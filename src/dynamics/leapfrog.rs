@@ -1,14 +1,14 @@
-//! Leapfrogs of lumped two-node segments: the integrators of cables.
+//! Leapfrog integrators of cables, on lumped two-node segments.
 //!
 //! Positions are defined at t_n, velocities at t_{n−½}. A step of a network has the stages
 //!
-//! 1. tension of the segments and forces of the joints at t_n, and ends that are released;
-//! 2. free points, which take the forces of the lines at them;
-//! 3. prescribed points, at t_{n+1};
+//! 1. tension of the segments and forces of the joints at t_n, and release of ends;
+//! 2. motion of the free points under the forces of their lines;
+//! 3. prescribed points at t_{n+1};
 //! 4. velocities of the nodes at t_{n+½}, with water and seabed, and positions at t_{n+1}.
 //!
-//! A [`Kernel`] implements the stages of a line: [`Explicit`], or [`AxialImplicit`], whose tension is solved for in stage 4. Everything else is common: the
-//! striped layout, release, surface, loading and storing the state, the energy balance.
+//! A [`Kernel`] implements the stages of a line: [`Explicit`], or [`AxialImplicit`], which solves for the tension in stage 4. The striped layout,
+//! release of ends, water surface, loading and storing of the state, and the energy balance are common to both.
 
 mod axial_implicit;
 mod balance;
@@ -37,7 +37,7 @@ pub use axial_implicit::AxialImplicit;
 pub use explicit::{Explicit, segment_tension};
 pub use network::LeapfrogNetwork;
 
-/// Ends in the order of the line.
+/// Ends in the order of the nodes.
 const ENDS: [End; 2] = [End::A, End::B];
 
 /// Prescribed motion of an end of a line.
@@ -45,51 +45,51 @@ const ENDS: [End; 2] = [End::A, End::B];
 pub struct EndMotion {
     /// Position [m].
     pub position: Vector3<f64>,
-    /// Velocity half a step earlier [m/s], which the next step reads.
+    /// Velocity half a step earlier [m/s].
     pub velocity: Vector3<f64>,
 }
 
 /// Stages of a step of a line that depend on the treatment of its tension.
 pub trait Kernel: Debug + Clone + Sized {
-    /// True if prescribed ends move by the secants of their paths.
+    /// True if prescribed ends move with the secant velocities of their paths.
     const SECANTS: bool;
-    /// Quantities at the start of the steps that bound their length.
+    /// Quantities at the start of the steps that limit their length.
     type Bound;
 
-    /// Scratch of the free points of a network.
+    /// Workspace of the free points of a network.
     type Points: Debug + Clone + Default;
 
-    /// Allocates for a line in its striped layout.
+    /// Allocates the kernel of a line in its striped layout.
     fn new(model: &Model, line: &Line, layout: &Layout) -> Self;
 
-    /// Allocates for the free points of a network.
+    /// Allocates the workspace of the free points of a network.
     fn points(model: &Model, network: &Network) -> Self::Points;
 
-    /// Loads the quantities that a line keeps in addition to those of the layout.
+    /// Loads the quantities of a line that are not part of the layout.
     fn load(work: &mut LeapfrogLine<Self>, state: &LineState);
 
     /// Continues from the state that was stored last.
     fn resume(work: &mut LeapfrogLine<Self>, state: &LineState);
 
-    /// Stores the state after steps of `steps` [s]. Returns whether all nodes have finite positions, and speeds that mooring lines reach.
+    /// Stores the state after steps of `steps` [s], newest first. Returns whether all nodes have finite positions and physically possible speeds.
     fn store(work: &mut LeapfrogLine<Self>, state: &mut LineState, steps: [f64; 2]) -> bool;
 
-    /// Sets whether the node at an end moves as those between the ends do.
+    /// Sets whether the node at an end moves like the interior nodes.
     fn set_free(work: &mut LeapfrogLine<Self>, end: End, free: bool);
 
     /// Mass of the half node at an end across and along the line [kg].
     fn end_masses(work: &LeapfrogLine<Self>, end: End) -> [f64; 2];
 
-    /// Sets the coefficients of the nodes at the water's surface.
+    /// Sets the coefficients of the nodes at the water surface.
     fn meet_surface(work: &mut LeapfrogLine<Self>);
 
-    /// Returns whether prescribed ends still have to be moved to their start.
+    /// Returns whether the ends must be moved to their points at the start of a communication step.
     fn starts(work: &LeapfrogLine<Self>) -> bool;
 
-    /// Sets the path of the winch from a time [s] on, after the end was moved to its position then; `fresh` before the first step from rest.
+    /// Sets the path of the winch from a time [s] on. The end must already have its position at that time. `fresh` is true before the first step from rest.
     fn start_winch(_: &mut LeapfrogLine<Self>, _: &AxisPath, (_t, _fresh): (f64, bool), _: Step) {}
 
-    /// Takes a step of a network from one time to another [s], after its water is set and its ends are released. Returns the number of solutions.
+    /// Takes a step of a network between two times [s], after its water is set and its ends are released. Returns the number of solves.
     fn step(
         network: &mut LeapfrogNetwork<Self>,
         model: &Model,
@@ -98,7 +98,7 @@ pub trait Kernel: Debug + Clone + Sized {
         held: &impl Fn(usize, f64) -> Kinematics,
     ) -> usize;
 
-    /// Longest step [s] of a network from `t` [s] on in a communication step of `length` [s].
+    /// Longest step [s] of a network in a communication step, whose start and length [s] are `span`.
     fn longest_step(
         network: &mut LeapfrogNetwork<Self>,
         model: &Model,
@@ -106,7 +106,7 @@ pub trait Kernel: Debug + Clone + Sized {
         span: [f64; 2],
     ) -> (f64, Self::Bound);
 
-    /// Returns whether steps of `drift` [s], of which the last ended at `t` [s], were short enough.
+    /// Returns whether the steps were short enough; `at` is the end of the last one and their length [s].
     fn were_short(
         network: &mut LeapfrogNetwork<Self>,
         model: &Model,
@@ -115,11 +115,11 @@ pub trait Kernel: Debug + Clone + Sized {
     ) -> bool;
 }
 
-/// A line and the scratch of its steps.
+/// Workspace of a line.
 #[derive(Debug, Clone)]
 pub struct LeapfrogLine<K> {
     layout: Layout,
-    /// The energy balance, where the scene asks for it.
+    /// Energy balance; `None` if the scene does not include it.
     balance: Option<LineBalance>,
     kernel: K,
 }
@@ -138,7 +138,7 @@ impl NullaryFnOnce for PutEnds<'_> {
 }
 
 impl<K: Kernel> LeapfrogLine<K> {
-    /// Scratch for a line; `None` where its sections have different strain measures, which the kernels do not mix.
+    /// Allocates the workspace of a line; `None` if its sections have different strain measures, which the kernels do not mix.
     fn new(model: &Model, line: &Line, tied: [bool; 2]) -> Option<LeapfrogLine<K>> {
         let water = Water::around(model, line);
         let longest = line.winch.as_ref().map_or(line, |winch| winch.longest());
@@ -150,7 +150,6 @@ impl<K: Kernel> LeapfrogLine<K> {
         })
     }
 
-    /// Loads the state of a line.
     fn load(&mut self, state: &LineState) {
         self.layout.load(state);
         K::load(self, state);
@@ -161,12 +160,11 @@ impl<K: Kernel> LeapfrogLine<K> {
         self.set_out(0.5 * state.half_step.steps[0]);
     }
 
-    /// Returns whether an end is released from its point.
     fn is_released(&self, end: End) -> bool {
         self.layout.released[end as usize]
     }
 
-    /// Finds the nodes at the water's surface at t_n and sets their coefficients.
+    /// Finds the nodes at the water surface at t_n and sets their coefficients.
     fn meet_surface(&mut self) {
         if self.layout.surface.is_some() {
             self.layout.find_surface();
@@ -203,8 +201,8 @@ impl<K: Kernel> LeapfrogLine<K> {
         self.layout.vector_unit.dispatch(PutEnds(&mut self.layout, ends));
     }
 
-    /// Restarts viscoelastic segments and the work of the ends from the present position and velocity of the ends, half the `last` step [s] ago: a
-    /// jump is not part of their motion.
+    /// Restarts viscoelastic segments and the work of the ends after a jump, from the positions that the current velocities give half the `last` step
+    /// [s] ago.
     fn set_out_anew(&mut self, last: f64) {
         let lag = 0.5 * last;
         self.set_out(lag);

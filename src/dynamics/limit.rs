@@ -6,26 +6,26 @@
 //!
 //! Δt_max = (2/ω)(√(1 + ζ²) − ζ),
 //!
-//! of which 0.9 is used. That is the limit for springs that pull and push. The springs of a line only pull, and the
-//! map of a step changes where it slackens. With θ from ωΔt = 2 sin(θ/2), the trace of k taut steps and a slack one is 2
-//! cos((k + ½)θ)/cos(θ/2), whose magnitude exceeds 2 near (k + ½)θ = π, for θ between π/(k + 1) and π/k. One taut step
-//! and a slack one in alternation are unstable above ωΔt = √2, two and one from 1 to √2, three and one from 0.77 to
-//! 1, and longer sequences, progressively more weakly, below: a slack line without damping accumulates energy in its
-//! shortest waves. Lines with little damping use 0.38 of the limit, ωΔt ≤ 0.76: the energy balance of the leapfrog
-//! closes within 2 % in 97 % of random scenes with equal steps and in 99 % with irregular ones, compared with 95 and
-//! 96 % at 0.5 of the limit. A line that may be released needs more damping to use more of the limit: a loose end
-//! cracks like a whip, alternately slack and taut.
+//! of which 0.9 is used. This limit holds for springs that pull and push. The springs of a line only pull, and the
+//! amplification matrix of a step changes when the line goes slack. With θ from ωΔt = 2 sin(θ/2), the trace of k taut
+//! steps and a slack one is 2 cos((k + ½)θ)/cos(θ/2), whose magnitude exceeds 2 near (k + ½)θ = π, for θ between π/(k + 1)
+//! and π/k. Taut and slack steps in alternation are unstable above ωΔt = √2, two taut steps and a slack one from 1 to √2,
+//! three and one from 0.77 to 1, and longer sequences, progressively more weakly, below: a slack line without damping
+//! accumulates energy in its shortest waves. Lines with little damping use 0.38 of the limit, ωΔt ≤ 0.76: the energy
+//! balance of the leapfrog closes within 2 % in 97 % of random scenes with equal steps and in 99 % with irregular ones,
+//! compared with 95 and 96 % at 0.5 of the limit. A line that may be released needs more damping to use more of the
+//! limit: a loose end cracks like a whip, alternately slack and taut.
 //!
 //! Transverse waves of speed c = √(T/m) limit every variant, including the axial-implicit one: Δt < 0.6 h/c, or 1.2/ω with k = T/l.
-//! Lines that may come out of the water have their mass in air here, and the stiffness of their waterplane.
+//! For lines that may emerge from the water, these limits use the mass in air, and include the waterplane stiffness.
 //!
 //! Quadratic drag is explicit, evaluated at v* = 1.5 v_{n−½} − 0.5 v_{n−3/2}. A velocity that changes sign in every
 //! step has v* = 2v and drag 4K|v|v, which turns it into −v for K|v|Δt/M = ½. A steady velocity is stable against
-//! disturbances, whose drag is 2K|v|v*, up to the same limit. Beyond it, velocities grow in every step, and
-//! faster the greater they are: a communication step that ends beyond it is repeated in shorter steps.
+//! disturbances, whose drag is 2K|v|v*, up to the same limit. Beyond it, velocities grow in every step, at a rate that
+//! increases with the velocity: a communication step that ends beyond the limit is repeated in shorter steps.
 //!
-//! In the shortest wave, velocities change sign in every step for springs, dampers, mass damping (α) and drag
-//! alike, so that the terms add up:
+//! In the shortest wave, velocities change sign in every step for springs, dampers, mass damping (α) and drag alike.
+//! Their terms therefore add up:
 //!
 //! ω²Δt²/4 + (ζω + ½α + 2K|v|/M)Δt ≤ 1,
 //!
@@ -40,38 +40,38 @@ use std::ops::{Range, RangeInclusive};
 use crate::model::{End, Line, Model, SHORTEST, Segments};
 use crate::physics::stretch::StretchLaw;
 
-/// Fraction of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast diverges with five times the drag
-/// and 20 elements.
+/// Fraction of the closed-form limit that is used [-]. With 0.95, the scene lindahl_fast diverges with five times the
+/// drag and 20 elements.
 const SAFETY: f64 = 0.9;
 /// The same for a line without damping [-].
 const SAFETY_UNDAMPED: f64 = 0.38;
-/// Damping ratio of the shortest waves from which slackening adds no energy at the full safety factor [-].
+/// Damping ratio of the shortest waves above which slackening adds no energy at the full safety factor [-].
 const DAMPING_RATIO_ENOUGH: f64 = 0.016;
-/// The same for a line that may be released [-]. Measured on a folded chain released at an end, 2 %
-/// damped, of 40 to 160 elements: with 0.9, 0.72, 0.63 and 0.54 of the limit the crack gains up to 3.2, 1.1, 0.5 and
-/// 0 % of its energy.
+/// The same for a line that may be released [-]. Measured on a folded chain of 40 to 160 elements with 2 % damping,
+/// released at an end: with 0.9, 0.72, 0.63 and 0.54 of the limit, the whip crack gains up to 3.2, 1.1, 0.5 and 0 % of
+/// its energy.
 const DAMPING_RATIO_WHIP: f64 = 0.1;
-/// Steps per first axial period that leave an error of 1 % in a tension with snaps [-]: half of the corresponding
-/// tolerance; the other half is left to the mesh. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
+/// Steps per first axial period that leave an error of 1 % in a tension with snaps [-]: half of a tolerance of 2 %; the
+/// other half is left to the mesh. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
-/// Strain up to which a stiffening measure is stable [-]; beyond it the steps shorten as it stiffens.
+/// Strain up to which the limits cover a stiffening strain measure [-]; beyond it the steps shorten as it stiffens.
 const STRAIN_EXPECTED: f64 = 0.05;
-/// Greatest K|v|Δt/M at which explicit drag damps [-].
+/// Largest K|v|Δt/M at which explicit drag damps [-].
 const DRAG_COURANT: f64 = 0.5;
-/// Fraction of the limit used at the start of a communication step, as nodes may accelerate in it [-].
+/// Fraction of the drag limit used at the start of a communication step, during which nodes may accelerate [-].
 const DRAG_MARGIN: f64 = 0.8;
-/// Halvings of the interval in which the square of a frequency is sought [-].
+/// Number of bisections for the square of a frequency [-].
 const HALVINGS: usize = 30;
 /// Axial Courant number at which a position that jumps by ½aΔt² at every communication point leaves an error of [`JUMP_ERROR`] in the tension at the
-/// next one [-]. Measured on a cable of 30 elements in communication steps of 10, 20 and 50 ms: 0.01, 0.00 and 0.2 % with 1.5, 0.3, 0.1 and 0.9 %
-/// with 2.2 to 3, and 2, 6 and 4 % with 4.4.
+/// next one [-]. Errors on a cable of 30 elements in communication steps of 10, 20 and 50 ms: 0.01, 0.00 and 0.2 % with a Courant number of 1.5; 0.3,
+/// 0.1 and 0.9 % with 2.2 to 3; 2, 6 and 4 % with 4.4.
 const JUMP_COURANT: f64 = 1.5;
-/// Error of tension that [`JUMP_COURANT`] leaves [-].
+/// Relative error in the tension at [`JUMP_COURANT`] [-].
 const JUMP_ERROR: f64 = 0.005;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
-/// Limit of explicit steps, at the node whose shortest wave has the highest frequency.
+/// Limit on explicit steps, set by the node whose shortest wave has the highest frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExplicitLimit {
     /// Longest step without drag, with safety [s].
@@ -92,8 +92,8 @@ impl ExplicitLimit {
         }
     }
 
-    /// Limit for a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; with the full safety factor from the damping
-    /// ratio `enough`.
+    /// Limit for a circular frequency ω [rad/s], BA/EA [s] and α [1/s]. It uses the full safety factor from a damping ratio
+    /// of `enough` [-].
     fn new(omega: f64, lag: f64, alpha: f64, enough: f64) -> ExplicitLimit {
         let dampers = 0.5 * (omega * omega * lag + alpha);
         let damped = match omega > 0.0 {
@@ -115,7 +115,7 @@ impl ExplicitLimit {
         if other.step < self.step { other } else { self }
     }
 
-    /// Limit with springs stiffer than expected by a factor [-].
+    /// Limit with springs stiffer than expected by the factor `times` [-].
     pub fn stiffened(self, times: f64) -> ExplicitLimit {
         ExplicitLimit {
             step: self.step / times.sqrt(),
@@ -124,24 +124,24 @@ impl ExplicitLimit {
         }
     }
 
-    /// First step [s] of a span where the greatest K|v|/M of all nodes is `rate` [1/s].
+    /// Step [s] for a communication step at whose start the largest K|v|/M of all nodes is `rate` [1/s].
     pub fn with_drag(&self, rate: f64) -> f64 {
         self.step.min(self.stable(rate / DRAG_MARGIN))
     }
 
-    /// Returns whether steps [s] at whose end the greatest K|v|/M is `rate` [1/s] were short enough.
+    /// Returns whether steps of `step` [s] were short enough, given the largest K|v|/M at their end, `rate` [1/s].
     pub fn holds(&self, rate: f64, step: f64) -> bool {
         step <= self.stable(rate)
     }
 
-    /// Longest stable step [s], without safety.
+    /// Longest stable step [s], without the safety factor.
     fn stable(&self, rate: f64) -> f64 {
         let linear = self.dampers + rate / DRAG_COURANT;
         2.0 / (linear + (linear * linear + 4.0 * self.springs).sqrt())
     }
 }
 
-/// Explicit step limit of a line; none for a line without nodes that may move.
+/// Explicit step limit of a line; [`ExplicitLimit::none`] for a line without nodes that may move.
 pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     if let Some(winch) = &line.winch {
         return explicit_limit(winch.longest()).or(winch_limit(winch.longest()));
@@ -158,7 +158,7 @@ pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     limit
 }
 
-/// Rate α at which mass damping decelerates a node [1/s].
+/// Mass damping coefficient α of a node [1/s].
 fn fading(line: &Line, node: usize) -> f64 {
     let damping = line.nodes.mass_damping.as_ref();
     damping.map_or(0.0, |damping| damping[node] / line.least_mass(node))
@@ -167,7 +167,7 @@ fn fading(line: &Line, node: usize) -> f64 {
 /// Masses of the free points at ends A and B of a line, each shared by its lines [kg]; `None` at prescribed points.
 pub type EndShares = [Option<f64>; 2];
 
-/// Shares of a line of a model.
+/// Returns the shares at the ends of a line.
 pub fn end_shares(model: &Model, line: &Line) -> EndShares {
     line.ends.map(|index| {
         let point = &model.points[index];
@@ -200,12 +200,12 @@ fn share_at(line: &Line, node: usize, shares: EndShares) -> f64 {
     }
 }
 
-/// Segments adjacent to a node: one at an end.
+/// Indices of the segments adjacent to a node; an end node has one.
 fn adjacent(line: &Line, node: usize) -> Range<usize> {
     node.saturating_sub(1)..(node + 1).min(line.segment_count())
 }
 
-/// Explicit step limit of the node before the end segment of a line on a winch at its shortest, at any place.
+/// Explicit step limit of the node before the end segment of a line on a winch, for the shortest end segment at any node.
 fn winch_limit(winch_state: &Line) -> ExplicitLimit {
     let limit = |i: usize| {
         let (left, right) = (
@@ -221,13 +221,13 @@ fn winch_limit(winch_state: &Line) -> ExplicitLimit {
     nodes.map(limit).fold(ExplicitLimit::none(), ExplicitLimit::or)
 }
 
-/// Explicit step limit of a free point with its lines; none without a line.
+/// Explicit step limit of a free point with its lines; [`ExplicitLimit::none`] for other points.
 pub fn free_point_limit(model: &Model, point: usize) -> ExplicitLimit {
     let Some(free) = model.points[point].free() else {
         return ExplicitLimit::none();
     };
     let own = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
-    let mut alone = 0.0_f64; // greatest k/M of one line if all others are released
+    let mut alone = 0.0_f64; // largest k/M of a half node if all other lines are released [1/s²]
     let (mut enough, mut alpha) = (DAMPING_RATIO_ENOUGH, 0.0_f64);
     let (mut mass, mut sum, mut longest) = (free.mass, 0.5 * own, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
@@ -250,7 +250,7 @@ pub fn free_point_limit(model: &Model, point: usize) -> ExplicitLimit {
     ExplicitLimit::new(omega, longest, alpha, enough)
 }
 
-/// Greatest ratio of a segment's stiffness to the mass of its half node [1/s²] among the lines at a point.
+/// Largest ratio of end-segment stiffness to half-node mass [1/s²] among the lines at a point.
 fn lone_rates(model: &Model, point: usize) -> f64 {
     let attached = model.points[point].attached.iter();
     let rate = |&(index, end): &(usize, End)| {
@@ -262,7 +262,7 @@ fn lone_rates(model: &Model, point: usize) -> f64 {
     attached.map(rate).fold(0.0, f64::max)
 }
 
-/// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure; (EA + P)/l with joints as stiff as a tension P.
+/// k = EA/l of a segment [N/m], at the largest expected slope of its strain measure; (EA + P)/l with joints as stiff as a tension P.
 fn stiffness(line: &Line, i: usize) -> f64 {
     let segments = &line.segments;
     let slope = expected_slope(&segments.law[i]);
@@ -280,7 +280,7 @@ fn lag(segments: &Segments, i: usize) -> f64 {
     damping / stiffness
 }
 
-/// Damping ratio from which a line uses the full safety [-].
+/// Damping ratio above which a line uses the full safety factor [-].
 fn damping_enough(line: &Line) -> f64 {
     match &line.release {
         None => DAMPING_RATIO_ENOUGH,
@@ -288,9 +288,9 @@ fn damping_enough(line: &Line) -> f64 {
     }
 }
 
-/// Square of the greatest frequency of axial waves in a line whose ends are at prescribed points, or carry shares of
-/// free ones [1/s²]. The nodes have their masses in air and move along the line only. Infinite where the springs may
-/// be stiffer than the axial stiffness. Found by bisection with Sturm's theorem (Golub & Van Loan 2013, Matrix
+/// Square of the highest circular frequency of axial waves in a line [1/s²]. Its ends are at prescribed points, or carry
+/// shares of free points. The nodes have their masses in air and move along the line only. Infinite if the springs may
+/// become stiffer than the axial stiffness. Computed by bisection with Sturm's theorem (Golub & Van Loan 2013, Matrix
 /// Computations, section 8.4).
 pub fn axial_frequency_squared(line: &Line, shares: EndShares) -> f64 {
     if line.segments.viscoelastic.is_some() || line.segments.law.iter().any(StretchLaw::may_stiffen) {
@@ -307,7 +307,7 @@ pub fn axial_frequency_squared(line: &Line, shares: EndShares) -> f64 {
         true => 0.0,
         false => stiffness(line, i - 1).powi(2) / (mass(i - 1) * mass(i)),
     };
-    // λ is beyond all squares if no pivot of λ − A is negative
+    // λ exceeds all eigenvalues of A if all pivots of λ − A are positive
     let is_beyond = |square: f64| {
         let mut pivot = f64::INFINITY;
         nodes.clone().all(|i| {
@@ -327,22 +327,22 @@ pub fn axial_frequency_squared(line: &Line, shares: EndShares) -> f64 {
     high
 }
 
-/// Step [s] that resolves the first axial period 4L/c for a target error of tension [-].
+/// Step [s] that resolves the first axial period 4L/c, for a tolerance of the tension [-].
 pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
     let segments = &line.segments;
     let travel = travel_time(line, &line.nodes.mass_tangent, |i| segments.in_motion(i).0);
     resolved(4.0 * travel, tolerance)
 }
 
-/// Step [s] over which a jump of a line's end leaves the segment there, for a target error of tension [-].
+/// Step [s] in which the axial wave from a jump of a line's end leaves the end segment, for a tolerance of the tension [-].
 pub fn jump_accuracy_step(line: &Line, tolerance: f64) -> f64 {
     let segments = &line.segments;
     let travel = travel_time(line, &line.nodes.mass_tangent, |i| segments.in_motion(i).0);
     JUMP_COURANT * travel / line.segment_count() as f64 * (tolerance / JUMP_ERROR).sqrt()
 }
 
-/// Step [s] that resolves the elastic oscillation of a free point on its lines, each taken as one spring with half of its mass, for a target error of
-/// tension [-]; infinite for points that are held.
+/// Step [s] that resolves the elastic oscillation of a free point on its lines, each taken as one spring with half of its mass, for a tolerance of
+/// the tension [-]. Infinite for points that are not free.
 pub fn point_accuracy_step(model: &Model, point: usize, tolerance: f64) -> f64 {
     let Some(free) = model.points[point].free() else {
         return f64::INFINITY;
@@ -357,12 +357,12 @@ pub fn point_accuracy_step(model: &Model, point: usize, tolerance: f64) -> f64 {
     resolved(std::f64::consts::TAU * (mass / spring).sqrt(), tolerance)
 }
 
-/// Step [s] that resolves an axial period [s] for a target error of tension [-].
+/// Step [s] that resolves an axial period [s], for a tolerance of the tension [-].
 fn resolved(period: f64, tolerance: f64) -> f64 {
     period / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()
 }
 
-/// Longest period of a line's transverse waves between ends that are held [s], under a tension [N].
+/// Longest period of a line's transverse waves between fixed ends [s], under a tension [N].
 pub fn transverse_period(line: &Line, tension: f64) -> f64 {
     let mass = match &line.surface {
         None => &line.nodes.mass_normal,
@@ -382,20 +382,20 @@ fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64
     (0..line.segment_count()).map(time).sum()
 }
 
-/// Greatest stiffness of a node due to the water's surface [N/m].
+/// Maximum waterplane stiffness at a node [N/m].
 fn heave(line: &Line, node: usize) -> f64 {
     let surface = line.surface.as_ref();
     surface.map_or(0.0, |surface| surface.stiffness_max(node))
 }
 
-/// Step limit [s] of the heave of a free point, with safety; infinite where it does not meet the water's surface.
+/// Step limit [s] for the heave of a free point, with the safety factor; infinite if the point does not pierce the surface.
 pub fn point_heave_step(model: &Model, point: usize) -> f64 {
     let sphere = model.points[point].free().and_then(|free| free.sphere);
     let stiffness = sphere.map_or(0.0, |sphere| sphere.stiffness_max());
     SAFETY * 2.0 / (stiffness / least_mass(model, point)).sqrt()
 }
 
-/// Least mass of a free point and of the half nodes tied to it [kg].
+/// Minimum mass of a free point and of the half nodes tied to it [kg].
 pub fn least_mass(model: &Model, point: usize) -> f64 {
     let point = &model.points[point];
     let tied = point.attached.iter().map(|&(line, end)| {
@@ -405,7 +405,7 @@ pub fn least_mass(model: &Model, point: usize) -> f64 {
     point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
 }
 
-/// Explicit step limit [s] of a line that floats, with safety; infinite where it does not meet the water's surface.
+/// Step limit [s] for the heave of a line, with the safety factor; infinite if the line does not pierce the surface.
 pub fn heave_step(line: &Line) -> f64 {
     let limit = |i: usize| SAFETY * 2.0 / (heave(line, i) / line.least_mass(i)).sqrt();
     let nodes = line.surface.as_ref().map(|_| loose_nodes(line));
@@ -416,8 +416,8 @@ pub fn heave_step(line: &Line) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Transverse step limit [s] of a line with shares of free points under a tension [N]; infinite without tension. Gershgorin's bound again, with the
-/// transverse stiffness T/l of the segments: where these are alike it is 0.6 h/c.
+/// Transverse step limit [s] of a line with shares of free points under a tension [N]; infinite without tension. Uses Gershgorin's bound with the
+/// transverse stiffness T/l of the segments; for equal segments the limit is 0.6 h/c.
 pub fn transverse_step(line: &Line, tension: f64, shares: EndShares) -> f64 {
     let lengths = &line.segments.length;
     let mut limit = f64::INFINITY;
@@ -449,7 +449,7 @@ mod tests {
     use crate::draft::draft;
     use crate::dynamics::leapfrog::step::Step;
 
-    /// A line of sections of [mass per length [kg/m], length [m], elements], EA = 1 MN.
+    /// Line with EA = 1 MN, of sections given as (mass per length [kg/m], length [m], number of elements).
     fn line(sections: &[(f64, f64, usize)], strain: &str) -> Line {
         let names = ["one", "two", "three"];
         let named = || names.into_iter().zip(sections);
@@ -511,8 +511,8 @@ mod tests {
         );
     }
 
-    /// Ratio of the speed of a node after 200 steps to the initial one, for an initial K|v|Δt/M of `courant`; the node
-    /// starts with the velocity that changes sign.
+    /// Ratio of the speed of a node after 200 steps to its initial speed, for an initial K|v|Δt/M of `courant`. The initial
+    /// velocity changes sign from one step to the next.
     fn flipping(courant: f64) -> f64 {
         let step = Step::after([1.0; 2], 1.0);
         let mut velocities = [1.0, -1.0];
@@ -524,8 +524,8 @@ mod tests {
         velocities[0].abs()
     }
 
-    /// Amplitude of the shortest wave after 400 steps of a part of the stable step, over that at its start [-]:
-    /// springs, dampers, damping by mass, and drag that a steady velocity makes linear, of a rate K|v|/M.
+    /// Ratio of the amplitude of the shortest wave after 400 steps to its initial amplitude [-]. The steps are `part` of the
+    /// stable step. The wave has springs, dampers, mass damping, and drag of rate K|v|/M linearised about a steady velocity.
     fn shortest_wave([omega, lag, alpha, rate]: [f64; 4], part: f64) -> f64 {
         let limit = ExplicitLimit::new(omega, lag, alpha, DAMPING_RATIO_ENOUGH);
         let size = part * limit.stable(rate);

@@ -22,7 +22,7 @@ pub use choice::Choice;
 pub use cost::{IMPLICIT_COST, axial_implicit_cost, node_time};
 pub use threads::{Aside, as_worker, is_worker, make_threads_aside};
 
-/// Failed step, with its place. The state is unchanged.
+/// Failed step, with its time, line and node. The state is unchanged.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("t = {time:.6} s, line \"{line}\", node {node}: {cause}; {}", cause.advice())]
 pub struct StepError {
@@ -68,7 +68,7 @@ pub enum StepFailure {
         /// Internal steps needed [-].
         count: f64,
     },
-    /// Positions or velocities grew without bound, also in shorter steps.
+    /// Positions or velocities grew without bound, even in shorter steps.
     #[error("the motion grew without bound")]
     Unbounded,
     /// Newton's method of an implicit step did not converge.
@@ -78,7 +78,7 @@ pub enum StepFailure {
     NotConverged {
         /// Shortest step tried [s].
         step: f64,
-        /// Greatest force out of balance [N].
+        /// Largest residual force [N].
         residual: f64,
     },
     /// A step of a beam failed.

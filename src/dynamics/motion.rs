@@ -1,31 +1,30 @@
-//! The path of a coupled point or a vessel, axis by axis, between communication points.
+//! Path of a coupled point or a vessel between communication points, axis by axis.
 //!
-//! A host sets the displacement x_k (and optionally the velocity v_k) at t_k and requests t_k + h. A step to x_k at
-//! that moment would be a jump, the most common source of noise in coupled simulations. Instead the point follows one C1 curve:
-//! on every communication step a cubic Hermite segment from the end of the path to the predicted position of the
-//! point.
+//! A host sets the displacement x_k (and optionally the velocity v_k) at t_k and requests t_k + h. Setting the point to
+//! x_k at that time would be a jump, the most common source of noise in coupled simulations. Instead, the point follows
+//! one C1 curve: on every communication step a cubic Hermite segment from the end of the path to the predicted position.
 //!
-//! The prediction extrapolates the polynomial P through the newest samples at their times, of the degree k = 0 … 3
-//! whose expected error at the end of the step is least: its remainder there is P[t_0 … t_{k+1}] (t − t_0) … (t −
-//! t_k), with the divided difference of the last two sets of samples. Smooth motion gets the third degree (error
-//! O(h⁴)), noise and jumps a low one. On equal steps the remainder is the error that each degree would have had at
-//! the last two samples. From rest it is always that error, since a jump within a short step does not continue at its
-//! rate. A degree is kept until another would be better by more than a factor: two of them are often equally good
-//! where a harmonic motion is sampled symmetrically, and rounding of the host's times would then decide between them.
-//! With velocities the polynomial is fitted to them and integrated from x_k.
+//! The prediction extrapolates the polynomial P through the newest samples. Its degree is the k = 0 … 3 with the smallest
+//! expected error at the end of the step. This error is the remainder P[t_0 … t_{k+1}] (t − t_0) … (t − t_k), with the
+//! divided differences of the last two sets of samples. Smooth motion gets the third degree (error O(h⁴)), noise and jumps
+//! a low one. On equal steps the remainder is the error that each degree would have had at the last two samples. That
+//! error is always used from rest, since a jump within a short step does not continue at its rate. A degree is kept until
+//! the expected error of another is smaller by a given factor: two degrees are often equally good where a harmonic motion
+//! is sampled symmetrically, and rounding of the host's times would then decide between them. If the host gives
+//! velocities, the polynomial is fitted to them and integrated from x_k.
 //!
-//! The velocity of the third degree at the end of the step is off by (25/12) m/h on equal steps, with the fourth difference m of the samples, which
-//! is also the error of the position. A cubic with this velocity error at both ends has accelerations that are off by up to 12.5 m/h²: 18 %
-//! RMS with 40 steps in a period, where positions are off by 0.06 % and velocities by 0.4 %. The tension of a light line follows the
-//! acceleration of its end. On equal steps the velocity is therefore that of the polynomial of degree four: accelerations are
-//! then off by 1.7 % and velocities by 0.07 %, and noise in the samples has 1.3 times the effect. The term of degree four fades out as
-//! the longest of the steps grows to twice the shortest: the errors of the positions at the ends of uneven steps differ and shake the path as much.
+//! On equal steps the velocity of the third degree at the end of the step has an error of (25/12) m/h, where the fourth difference m of the samples
+//! is also the error of the position. A cubic with this velocity error at both ends has errors of acceleration of up to 12.5 m/h²: 18 % RMS with 40
+//! steps per period, where the errors are 0.06 % in position and 0.4 % in velocity. The tension of a light line follows the acceleration of its
+//! end. On equal steps the velocity is therefore that of the polynomial of degree four: the errors are then 1.7 % in acceleration and 0.07 % in
+//! velocity, and noise in the samples has 1.3 times the effect. The term of degree four fades out as the ratio of the longest step to the shortest
+//! grows to two: the position errors at the ends of uneven steps differ and disturb the path as much.
 //!
-//! The error of a prediction, e = path − P at t_k with its rate ė, is removed within the coming step if that is no
-//! shorter than the last. Otherwise a step of 1 ms after one of 10 s that ended a metre from the host's position
-//! would jump back by a metre. In that case e decays to zero along a cubic over a time T: the length of the step that
-//! caused the error, less the time passed since, so that the path converges as on equal steps; once that step is no
-//! longer among the samples, at most the time that it takes with |ë| ≤ a:
+//! The error of a prediction, e = path − P at t_k with its rate ė, is removed within the next step if that step is no
+//! shorter than the last. A shorter step would move the path too fast: 1 ms after a step of 10 s that ended a metre from
+//! the host's position, it would jump back by a metre. In that case e decays to zero along a cubic over a time T. T is the
+//! length of the step that caused the error, less the time passed since, so that the path converges as on equal steps.
+//! Once that step is no longer among the samples, T is at most the time that the decay takes with |ë| ≤ a:
 //!
 //! T = (√(ė² + 6a|e|) − |ė|)/a   where e ė < 0 and ė² ≤ 2a|e|,   else (2|ė| + √(4ė² + 6a|e|))/a
 //!
@@ -33,14 +32,14 @@
 //! mean acceleration of P over the step, the path has moved five metres 12 s after a step of several minutes.
 //!
 //! A host that has the motion in advance, or that steps the moving body first, sets the position at t_k + h instead
-//! ([`Reconstruction::Interpolate`]): cubics through the samples then need no prediction. A velocity that the host leaves out follows from the newest
-//! samples. The parabola through three of them has an error of h²/3 x⃛ at both ends of the step, so that accelerations are off by 31 % with 40 steps
-//! in a period; the polynomial of degree four, where the degree that predicts best is the third, leaves 0.5 %.
+//! ([`Reconstruction::Interpolate`]): cubics through the samples then need no prediction. If the host gives no velocity, it follows from the newest
+//! samples. The parabola through three of them has an error of h²/3 x⃛ at both ends of the step, which causes errors of acceleration of 31 % with 40
+//! steps per period. The polynomial of degree four, used where the third degree predicts best, reduces them to 0.5 %.
 //!
 //! Source: divided differences and their remainder, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary
 //! Differential Equations I, eq. III.1.7; the choice of degree, and of T, is derived here. Valid for any sequence of
-//! step sizes: of two samples closer together than a thirtieth of the longest step in the record the older one is
-//! skipped, and all are dropped when the host steps back.
+//! step lengths: of two samples closer together than a thirtieth of the longest step in the record, the older one is
+//! skipped, and all samples are dropped when the host steps back in time.
 
 mod differences;
 mod extrapolation;
@@ -60,14 +59,14 @@ pub use extrapolation::{Clock, Extrapolation};
 use extrapolation::{DEGREE_MAX, Order, SAMPLES_MAX, Samples};
 pub use fading::Fading;
 
-/// Acceleration that the removal of a prediction error may use in any case [m/s²]: a fiftieth of g.
+/// Acceleration that is always allowed for the removal of a prediction error [m/s²]: a fiftieth of g.
 const EASE: f64 = 0.2;
 /// The same for angles [rad/s²], with lever arms of some ten metres.
 const EASE_OF_ANGLES: f64 = 0.02;
-/// Additional share of the motion's acceleration for the removal of an error [-].
+/// Fraction of the motion's mean acceleration that is allowed in addition [-].
 const SHARE: f64 = 0.5;
 
-/// Sample from a host of up to four axes.
+/// Sample from a host for up to four axes.
 #[derive(Debug, Clone, Copy)]
 pub struct InputSample {
     /// Position along the axes [m, rad].
@@ -76,12 +75,12 @@ pub struct InputSample {
     pub velocity: Lanes,
     /// 1 along the axes with a velocity from the host, else 0 [-].
     pub rated: Lanes,
-    /// Acceleration that is negligible along the axes [m/s², rad/s²].
+    /// Acceleration that is always allowed for the removal of an error [m/s², rad/s²].
     ease: f64,
 }
 
 impl InputSample {
-    /// Sample of N axes, the last of which also fills the missing ones.
+    /// Sample of N axes; the last one also fills the unused lanes.
     #[inline(always)]
     pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> InputSample {
         let rated = velocity.map(|rate| f64::from(u8::from(rate.is_some())));
@@ -96,22 +95,21 @@ impl InputSample {
     }
 }
 
-/// C1 path along four axes side by side, with the samples of its prediction.
+/// C1 path along four axes in lanes, with the samples from which it is predicted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxesPath {
-    /// Samples from the host, newest first, at the times of the clock [m, rad].
+    /// Position samples from the host, newest first, at the times of the clock [m, rad].
     positions: Samples,
-    /// Samples of the velocities, as far as they were along the same axes [m/s, rad/s].
+    /// Velocity samples, newest first [m/s, rad/s]; the first `times_rated` are along the axes that `rated` marks.
     velocities: Samples,
     /// 1 along the axes whose last sample has a velocity, else 0 [-].
     rated: Lanes,
-    /// Number of such samples along these axes [-].
+    /// Number of successive samples with velocities along these axes [-].
     times_rated: usize,
     /// Degrees chosen by the last prediction [-].
     degree: Lanes,
-    /// The present segments.
     curve: Hermites,
-    /// Ends of the axes [m, rad], with their velocities [m/s, rad/s].
+    /// Positions [m, rad] and velocities [m/s, rad/s] at the end of the path.
     end: [Lanes; 2],
 }
 
@@ -131,9 +129,9 @@ impl AxesPath {
         }
     }
 
-    /// Sets the path to `before`, continued by a communication step from the host's sample at its start, or at its end
-    /// with [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: reading the values back
-    /// immediately would stall the step on the stores.
+    /// Sets the path to `before`, continued over a communication step with the host's sample at its start, or at its end
+    /// for [`Reconstruction::Interpolate`]. Returns the values of [`AxesPath::ends`]: reading them back immediately would
+    /// stall the step on the stores.
     #[inline(always)]
     pub fn extend(
         &mut self,
@@ -149,7 +147,7 @@ impl AxesPath {
             self.turn(before, extrapolation, sample);
             return self.ends();
         }
-        // arrays are taken apart, so that they stay in registers
+        // arrays are destructured, so that they stay in registers
         let [a, b, c, d, e, _] = before.positions;
         let [v, w, x, y, z, _] = before.velocities;
         (self.rated, self.degree) = (before.rated, before.degree);
@@ -170,7 +168,7 @@ impl AxesPath {
         self.ends()
     }
 
-    /// [`AxesPath::extend`] to the host's sample at the step's end.
+    /// [`AxesPath::extend`] to the host's sample at the end of the step.
     #[inline(always)]
     fn interpolate(
         &mut self,
@@ -191,8 +189,8 @@ impl AxesPath {
         [start, [sample.position, velocity, curvature]]
     }
 
-    /// Velocity at the newest sample [m/s, rad/s]: that of the polynomial of degree four where the third predicts the samples best, else that of
-    /// the parabola through the last three positions.
+    /// Velocity at the newest sample [m/s, rad/s]: that of the polynomial of degree four where the third degree predicts the samples best, else that
+    /// of the parabola through the last three positions.
     #[inline(never)]
     fn derive(&mut self, before: &AxesPath, extrapolation: &Extrapolation) -> Lanes {
         let differences = Differences::new(extrapolation, extrapolation.pick(&self.positions));
@@ -252,8 +250,8 @@ impl AxesPath {
         self.curve = Hermites::bridge(extrapolation.span, before.end, self.end);
     }
 
-    /// [`AxesPath::bridge`] where the path jumps to the host's sample, or where its error is removed over more than
-    /// the step.
+    /// [`AxesPath::bridge`] where the path jumps to the host's sample, or where its error is removed over more than one
+    /// step.
     #[cold]
     #[inline(never)]
     fn bridge_over(
@@ -291,14 +289,14 @@ impl AxesPath {
         self.end = to;
     }
 
-    /// Continues the path `before` over a time span [s] to given positions [m, rad] and velocities [m/s, rad/s] in place of its
-    /// prediction.
+    /// Sets the path to `before`, continued over a time span [s] to given positions [m, rad] and velocities [m/s, rad/s] instead
+    /// of its prediction.
     pub fn lead(&mut self, before: &AxesPath, [start, length]: [f64; 2], to: [Lanes; 2]) {
         self.curve = Hermites::bridge([start, length, 1.0 / length], before.end, to);
         self.end = to;
     }
 
-    /// Newest sample from the host [m, rad]; `None` where it has a velocity along any axis.
+    /// Newest position sample from the host [m, rad]; `None` if the sample has a velocity along any axis.
     pub fn unrated(&self) -> Option<Lanes> {
         (!self.rated.any_positive()).then_some(self.positions[0])
     }
@@ -312,31 +310,31 @@ impl AxesPath {
         self.curve = Hermites::bridge([start, length, 1.0 / length], from, self.end);
     }
 
-    /// Mean accelerations over the present segments [m/s², rad/s²], which are `length` [s] long.
+    /// Mean accelerations over the current segments [m/s², rad/s²], which are `length` [s] long.
     pub fn mean_acceleration(&self, length: f64) -> Lanes {
         let [[_, slope, _], _] = self.curve.ends();
         Lanes::splat(1.0 / length) * (self.end[1] - slope)
     }
 
-    /// Moves the end of the present segments, which last from a time [s] over a length [s], by distances [m, rad] and velocities [m/s, rad/s].
+    /// Changes the positions [m, rad] and velocities [m/s, rad/s] at the end of the current segments, which start at a time [s] and last `length` [s].
     pub fn shift_end(&mut self, [start, length]: [f64; 2], [distance, velocity]: [Lanes; 2]) {
         let [[position, slope, _], _] = self.curve.ends();
         self.end = [self.end[0] + distance, self.end[1] + velocity];
         self.curve = Hermites::bridge([start, length, 1.0 / length], [position, slope], self.end);
     }
 
-    /// Positions [m, rad] and velocities [m/s, rad/s] at the end of the present segments.
+    /// Positions [m, rad] and velocities [m/s, rad/s] at the end of the current segments.
     pub fn end(&self) -> [Lanes; 2] {
         self.end
     }
 
-    /// Positions, velocities and accelerations at time `t` [s] of the present segments.
+    /// Positions, velocities and accelerations at time `t` [s] of the current segments.
     #[inline(always)]
     pub fn at(&self, t: f64) -> [Lanes; 3] {
         self.curve.at(t)
     }
 
-    /// The same at both ends of the present segments; the end is bit-identical to the start of the next segments.
+    /// The same at both ends of the current segments; the end is bit-identical to the start of the next segments.
     #[inline(always)]
     pub fn ends(&self) -> [[Lanes; 3]; 2] {
         let [start, [.., curvature]] = self.curve.ends();
@@ -344,19 +342,18 @@ impl AxesPath {
         [start, [position, velocity, curvature]]
     }
 
-    /// The newest three samples of the position along the first three axes [m, rad].
+    /// Newest three position samples along the first three axes [m, rad].
     pub fn newest(&self) -> [Vector3<f64>; 3] {
         let [newest, last, second, ..] = &self.positions;
         [newest.xyz(), last.xyz(), second.xyz()]
     }
 
-    /// Jump of the acceleration along the first three axes to the path that continues this one [m/s², rad/s²].
+    /// Magnitude of the acceleration jump along the first three axes from this path to its continuation `after` [m/s², rad/s²].
     pub fn jump(&self, after: &AxesPath) -> f64 {
         let ([_, [.., last]], [[.., first], _]) = (self.ends(), after.ends());
         (first - last).xyz().norm()
     }
 
-    /// Predicts from the positions of the host.
     #[inline(always)]
     fn predict(&mut self, extrapolation: &Extrapolation, samples: Samples) -> Prediction {
         let differences = Differences::new(extrapolation, samples);
@@ -386,9 +383,8 @@ impl AxesPath {
 /// Position [m, rad] and velocity [m/s, rad/s] at the end of a step, and the velocity at its start.
 type Prediction = [Lanes; 3];
 
-/// Remainder after a step [s] of an error in position [m, rad] and velocity [m/s, rad/s] of a path, along the cubic
-/// from both to zero over the shortest time between `soon` and `late` [s] for which an acceleration [m/s²,
-/// rad/s²] suffices.
+/// Remainder after a step [s] of an error in position [m, rad] and velocity [m/s, rad/s]. The error decays to zero along a
+/// cubic, over the shortest time between `soon` and `late` [s] for which an acceleration [m/s², rad/s²] suffices.
 fn left(missed: [f64; 2], step: f64, [soon, late]: [f64; 2], acceleration: f64) -> [f64; 2] {
     let time = time_to_meet(missed, acceleration).max(soon).min(late);
     if time <= step {
@@ -402,14 +398,14 @@ fn left(missed: [f64; 2], step: f64, [soon, late]: [f64; 2], acceleration: f64) 
     ]
 }
 
-/// Time over which a cubic brings a distance and a velocity to zero without accelerating by more than `most`.
+/// Time in which a cubic brings a distance and a velocity to zero with accelerations of at most `most`.
 fn time_to_meet([distance, velocity]: [f64; 2], most: f64) -> f64 {
     let (reach, speed) = (6.0 * most * distance.abs(), velocity.abs());
     if distance * velocity < 0.0 && 3.0 * speed * speed <= reach {
-        // approaching, and able to brake: 6d/T² + 2v/T at the end is the greatest
+        // approaching, and able to brake: the acceleration is largest at the end, 6d/T² + 2v/T
         return ((speed * speed + reach).sqrt() - speed) / most;
     }
-    // −6d/T² − 4v/T at the start is no more than with both of one sign
+    // the acceleration at the start, −6d/T² − 4v/T, is largest if d and v have the same sign
     (2.0 * speed + (4.0 * speed * speed + reach).sqrt()) / most
 }
 
@@ -423,7 +419,7 @@ impl AxisPath {
         AxisPath(AxesPath::at_rest([position]))
     }
 
-    /// Continues the path by a communication step from a position [m] and optionally a velocity [m/s] at its start.
+    /// Continues the path over a communication step with a position [m] and optionally a velocity [m/s], sampled as in [`AxesPath::extend`].
     pub fn extend(&mut self, extrapolation: &Extrapolation, position: f64, velocity: Option<f64>) {
         let before = self.0;
         self.0
@@ -435,7 +431,7 @@ impl AxisPath {
         self.0.follow(span, to.map(Lanes::splat));
     }
 
-    /// Position, velocity and acceleration at time `t` [s] of the present segment.
+    /// Position, velocity and acceleration at time `t` [s] of the current segment.
     #[inline]
     pub fn at(&self, t: f64) -> hermite::Sample {
         let [value, slope, curvature] = self.0.at(t).map(|lanes| lanes[0]);
@@ -489,8 +485,8 @@ impl VesselPath {
         ])
     }
 
-    /// Sets the path to `before`, continued by a communication step from a pose [m, rad] and optionally its rates
-    /// [m/s, rad/s] at its start.
+    /// Sets the path to `before`, continued over a communication step with a pose [m, rad] and optionally its rates
+    /// [m/s, rad/s], sampled as in [`AxesPath::extend`].
     #[inline(always)]
     pub fn extend(
         &mut self,

@@ -1,13 +1,13 @@
 //! Quasi-static stepping: at the end of every step the lines are in equilibrium.
 //!
-//! Positions are the equilibrium for the held points and the loads at that time, found from the one before. Nodes
+//! The equilibrium is that for the prescribed points and the loads at that time, computed from the previous equilibrium. Nodes
 //! have neither velocity nor acceleration, so there is no damping, no inertia and no drag except that of a current.
 //! Flexible lines with engineering strain are closed-form catenaries, joined at free points; others, and those without
 //! such a solution, are chains of elements. Valid where motions are slow compared with the lowest natural period
 //! and drag is small compared with weight.
 //!
-//! A step is one equilibrium. It is halved where none is found. If the scene has an energy balance and the mean of the forces before and after a step gives
-//! too rough a value of the work, equilibria in between are found for the balance alone.
+//! A step has one equilibrium at its end, and is halved if none is found. If the scene has an energy balance and the mean of the forces before and
+//! after a step is too inaccurate for the work, equilibria in between are computed for the balance alone.
 
 use nalgebra::Vector3;
 
@@ -19,16 +19,15 @@ use crate::statics::catenary_network::solve_network;
 use crate::statics::equilibrium::continue_network;
 use crate::statics::{StaticsError, catenary_network};
 
-/// Greatest number of parts of a step: six halvings.
+/// Maximum number of parts of a step: six halvings.
 const PARTS_MAX: usize = 64;
-/// Greatest number of halvings of a step for its energy flow.
+/// Maximum number of halvings of a step for its energy flow.
 const FLOW_HALVINGS: usize = 6;
-/// Energy of a step that may be unaccounted for, relative to its work [-].
+/// Largest error of the energy balance of a step, relative to its work [-].
 const OPEN_MAX: f64 = 0.1;
 /// Energy error due to rounding, relative to the stored energy [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Network between two equilibria.
 struct Path<'a, K> {
     model: &'a Model,
     number: usize,
@@ -36,12 +35,11 @@ struct Path<'a, K> {
     held: &'a K,
 }
 
-/// Advances one network from its state at `t0` to the equilibrium at `t1` [s]; `held` returns the positions of the
-/// points that forces do not move. `state.time` is left to the caller. Returns the work of the solver, and the flow
-/// of energy.
+/// Advances one network from its state at `t0` to the equilibrium at `t1` [s]; `held` returns the kinematics of the
+/// prescribed points. The caller sets `state.time`. Returns the computational work and the energy flow.
 ///
 /// # Errors
-/// There is no equilibrium at some time of the step; the state is then the last one found.
+/// No equilibrium was found at some time in the step; the state is then the last equilibrium found.
 pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -96,7 +94,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
-    /// Moves the network from its equilibrium `before`, equal to `state`, to that at the end of a part of the step [s].
+    /// Moves `state`, equal to the equilibrium `before`, to the equilibrium at the end of a part of the step, between two times [s].
     fn rest(
         &self,
         before: &State,
@@ -121,8 +119,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         Ok(())
     }
 
-    /// Puts the network on its catenaries, with its free points guessed by extrapolation; returns whether that was
-    /// possible.
+    /// Sets the network to closed-form catenaries, starting from extrapolated positions of its free points; returns whether
+    /// the solution was found.
     fn hang(&self, state: &mut State, [start, end]: [f64; 2], work: &mut Workspace) -> bool {
         let model = self.model;
         for point in self.network.lines.iter().flat_map(|&line| model.lines[line].ends) {
@@ -137,7 +135,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         solve_network(model, self.number, state, end, work)
     }
 
-    /// Moves the network from its equilibrium on elements at time `t` [s] to its nearby catenaries, if it has any.
+    /// Replaces the equilibrium on elements at time `t` [s] by closed-form catenaries nearby, if there is such a solution.
     fn lay_down(&self, state: &mut State, t: f64, work: &mut Workspace) {
         if !solve_network(self.model, self.number, state, t, work) {
             for &line in &self.network.lines {
@@ -146,7 +144,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         }
     }
 
-    /// Flow of energy between two equilibria; the step is halved where its error is large.
+    /// Energy flow between two equilibria [J]; the step is halved if the error of the energy balance is large.
     fn flow(&self, states: [&State; 2], times: [f64; 2], halvings: usize, work: &mut Workspace) -> Flow {
         let mut flow = work_at_rest(self.model, self.network, states, times);
         let [before, after] = states.map(|state| energy(self.model, self.network, state));
@@ -165,7 +163,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
         flow
     }
 
-    /// Leaves the nodes at rest after a part of the step of `dt` [s]; free points keep their mean velocity, for the next guess.
+    /// Sets the nodes at rest after a part of the step of `dt` [s]. Free points get their mean velocity, for the next extrapolation.
     fn stop(&self, before: &State, state: &mut State, dt: f64) {
         for &point in &self.network.free_points {
             let way = state.points[point].position - before.points[point].position;

@@ -1,42 +1,42 @@
 //! Forces that a line applies to the points at its ends, and tensions along it.
 //!
-//! The end's half node belongs to the line, so that the force on the vessel is
+//! The half node at the end belongs to the line, so that the force on the vessel is
 //!
 //! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_seabed],
 //!
-//! with T q pointing into the line, S the shear of a line with bending stiffness, and v and a of the point. Without the
-//! half node the error of the end force would be of first order in the segment length. A line on its closed-form
-//! catenary uses the forces of the catenary.
+//! where T q points into the line, S is the shear of a line with bending stiffness, and v and a are those of the point.
+//! Without the half node, the error of the end force would be of first order in the segment length. A line on its
+//! closed-form catenary uses the forces of the catenary.
 //!
-//! The bracket assumes a load per length p on the half node that is constant at its end value, p_e. Over the last
-//! element it is better described as linear to the p_k of the next node, which follows from its two segments: p_k h_k
-//! = T₁q₁ − T₂q₂ − (own weight). The load on the half node is then h(⅜p_e + ⅛p_k), and T q, which is that at the
-//! middle of the chord except for (h²/24)p', adds (h/24)(p_k − p_e):
+//! The bracket assumes that the load per length p on the half node is constant at its end value, p_e. A better assumption
+//! for the last element is a load that is linear to the p_k of the next node, which follows from its two segments:
+//! p_k h_k = T₁q₁ − T₂q₂ − (own weight). The load on the half node is then h(⅜p_e + ⅛p_k). T q is the force in the middle
+//! of the chord except for (h²/24)p', which adds (h/24)(p_k − p_e). Together they replace (h/2)p_e by
 //!
-//! h(⅓p_e + ⅙p_k) in place of (h/2)p_e,
+//! h(⅓p_e + ⅙p_k),
 //!
-//! the reaction of consistent loads. p excludes the weight, whose share is exact, and p_e belongs to the tangent at
-//! the end, along 3q₁ − q₂. Drag is proportional to the square of a velocity that decreases along the line, and is not
-//! a linear load even where the velocity is linear: with d_m in the middle of the element, d_e and d_k at its ends,
-//! Simpson's rule for the consistent load adds
+//! the reaction of consistent loads. p excludes the weight, whose share is exact, and p_e uses the tangent at the end,
+//! along 3q₁ − q₂. Drag is proportional to the square of a velocity that decreases along the line, and is not a linear load
+//! even if the velocity is linear. With the drag d_m in the middle of the element, and d_e and d_k at its ends, Simpson's
+//! rule for the consistent load adds
 //!
 //! (h/3)(d_m − ½(d_e + d_k)).
 //!
-//! The velocities in d are relative to the water, with the mean of both ends at the middle, so that a line in a
-//! current has the end forces of one that is towed in still water. Where the line bends, S adds to T q on both sides
-//! of the next node; the contact force of the seabed is given at both nodes and is treated like their weight.
+//! The velocities in d are relative to the water, and the one in the middle is the mean of both ends, so that a line in a
+//! current has the end forces of one that is towed in still water. If the line bends, S adds to T q on both sides of the
+//! next node. The contact force of the seabed is given at both nodes and is treated like their weight.
 //!
-//! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴), and at the surface by |p_e|²/(|p_e|² + 16 |Δ|²), with Δ the part of the load,
-//! including buoyancy, that p_e would gain or lose if the end were as far out of the water as the next node.
+//! The whole correction is scaled by min(1, (|p_e|/|p_k − p_e|)⁴), and at the water surface also by |p_e|²/(|p_e|² + 16 |Δ|²). Δ is the part of the
+//! load, including buoyancy, that p_e would gain or lose if the end were as far out of the water as the next node.
 //!
-//! On a taut rope that follows its fairlead (`taut_polyester`) the error of the tension is reduced to 0.18 with 3 elements, 0.2
-//! with 4, 0.3 with 6 and 0.5 with 10; with 20 and more, where it is below 0.2 % either way, it is 1.1 to 1.4 times as large, as
-//! the error of the plain half node then compensates that of the waves along the line. A load that changes by more than its
-//! value, as towards a next node that snaps or lands, is not linear: unscaled, the error of chains that slacken in every
-//! cycle grows by up to 6 %, scaled by 2 % at most. The law requires one line on both sides of the next node: it is
-//! left out where sections meet there, and where the line is on a winch.
+//! On a taut rope that follows its fairlead (`taut_polyester`), the correction multiplies the error of the tension by 0.18 with 3 elements,
+//! 0.2 with 4, 0.3 with 6 and 0.5 with 10. With 20 and more, where the error is below 0.2 % either way, it is 1.1 to 1.4 times as large: the
+//! error of the uniform load then compensates that of the waves along the line. A load that changes by more than its value, for example
+//! towards a next node that snaps or lands, is not linear: the error of chains that slacken in every cycle grows by up to 6 % without
+//! scaling, and by 2 % at most with it. The correction requires a uniform line on both sides of the next node: it is omitted where sections
+//! meet there, and where the line is on a winch.
 //!
-//! Source: the node's own equation of motion, as for the interior nodes; the loads are derived here from the Taylor series of T q.
+//! Source: equation of motion of the end node, as for interior nodes; the loads are derived here from the Taylor series of T q.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -48,10 +48,10 @@ use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong, WinchState
 use crate::physics::morison;
 use crate::physics::slender::Slender;
 
-/// Weight of the load gained or lost at the surface in the scale of the change, over the load, both squared [-].
+/// Factor on |Δ|² in the scale of the correction at the water surface [-].
 const ABRUPT: f64 = 16.0;
 
-/// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
+/// Tension of segment `i` [N]; on a closed-form catenary the mean of the tensions at its ends.
 pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool) -> f64 {
     if let Some(view) = BeamView::of(line, state) {
         return view.tension(i);
@@ -73,7 +73,7 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     )
 }
 
-/// Force of the material that the winch accelerates and its half node holds, over −λq [N]: m ℓ̇² + M ℓ̈.
+/// Inertia force of the material transport at a winch, divided by −λq [N]: m ℓ̇² + M ℓ̈.
 fn transport_force(line: &Line, winch_state: WinchState) -> f64 {
     let (node, nodes) = (line.segment_count(), &line.nodes);
     let density = nodes.mass[node] / nodes.length[node]; // [kg/m]
@@ -107,8 +107,8 @@ impl<'a> LineEnd<'a> {
         of_line.unwrap_or_else(|| HalfNode::new(*self).force(is_linear))
     }
 
-    /// Force [N] of the end node on its point as lumped-mass codes report it: pull of the end's segment, weight, drag and contact of its
-    /// half, all lumped at the node, without inertia. Beams and closed-form catenaries have no such node: theirs is [`LineEnd::force`].
+    /// Force [N] of the end node on its point as lumped-mass codes report it: pull of the end segment, and weight, drag and contact of the half
+    /// node, all lumped at the node, without inertia. Beams and closed-form catenaries have no such node and use [`LineEnd::force`].
     pub fn nodal_force(&self) -> Vector3<f64> {
         let of_line = self.without_half_node(self.point);
         of_line.unwrap_or_else(|| {
@@ -117,12 +117,12 @@ impl<'a> LineEnd<'a> {
         })
     }
 
-    /// Mass [kg] of the line at this end, −∂F/∂a of [`LineEnd::force`] at the present positions and velocities.
+    /// Mass matrix [kg] of the line at this end, −∂F/∂a of [`LineEnd::force`] at the current positions and velocities.
     ///
-    /// With the load uniform over the half node it is the mass M(t) of the half node, including added mass. With the load linear to the next node
-    /// F contains ⅔ of the end's own load, and the rest is that of the next node, whose acceleration is a state of the line: ⅔ M(t₀), t₀ the tangent at
-    /// the end. The share of the linear load is taken as it is. The force of a beam is linear in a, so that its mass follows from unit
-    /// accelerations; a closed-form catenary and a released end have none.
+    /// With a uniform load over the half node, it is the mass M(t) of the half node, including added mass. With a load that is linear to the next node,
+    /// it is ⅔ M(t₀), where t₀ is the tangent at the end: F contains ⅔ of the load at the end, and the rest is that of the next node, whose acceleration
+    /// is a state of the line. The share of the linear load is taken as constant. The force of a beam is linear in a, so that its mass follows from unit
+    /// accelerations. The mass of a closed-form catenary and of a released end is zero.
     pub fn mass(&self) -> Matrix3<f64> {
         let still = self.point.without_acceleration();
         if let Some(force) = self.without_half_node(&still) {
@@ -150,7 +150,6 @@ impl<'a> LineEnd<'a> {
     }
 }
 
-/// The half node at an end.
 struct HalfNode<'a> {
     at: LineEnd<'a>,
     node: usize,
@@ -173,7 +172,7 @@ impl<'a> HalfNode<'a> {
         }
     }
 
-    /// Force on the point [N], with the load linear to the next node or uniform over the half.
+    /// Force on the point [N], with a load that is linear to the next node, or uniform over the half node.
     fn force(&self, is_linear: bool) -> Vector3<f64> {
         let LineEnd { line, state, end, .. } = self.at;
         let (node, nodes) = (self.node, &line.nodes);
@@ -200,7 +199,7 @@ impl<'a> HalfNode<'a> {
         force
     }
 
-    /// Chord from the end to the next node [m], its direction, and the pull of the segment between them, shear included [N].
+    /// Chord from the end to the next node [m], its direction [-], and the pull of the end segment including shear [N].
     fn pull(&self) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
         let position = &self.at.state.position;
         let (segment, other) = match self.at.end {
@@ -212,7 +211,7 @@ impl<'a> HalfNode<'a> {
         (chord, inward, self.along(segment, inward))
     }
 
-    /// Mass [kg] that multiplies the acceleration of the end in the force, see [`LineEnd::mass`].
+    /// Mass matrix [kg] that multiplies the acceleration of the end in the force, see [`LineEnd::mass`].
     fn mass(&self, is_linear: bool) -> Matrix3<f64> {
         let (_, inward, pull) = self.pull();
         let masses = Slender::new(self.at.line.nodes.masses(self.node, self.dry.part));
@@ -224,7 +223,7 @@ impl<'a> HalfNode<'a> {
         uniform + share * (masses.matrix(tangent) * (2.0 / 3.0) - uniform)
     }
 
-    /// Tension of a segment along its direction, and its shear on its node towards this end [N].
+    /// Tension of a segment in its direction, and its shear force on its node towards this end [N].
     fn along(&self, segment: usize, direction: Vector3<f64>) -> Vector3<f64> {
         let LineEnd { line, state, .. } = self.at;
         let pull = tension(line, state, segment, self.at.negative_tension) * direction;
@@ -236,7 +235,7 @@ impl<'a> HalfNode<'a> {
         pull + shear(line, nodes, segment, at, self.at.moments)
     }
 
-    /// Load without weight and seabed [N] of a half node of which a part `dry` [-] is out of the water: inertia, water and mass damping. The
+    /// Load without weight and seabed [N] of a half node of which a fraction `dry` [-] is out of the water: inertia, water and mass damping. The
     /// second vector is the drag alone.
     fn load(&self, inward: Vector3<f64>, dry: f64) -> [Vector3<f64>; 2] {
         let (nodes, node) = (&self.at.line.nodes, self.node);
@@ -253,8 +252,8 @@ impl<'a> HalfNode<'a> {
         [load, drag]
     }
 
-    /// Load without weight and seabed [N] of a half node whose load is linear to the next node; the pull of its
-    /// segment is `pull` [N] along `inward`.
+    /// Load without weight and seabed [N] of a half node, with the scaled correction for a linear load; the pull of its segment
+    /// is `pull` [N], in the direction `inward`.
     fn linear_load(&self, [inward, pull]: [Vector3<f64>; 2]) -> Vector3<f64> {
         let (linear, share, _) = self.linear_part([inward, pull]);
         if share == 1.0 {
@@ -264,7 +263,7 @@ impl<'a> HalfNode<'a> {
         uniform + share * (linear - uniform)
     }
 
-    /// Load that is linear to the next node [N], its share in the load of the half node [-], and the tangent at the end.
+    /// Load that is linear to the next node [N], its share in the load of the half node [-], and the tangent at the end [-].
     fn linear_part(&self, [inward, pull]: [Vector3<f64>; 2]) -> (Vector3<f64>, f64, Vector3<f64>) {
         let LineEnd { line, state, .. } = self.at;
         let [next, after] = match self.at.end {
@@ -300,8 +299,8 @@ impl<'a> HalfNode<'a> {
         (linear, at_surface * ratio.powi(2).min(1.0), tangents[0])
     }
 
-    /// Difference of the drag in the middle of the last element from the mean of its ends, over 3/2 [N]; `tangents` are those of the end, the middle
-    /// and the `next` node, `end` is the drag at the end [N].
+    /// Correction for quadratic drag [N]: ⅔ of the difference between the drag in the middle of the last element and the mean of its ends. `tangents` are
+    /// those at the end, in the middle and at the `next` node; `end` is the drag at the end [N].
     fn bulge(&self, next: usize, tangents: [Vector3<f64>; 3], end: Vector3<f64>) -> Vector3<f64> {
         let state = self.at.state;
         let flow = self.at.water.velocity(next, state.position[next].z);
@@ -311,8 +310,7 @@ impl<'a> HalfNode<'a> {
         (2.0 * half_way - end - next) / 3.0
     }
 
-    /// Drag of the half node at a velocity [m/s] relative to the water with a part `dry` of it [-] out of the water
-    /// [N].
+    /// Drag of the half node [N] at a velocity [m/s] relative to the water, with a fraction `dry` [-] out of the water.
     fn drag(&self, velocity: Vector3<f64>, tangent: Vector3<f64>, dry: f64) -> Vector3<f64> {
         let Some(drag) = &self.at.line.nodes.drag else {
             return Vector3::zeros();
@@ -334,7 +332,7 @@ mod tests {
     const MASS: f64 = 10.0;
     const STRAIN: f64 = 0.01;
 
-    /// A weightless line along x whose first section has another mass [kg/m].
+    /// Weightless line along x whose first section has a mass of `other` [kg/m].
     fn model(elements: usize, other: f64) -> Model {
         let (half, each) = (0.5 * LENGTH, elements / 2);
         let like = format!("weight = 0.0, axial_stiffness = {STIFFNESS}, axial_damping = 0.0");
@@ -349,7 +347,7 @@ mod tests {
         .model()
     }
 
-    /// The line at the turning point of a harmonic axial motion of its end B, u = U sin(ks)/sin(kL), where nothing moves.
+    /// State of the line at the turning point of a harmonic axial motion of end B, u = U sin(ks)/sin(kL), where all velocities are zero.
     fn turning(elements: usize, wave_number: f64) -> (LineState, PointState) {
         let u = |s: f64| (wave_number * s).sin() / (wave_number * LENGTH).sin();
         let place = |i: usize| {
@@ -383,7 +381,7 @@ mod tests {
             let (state, point) = turning(n, k);
             let error = pull(&model(n, MASS), &state, &point).x - STIFFNESS * (STRAIN + slope);
             let phase = k * LENGTH / n as f64;
-            // −⅙ phase² with the load as it is at the end
+            // −⅙ phase² with a uniform load
             assert!(
                 error.abs() < 0.25 * STIFFNESS * slope * phase.powi(3),
                 "{error} N"

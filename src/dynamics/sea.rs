@@ -1,11 +1,11 @@
 //! Wave kinematics at the nodes: evaluated once for every time span, at the extrapolated positions of the nodes at
 //! its end.
 //!
-//! Every line and every point has a separate span: as long as cubics bridge it at its highest node
-//! ([`Waves::interval_below`]), rounded down to whole communication steps. Lines therefore do not affect each other's
-//! waves. A communication step that is longer than cubics bridge at still water is cut into parts. The position of a
-//! node is extrapolated from its velocity at the start of the span, r + τ v. The values at the end of a span are the
-//! start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
+//! Every line and every point has a separate span. Its length is the longest time that a cubic may interpolate at the
+//! highest node ([`Waves::interval_below`]), rounded down to whole communication steps. Lines therefore do not affect each
+//! other's waves. A communication step that is longer than the shortest such time is divided into parts. The position
+//! of a node is extrapolated with its velocity at the start of the span, r + τ v. The values at the end of a span are those
+//! at the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -16,23 +16,21 @@ use crate::math::unit::VectorUnit;
 use crate::model::{Model, State, WaveSpan, WaveSpans};
 use crate::physics::airy::{Instant, Orbit, Waves};
 
-/// Rounding of times, over a step [-].
+/// Tolerance for rounding of times, relative to a step [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Scratch of the spans.
 #[derive(Debug)]
 pub(super) struct SeaWork {
     /// Best vector unit of this machine; results do not depend on it.
     unit: VectorUnit,
-    /// Per thread.
+    /// Wave phases at one time, per thread.
     instants: Vec<Instant>,
     /// Spans that began last.
     due: Vec<Due>,
-    /// Wave kinematics at the start of the span before, or storage for the end of the next, by line and then by point.
+    /// Wave kinematics at the start of the previous span, or storage for the end of the next, for all lines and then all points.
     spare: Vec<Vec<Orbit>>,
 }
 
-/// Span that begins.
 #[derive(Debug)]
 struct Due {
     place: Place,
@@ -40,7 +38,7 @@ struct Due {
     length: f64,
     /// Wave kinematics at the end of the span.
     nodes: Vec<Orbit>,
-    /// Times of the span before [s].
+    /// Start and end of the previous span [s].
     before: [f64; 2],
 }
 
@@ -52,7 +50,7 @@ enum Place {
 }
 
 impl Place {
-    /// Places of a model on which waves act.
+    /// Lines and points of a model on which waves act.
     fn of(model: &Model) -> impl Iterator<Item = Place> {
         let lines = model.lines.iter().enumerate();
         let lines = lines.filter(|(_, line)| line.heaves(model));
@@ -63,7 +61,7 @@ impl Place {
             .chain(points.map(|(point, _)| Place::Point(point)))
     }
 
-    /// Number of the place among the lines and, after them, the points.
+    /// Index among all lines, followed by all points.
     fn slot(self, model: &Model) -> usize {
         match self {
             Place::Line(line) => line,
@@ -85,7 +83,7 @@ impl Place {
         }
     }
 
-    /// Positions [m] and velocities [m/s] of the place's nodes.
+    /// Positions [m] and velocities [m/s] of the nodes.
     fn nodes(self, state: &State) -> (&[Vector3<f64>], &[Vector3<f64>]) {
         match self {
             Place::Line(line) => (&state.lines[line].position, &state.lines[line].velocity),
@@ -99,7 +97,6 @@ impl Place {
         }
     }
 
-    /// Height of the place's highest node [m].
     fn highest(self, state: &State) -> f64 {
         let heights = self.nodes(state).0.iter().map(|position| position.z);
         heights.fold(f64::NEG_INFINITY, f64::max)
@@ -113,7 +110,6 @@ impl Clone for SeaWork {
 }
 
 impl SeaWork {
-    /// Scratch.
     pub(super) fn new() -> SeaWork {
         SeaWork {
             unit: VectorUnit::best(),
@@ -123,7 +119,7 @@ impl SeaWork {
         }
     }
 
-    /// Sets the waves of a state at its time; a state without waves is left as it is.
+    /// Samples the waves at the time of a state; leaves the state unchanged if the model has no waves.
     pub(super) fn start(&mut self, model: &Model, state: &mut State) {
         let Some(waves) = &model.waves else {
             return;
@@ -153,8 +149,8 @@ impl SeaWork {
         span.times = [state.time; 2];
     }
 
-    /// Length of the next step [s] within `length` [s]: not beyond the end of a span. A span that ends with the
-    /// part, except for rounding, does not shorten it.
+    /// Length of the next part [s] of a step of `length` [s]: the part does not extend beyond the end of a span, except by
+    /// rounding.
     pub(super) fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
         let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
         let part = length / parts.ceil().max(1.0);
@@ -163,8 +159,8 @@ impl SeaWork {
         shorter.fold(part, f64::min)
     }
 
-    /// Begins new spans where old ones are over, for steps of `step` [s], on a number of threads of a pool; returns
-    /// whether there were any.
+    /// Begins new spans where old ones have ended, for steps of `step` [s], on `threads` threads of a pool; returns whether
+    /// there were any.
     pub(super) fn renew(
         &mut self,
         (model, waves): (&Model, &Waves),
@@ -209,7 +205,7 @@ impl SeaWork {
         !self.due.is_empty()
     }
 
-    /// Restores the spans before those that began last.
+    /// Undoes the last [`Self::renew`]: restores the previous spans.
     pub(super) fn undo(&mut self, model: &Model, state: &mut State) {
         let Some(spans) = &mut state.waves else {
             return;
@@ -222,9 +218,8 @@ impl SeaWork {
         }
     }
 
-    /// Samples the waves at the ends of the spans that begin.
     fn sample_due(&mut self, waves: &Waves, state: &State, (pool, threads): (&mut ThreadPool, usize)) {
-        // spans that end together follow each other, so that the waves are evaluated once for their time
+        // spans of equal length are adjacent, so that a thread evaluates the wave phases once for their common end
         let by_length = |a: &Due, b: &Due| a.length.total_cmp(&b.length);
         self.due.sort_unstable_by(by_length);
         let unit = self.unit;
@@ -240,7 +235,7 @@ impl SeaWork {
     }
 }
 
-/// Motion of the water at the positions of nodes some time [s] later, extrapolated from their positions [m] and velocities [m/s] at a time [s].
+/// Evaluates the wave kinematics at `time + ahead` [s], at node positions extrapolated from their positions [m] and velocities [m/s] at `time`.
 fn sample(
     waves: &Waves,
     (time, ahead): (f64, f64),
@@ -261,7 +256,7 @@ fn sample(
     });
 }
 
-/// Time to the end of the span of a place [s]; 0 where it is over, or has not begun.
+/// Time to the end of the span of a line or point [s]; 0 if the span has ended or not begun.
 fn left(place: Place, state: &State, step: f64) -> f64 {
     let rounding = ROUNDING * step;
     let span = state.waves.as_ref().map(|spans| place.span(spans));
@@ -274,7 +269,6 @@ fn left(place: Place, state: &State, step: f64) -> f64 {
     }
 }
 
-/// Evaluation of the waves along a line, for the vector unit of the machine.
 struct Sampling<'a> {
     waves: &'a Waves,
     /// [m]

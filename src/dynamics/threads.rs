@@ -23,12 +23,12 @@ use super::cost::{COMPONENT, node_time};
 use crate::model::{Model, Network};
 use crate::scene::{Integrator, Threads};
 
-/// Runs work on a new thread and returns when it is done.
+/// Function that runs work on a new thread and returns when it is done.
 pub type Aside = fn(&mut (dyn FnMut() + Send));
 
 static ASIDE: OnceLock<Aside> = OnceLock::new();
 
-/// Sets how worker threads are created: by a thread that `aside` starts and joins. The standard library leaves a destructor on every
+/// Makes a thread that `aside` starts and joins create all worker threads. The standard library leaves a destructor on every
 /// thread that creates another, which keeps a shared library mapped as long as that thread lives; a thread of the host may outlive all
 /// instances.
 pub fn make_threads_aside(aside: Aside) {
@@ -44,7 +44,7 @@ thread_local! {
     static IS_WORKER: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Returns whether the current thread is a worker thread. Needs no destructor on the thread, unlike [`thread::current`].
+/// Returns whether the current thread is a worker thread. Unlike [`thread::current`], this needs no destructor on the thread.
 pub fn is_worker() -> bool {
     IS_WORKER.get()
 }
@@ -106,7 +106,7 @@ impl ThreadPool {
         });
     }
 
-    /// Returns at least `count` workers; none where `count` is 0 or the system grants none.
+    /// Returns at least `count` workers; `None` if `count` is 0 or the system grants none.
     fn workers(&mut self, count: usize) -> Option<&rayon_core::ThreadPool> {
         if count == 0 {
             return None;
@@ -122,10 +122,9 @@ impl ThreadPool {
     }
 }
 
-/// Threads that sleep until there is work.
 #[derive(Debug)]
 struct Workers {
-    /// Present until dropped.
+    /// `Some` until the workers are dropped.
     pool: Option<rayon_core::ThreadPool>,
     handles: Vec<JoinHandle<()>>,
     /// Process that the threads belong to.
@@ -161,7 +160,6 @@ impl Workers {
         workers.pool.is_some().then_some(workers)
     }
 
-    /// Returns whether the threads belong to this process.
     fn is_here(&self) -> bool {
         self.process == process::id()
     }
@@ -181,19 +179,18 @@ impl Drop for Workers {
     }
 }
 
-/// Work of the steps of a model, by which the number of threads is chosen.
+/// Estimated work of a model's steps, from which the number of threads is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WorkEstimate {
     asked: Threads,
-    /// Threads that the machine runs at once [-].
+    /// Number of threads that the machine runs at once [-].
     available: usize,
-    /// Networks [-].
     networks: usize,
-    /// Time for one second of all networks [ns/s].
+    /// Computing time per second of motion, for all networks [ns/s].
     rate: f64,
-    /// Time for one internal step of all networks [ns].
+    /// Computing time of one internal step of all networks [ns].
     least: f64,
-    /// Lines that waves act on [-].
+    /// Number of lines on which waves act [-].
     lines_in_waves: usize,
     /// Time to sample the waves at all nodes once [ns].
     sampling: f64,
@@ -230,17 +227,16 @@ impl WorkEstimate {
         }
     }
 
-    /// Returns the number of threads for a communication step of a length [s].
+    /// Returns the number of threads for a communication step of `length` [s].
     pub(super) fn threads_for(&self, length: f64) -> usize {
         self.threads(self.networks, (self.rate * length).max(self.least))
     }
 
-    /// Returns the number of threads that sample the waves.
     pub(super) fn threads_for_waves(&self) -> usize {
         self.threads(self.lines_in_waves, self.sampling)
     }
 
-    /// Returns the number of threads for `parts` that take a time [ns] together.
+    /// Returns the number of threads for `parts` parts that take `time` [ns] in total.
     fn threads(&self, parts: usize, time: f64) -> usize {
         if parts < 2 {
             return 1;
@@ -252,7 +248,7 @@ impl WorkEstimate {
         most.min(parts).max(1)
     }
 
-    /// Describes the number of threads for steps of a length [s], with the reason.
+    /// Describes the number of threads for communication steps of `length` [s], with the reason.
     pub(super) fn describe(&self, length: f64) -> String {
         let count = |threads: usize| match threads {
             1 => "one thread".to_string(),
@@ -302,7 +298,7 @@ mod tests {
     use super::*;
     use std::panic::{AssertUnwindSafe, catch_unwind};
 
-    /// Returns which threads worked on 1000 numbers, each of which was doubled once.
+    /// Doubles 1000 numbers on the pool, checks each of them, and returns the thread that ran each part.
     fn doubled(pool: &mut ThreadPool, threads: usize) -> Vec<Option<thread::ThreadId>> {
         let mut numbers: Vec<usize> = (0..1000).collect();
         let mut workers = vec![None; threads];

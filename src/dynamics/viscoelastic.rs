@@ -1,4 +1,4 @@
-//! Viscoelastic segments of the leapfrogs: one by one, tension and energy from a line's state; in rows, their memories over steps.
+//! Viscoelastic segments: tension and energy of single segments from a line's state, and internal variables of rows over the steps of the leapfrogs.
 
 use nalgebra::Vector3;
 
@@ -9,7 +9,6 @@ use crate::model::{Line, LineState};
 use crate::physics::stretch::total_tension;
 use crate::physics::viscoelastic::Viscoelastic;
 
-/// A viscoelastic segment in motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ViscoelasticSegment {
     law: Viscoelastic,
@@ -17,7 +16,6 @@ pub(super) struct ViscoelasticSegment {
     slow: f64,
 }
 
-/// Strain of a segment with its rate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretching {
     /// l/L − 1 [-].
@@ -27,7 +25,7 @@ pub(super) struct Stretching {
 }
 
 impl Stretching {
-    /// Strain from positions [m] and velocities [m/s] of the ends of segment `i`.
+    /// Strain and strain rate from the positions [m] and velocities [m/s] of the ends of segment `i`.
     pub(super) fn of(
         line: &Line,
         i: usize,
@@ -44,14 +42,14 @@ impl Stretching {
 }
 
 impl ViscoelasticSegment {
-    /// Segment `i` of a line; `None` where the line is not viscoelastic, or at rest.
+    /// Segment `i` of a line; `None` if the line is not viscoelastic, or its state has no slow strains.
     pub(super) fn of(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let law = line.segments.viscoelastic.as_ref()?[i];
         let slow = *state.viscoelastic.get(i)?;
         Some(ViscoelasticSegment { law, slow })
     }
 
-    /// The same at the time of the velocities: half a step before with a leapfrog.
+    /// The same at the time of the velocities: half a step earlier with a leapfrog.
     pub(super) fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let now = ViscoelasticSegment::of(line, state, i)?;
         let before = state.half_step.viscoelastic.get(i);
@@ -77,7 +75,7 @@ impl ViscoelasticSegment {
     }
 }
 
-/// Laws and memory of a line's segments, laid out for the leapfrog kernels; padding has none.
+/// Laws and internal variables of a line's segments, in the striped layout of the leapfrog kernels; zero in the padding.
 #[derive(Debug, Clone)]
 pub struct ViscoelasticArrays {
     laws: Vec<Viscoelastic>,
@@ -91,7 +89,7 @@ pub struct ViscoelasticArrays {
     /// BA_s and BA_d [N s].
     slow_damping: Column,
     fast_damping: Column,
-    /// Evolution of the memory over a step, and that step [s].
+    /// Evolution of the slow strain over a step, and the length of that step [s].
     relaxation: Relaxing,
     step: f64,
     /// Strain at t_n [-].
@@ -111,17 +109,17 @@ struct Relaxing {
     slack: Column,
 }
 
-/// State of viscoelastic segments from t_{n−½} to t_{n+½}.
+/// Tension and dissipation of viscoelastic segments from t_{n−½} to t_{n+½}.
 #[derive(Debug, Clone, Copy)]
 pub struct Relaxed {
-    /// Tension by the discrete gradient of the springs' energy [N].
+    /// Tension from the discrete gradient of the energy of the springs [N].
     pub tension: Lanes,
-    /// Dissipation of the dampers [J], or per unstretched length [N].
+    /// Dissipation of the dampers per unstretched length [N].
     pub taken: Lanes,
 }
 
 impl ViscoelasticArrays {
-    /// Memory of a line; `None` where it is not viscoelastic.
+    /// Allocates the arrays of a line; `None` if it is not viscoelastic.
     pub fn new(line: &Line, striping: Striping) -> Option<ViscoelasticArrays> {
         let laws = line.segments.viscoelastic.as_deref()?;
         Some(ViscoelasticArrays::of(laws, striping))
@@ -154,7 +152,7 @@ impl ViscoelasticArrays {
         }
     }
 
-    /// Prepares steps of `dt` [s].
+    /// Prepares the evolution of the slow strain for steps of `dt` [s].
     #[inline]
     pub fn prepare(&mut self, dt: f64) {
         if dt != self.step {
@@ -174,7 +172,7 @@ impl ViscoelasticArrays {
         }
     }
 
-    /// Loads the slow strains of a line [-] at t_n and half a step before, and its strains at the latter time [-].
+    /// Loads the slow strains of a line at t_n and at t_{n−½} [-], and its strains at t_{n−½} [-].
     pub fn load(&mut self, [slow, half]: [&[f64]; 2], strains: impl Iterator<Item = f64>) {
         for (column, values) in [(&mut self.slow, slow), (&mut self.half[1], half)] {
             column.fill(0.0);
@@ -191,7 +189,7 @@ impl ViscoelasticArrays {
         self.half[0][at] = strain;
     }
 
-    /// Copies the slow strains back.
+    /// Copies the slow strains at t_n and t_{n−½} to the state.
     pub fn store(&self, slow: &mut Vec<f64>, half: &mut Vec<f64>) {
         for (values, column) in [(slow, &self.slow), (half, &self.half[1])] {
             values.clear();
@@ -206,12 +204,12 @@ impl ViscoelasticArrays {
         load(&self.stiffness) * strain + load(&self.memory) * load(&self.slow)
     }
 
-    /// The same of one segment.
+    /// The same for one segment.
     pub fn elastic_of(&self, at: Slot, strain: f64) -> f64 {
         self.stiffness[at] * strain + self.memory[at] * self.slow[at]
     }
 
-    /// Elastic force [N] after the step at the strain of t_n, and its slope with the strain then [N].
+    /// Elastic force [N] after the step if the strain remains that of t_n, and its slope with the strain after the step [N].
     #[inline(always)]
     pub fn ahead(&self, at: usize, strain: Lanes) -> (Lanes, Lanes) {
         let load = |values: &Column| values.load(at);
@@ -222,8 +220,8 @@ impl ViscoelasticArrays {
         (stiffness * strain + memory * relaxed, stiffness + memory * last)
     }
 
-    /// Advances the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to the strains half a step and a whole
-    /// step after t_n; returns the values over both halves around t_n.
+    /// Advances the slow strain from t_n to t_{n+1} by [`Viscoelastic::relaxation`]; `strains` are those at t_{n+½} and t_{n+1}.
+    /// Returns tension and dissipation from t_{n−½} to t_{n+½}.
     #[inline(always)]
     pub fn advance(&mut self, at: usize, strains: [Lanes; 2], step: Step) -> Relaxed {
         let load = |values: &Column| values.load(at);
@@ -238,8 +236,8 @@ impl ViscoelasticArrays {
         self.pass_half(at, [strains[0], half * (slow + after)], step.kick)
     }
 
-    /// Advances by a step of `kick` [s] to a strain and a slow strain of half a step later: the tension of the fast part
-    /// is the discrete gradient of its energy plus the force of its damper, as in [`Viscoelastic::step`].
+    /// Advances from t_{n−½} by `kick` [s] to the strain and slow strain `after` at t_{n+½}. The tension of the fast part is the
+    /// discrete gradient of its energy plus the force of its damper, as in [`Viscoelastic::step`].
     #[inline(always)]
     fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Relaxed {
         let load = |values: &Column| values.load(at);

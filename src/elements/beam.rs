@@ -1,15 +1,15 @@
 //! A geometrically exact beam at rest, from the laws of its sections to forces and moments on its nodes.
 //!
-//! Unknowns are position and spin of every node. With the gradient B of the strains (see [`crate::physics::section`]) the nodes' forces and
-//! moments out of balance are
+//! The unknowns are position and spin of every node. With the gradient B of the strains (see [`crate::physics::section`]), the out-of-balance forces
+//! and moments of the nodes are
 //!
 //!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact.
 //!
-//! The elements of a time step are the same with the gradient at the mean of both of its ends. Four elements are computed side by
+//! The elements of a time step are the same, with the gradient at the mean of the states before and after it. Four elements are computed side by
 //! side.
 //!
-//! A beam whose ends do not prevent its rotation about its axis has no resistance to it: its first node then resists
-//! a turn about d₃, which changes the iteration but not the equilibrium.
+//! A beam whose ends do not prevent its rotation about its axis has no resistance to it. Its first node then gets a resistance to rotation about d₃,
+//! which changes the iteration but not the equilibrium.
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
@@ -28,13 +28,13 @@ use crate::physics::section::{
 /// Constraints and loads of an end of a beam; none by default.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BeamEnd {
-    /// Prescribed unknowns: x, y, z and the turns about them.
+    /// True for prescribed unknowns: x, y, z and the rotations about them.
     pub held: [bool; 6],
     /// Force [N] and moment [N m] on the end, along the global axes.
     pub load: Sextuple,
 }
 
-/// Constraints of an end at a point: the axes on which the point is not free, and the clamp.
+/// Constraints of an end at a point: the axes along which the point is not free, and the clamp.
 pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
     let [x, y, z] = point.free().map_or([false; 3], |free| free.axes);
     BeamEnd {
@@ -43,7 +43,7 @@ pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
     }
 }
 
-/// A beam with its constraints and loads.
+/// Beam with its constraints and loads.
 #[derive(Debug, Clone)]
 pub struct BeamCase<'a> {
     /// Elements.
@@ -69,23 +69,22 @@ pub struct ElementSpring {
     pub stiffness: f64,
 }
 
-/// Parts of the loads that act [-].
+/// Fractions of the loads that act [-].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LoadShare {
-    /// Part of weight, buoyancy and forces.
+    /// Fraction of weight, buoyancy and forces.
     pub force: f64,
-    /// Part of the moments on the ends.
+    /// Fraction of the moments on the ends.
     pub moment: f64,
 }
 
 impl LoadShare {
-    /// The whole load.
     pub(crate) const WHOLE: LoadShare = LoadShare {
         force: 1.0,
         moment: 1.0,
     };
 
-    /// Load on an end.
+    /// Acting load on an end.
     fn of_end(self, end: &BeamEnd) -> Sextuple {
         let (force, moment) = split(&end.load);
         join(self.force * force, self.moment * moment)
@@ -101,7 +100,7 @@ impl ElementSpring {
     }
 }
 
-/// Adds vertical forces on the two nodes of an element [N] and minus their slopes with the heights of these [N/m].
+/// Adds vertical forces on the two nodes of an element [N] and minus their slopes with respect to the heights of the nodes [N/m].
 pub(crate) fn add_rise(chain: &mut PivotedChain, element: usize, force: [f64; 2], slope: [[f64; 2]; 2]) {
     add_lift(chain, element, force);
     for (end, slope) in slope.into_iter().enumerate() {
@@ -127,7 +126,7 @@ pub(crate) struct Energy {
 }
 
 impl BeamCase<'_> {
-    /// Sets the system of a beam at `sections` under a part of its loads: tangent J, right-hand side −R. `four` is scratch.
+    /// Sets the system of a beam at `sections` under a `share` of its loads: tangent J, right-hand side −R. `four` is workspace.
     pub(crate) fn assemble(
         &self,
         chain: &mut PivotedChain,
@@ -171,7 +170,7 @@ impl BeamCase<'_> {
         }
     }
 
-    /// Sets the changes of the prescribed unknowns to zero, and adds the resistance of the first node to the turn of a beam about its axis.
+    /// Sets the changes of the prescribed unknowns to zero, and adds the resistance of the first node to rotation of the beam about its axis.
     pub(crate) fn constrain(&self, chain: &mut PivotedChain, sections: &[Section]) {
         let turns_freely = self.ends.iter().all(|end| end.held[3..].iter().all(|held| !held));
         if turns_freely {
@@ -222,7 +221,7 @@ impl BeamCase<'_> {
     }
 }
 
-/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is greatest at 56°.
+/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is largest at 56°.
 const COSINE_MIN: f64 = 0.5;
 
 /// Returns the lower node of the first element that turns by more than its strains can resolve.
@@ -231,7 +230,7 @@ pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
     sections.windows(2).position(|pair| cosine(pair) < COSINE_MIN)
 }
 
-/// Indices of four items from `first` on; `last` is repeated beyond it.
+/// Indices of four items from `first` on; those beyond `last` are replaced by it.
 #[inline(always)]
 pub(crate) fn four(first: usize, last: usize) -> [usize; LANES] {
     each!(i in [first, first + 1, first + 2, first + 3] => i.min(last))
@@ -286,7 +285,7 @@ pub(crate) fn pairs(strains: &[Sextuple], at: [usize; LANES]) -> Pair<Vectors> {
     each!(k in [0, 3] => vectors!(strain in strains => Vector3::new(strain[k], strain[k + 1], strain[k + 2])))
 }
 
-/// Numbers that multiply the strains of four elements by a law, as [`SectionLaw::diagonal`].
+/// Factors of the strains of four elements in a law, as in [`SectionLaw::diagonal`].
 #[inline(always)]
 fn laws(laws: [&SectionLaw; LANES]) -> Pair<Vectors> {
     let shear = numbers!(law in laws => law.shear);
@@ -305,7 +304,7 @@ fn laws(laws: [&SectionLaw; LANES]) -> Pair<Vectors> {
     ]
 }
 
-/// Four elements side by side, as they are before a step, or at rest.
+/// Four elements side by side, before a step or at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FourElements {
     length: Lanes,
@@ -316,7 +315,7 @@ pub(crate) struct FourElements {
 }
 
 impl FourElements {
-    /// Replaces `into` by all elements, between the sections before a step; at rest those are the sections themselves.
+    /// Replaces `into` by all elements, between the sections before a step or, at rest, between the present ones.
     pub(crate) fn gather(
         into: &mut Vec<FourElements>,
         elements: &[BeamElement],
@@ -354,8 +353,8 @@ struct AddElements<'a> {
     tangent: bool,
 }
 
-/// Subtracts the forces of all elements, with the sections `now` after a step or at rest, from the right-hand side and, with a `tangent`, adds
-/// their slopes with positions and spins to the matrix, where the blocks off the diagonal are set.
+/// Subtracts the forces of all elements, with the sections `now` after a step or at rest, from the right-hand side. With a `tangent`, adds their
+/// slopes with respect to positions and spins to the matrix, where the off-diagonal blocks are overwritten.
 pub(crate) fn add_elements(
     chain: &mut PivotedChain,
     elements: &[FourElements],
@@ -384,7 +383,7 @@ impl NullaryFnOnce for AddElements<'_> {
 }
 
 impl AddElements<'_> {
-    /// Adds four elements from the element `first` on.
+    /// Adds four elements, from the element `first` on.
     #[inline(always)]
     fn add_four(&mut self, first: usize, elements: &FourElements) {
         let last = self.now.len() - 2;
@@ -443,7 +442,7 @@ fn subtract_actions(right: &mut [Sextuple], count: usize, actions: &[Pair<Vector
     }
 }
 
-/// Adds the blocks of `count` elements from the element `first` on, as [`subtract_actions`] does forces.
+/// Adds the blocks of `count` elements, from the element `first` on. Not inlined for the same reason as [`subtract_actions`].
 #[inline(never)]
 fn add_blocks(
     chain: &mut PivotedChain,

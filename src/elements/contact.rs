@@ -1,7 +1,7 @@
-//! The seabed under the segments of a line in the assembled system.
+//! Seabed under the segments of a line in the assembled system.
 //!
-//! The force on a node is the sum over the parts of the two segments next to it ([`crate::physics::seabed`]); it has slopes with the penetration of
-//! the node and with those of its neighbours.
+//! The force on a node is the sum over the parts of the two adjacent segments ([`crate::physics::seabed`]); it depends on the penetrations of the
+//! node and of its neighbours.
 
 use nalgebra::Vector3;
 
@@ -10,14 +10,14 @@ use crate::model::{Contact, Line, LineState};
 use crate::physics::fading_damper::{FadingContact, damper_reach};
 use crate::physics::seabed::{ContactCoefficients, Part};
 
-/// Seabed under the segments next to a node.
+/// Seabed under the segments adjacent to a node.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Bearing {
-    /// Force on the node, and its slopes with the penetration and the velocity of the node.
+    /// Force on the node, and its slopes with respect to the penetration and the velocity of the node.
     pub seabed: FadingContact,
-    /// Slope of the force with the penetration of the node after [N/m].
+    /// Slope of the force with respect to the penetration of the next node [N/m].
     pub stiffness_after: f64,
-    /// Negative slope of the force with the velocity ż of the node after [N s/m].
+    /// Negative slope of the force with respect to the velocity ż of the next node [N s/m].
     pub damping_after: f64,
 }
 
@@ -47,8 +47,8 @@ impl Stand {
 }
 
 impl Bearing {
-    /// Sum over the parts of the segments next to a node, from the positions of nodes; the damper of a segment fades in over ± `reach` [m]. `None`
-    /// where the seabed does not act.
+    /// Sum over the parts of the segments adjacent to a node, from the positions of nodes; the damper of a segment fades in over ± `reach` [m].
+    /// `None` where the seabed does not act.
     pub(super) fn new(
         contact: &Contact,
         node: usize,
@@ -107,8 +107,8 @@ impl Bearing {
 }
 
 impl LineWork {
-    /// Finds the position of every node relative to the seabed and the bearing of the segments next to it; at rest nothing moves and no damper
-    /// fades.
+    /// Finds the position of every node relative to the seabed and the bearing of its adjacent segments; at rest, velocities and fading ranges are
+    /// zero.
     pub(super) fn find_bearings(&mut self, contact: &Contact, state: &LineState, moves: bool) {
         self.bearing.fill(Bearing::default());
         for (node, stand) in self.stand.iter_mut().enumerate() {
@@ -125,7 +125,7 @@ impl LineWork {
         }
     }
 
-    /// Fades the dampers over the displacement of a segment in a step of `dt` [s], at least over the range of a resting
+    /// Sets the range over which each damper fades to the displacement of its segment in a step of `dt` [s], but at least to the range of a resting
     /// segment.
     pub(super) fn fade_dampers(&mut self, line: &Line, state: &LineState, dt: f64) {
         let Some(contact) = &line.nodes.contact else {

@@ -1,14 +1,15 @@
 //! Forces of a seabed with slope or friction on the nodes of lines and on free points, with their exact tangent.
 //!
-//! The spring and the damper act along the normal n of the seabed. Friction is a spring from the anchor a of a node, where the node would lie
-//! without friction, to the node itself, in the plane of the seabed, and gives way where it would leave the ellipse of Coulomb's law:
+//! The spring and the damper act along the normal n of the seabed. Friction is a spring in the plane of the seabed, from the anchor a of a node, the
+//! position of the node without friction, to the node itself. Its force is limited to the ellipse of Coulomb's law:
 //!
 //!   f* = k_t P (a − r),  P = I − n nᵀ,   f = the point of the ellipse of N closest to f*,   a ← r + f/k_t after every step.
 //!
 //! A node at rest therefore stays in place under any load inside the ellipse, at a distance f/k_t from its anchor. −∂f/∂r = k_t B S Bᵀ − B g ⊗ ∂N/∂r
-//! with the axes B of the plane, the slope S of f with f* and that of f with N, g = (f − S f*)/N, since f is homogeneous in f* and N.
+//! with the axes B of the plane, the slope S of f with respect to f* and that with respect to N, g = (f − S f*)/N, since f is homogeneous in f* and
+//! N.
 //!
-//! The tangent is exact on a plane, with the direction of the line frozen as for drag; on a curved seabed it leaves out the turn of the axes.
+//! The tangent is exact on a plane, with the direction of the line frozen as for drag; on a curved seabed it leaves out the rotation of the axes.
 //!
 //! Source: the return mapping of Coulomb friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
@@ -21,47 +22,46 @@ use crate::physics::fading_damper::FadingContact;
 use crate::physics::friction::{Axes, Friction, node_friction};
 use crate::physics::ground::Touch;
 
-/// Fraction of the limit of friction that statics uses: nodes that slid to their positions of rest then stick in
-/// dynamics, and rounding does not free them one by one [-].
+/// Fraction of the friction limit that statics uses [-]: nodes that slid to their positions of rest then stick in dynamics, and rounding does not
+/// free them one by one.
 pub(crate) const AT_REST: f64 = 1.0 - 1e-5;
-/// Fraction of the limit at which nodes at [`AT_REST`] slide regardless of rounding [-].
+/// Fraction of the friction limit at which nodes at [`AT_REST`] slide regardless of rounding [-].
 pub(crate) const SLIDING: f64 = 1.0 - 1e-3;
 
-/// Stiffness along the seabed of a point that sticks, over its stiffness across it [-].
+/// Stiffness along the seabed of a sticking point, relative to its normal stiffness [-].
 const POINT_STICK: f64 = 1e3;
 
-/// A node, or a point, on the seabed.
+/// Node or point on the seabed.
 #[derive(Debug, Clone, Copy)]
 pub struct Resting<'a> {
-    /// Penetration and normal, from the level below which the seabed pushes.
+    /// Penetration and normal, relative to the level below which the seabed pushes.
     pub touch: Touch,
     /// Normal force with its slopes.
     pub bearing: Bearing,
-    /// Normal of the seabed at the node after [-].
+    /// Normal of the seabed at the next node [-].
     pub normal_after: Vector3<f64>,
-    /// Place [m].
+    /// Position [m].
     pub place: Vector3<f64>,
     /// Velocity [m/s].
     pub velocity: Vector3<f64>,
-    /// Friction, where there is any.
+    /// Friction, if there is any.
     pub slip: Option<Slip<'a>>,
 }
 
 /// Friction of a node.
 #[derive(Debug, Clone, Copy)]
 pub struct Slip<'a> {
-    /// The law.
+    /// Friction law.
     pub friction: &'a Friction,
     /// Direction of the line; any unit vector for a point.
     pub tangent: Vector3<f64>,
-    /// Place of the node without friction [m].
+    /// Position of the node without friction [m].
     pub anchor: Vector3<f64>,
     /// k_t [N/m].
     pub stick: f64,
-    /// Part of the limit of friction in use [-].
+    /// Fraction of the friction limit in use [-].
     pub limit: f64,
-    /// Constant normal force of the limit in place of the present one [N]: friction then has a potential, which is
-    /// convex.
+    /// Constant normal force of the friction limit instead of the present one [N]: friction then has a convex potential.
     pub normal_force: Option<f64>,
 }
 
@@ -74,16 +74,16 @@ pub struct Push {
     pub friction: Vector3<f64>,
     /// Normal force [N].
     normal_force: f64,
-    /// Minus the slopes of the rest of the force and of the friction with place [N/m].
+    /// Minus the slopes of the normal contact force and of the friction with respect to position [N/m].
     stiffness: [Matrix3<f64>; 2],
-    /// Minus their slopes with velocity [N s/m].
+    /// Minus their slopes with respect to velocity [N s/m].
     damping: [Matrix3<f64>; 2],
-    /// Minus the slopes of the normal force with place [N/m] and velocity [N s/m] of the node after.
+    /// Minus the slopes of the normal contact force with respect to position [N/m] and velocity [N s/m] of the next node.
     after: [Matrix3<f64>; 2],
 }
 
 impl<'a> Resting<'a> {
-    /// Contact of node `i` of a line, given its bearing and the normal at the node after; at rest unless it `moves`.
+    /// Contact of node `i` of a line, given its bearing and the normal at the next node; at rest unless it `moves`.
     fn on(
         contact: &Contact,
         line: &'a Line,
@@ -115,7 +115,7 @@ impl<'a> Resting<'a> {
         }
     }
 
-    /// Contact with a case's parts of the stiffness and the limit of friction, and the normal force `pressed` [N] where the case keeps it constant.
+    /// Contact with the fractions of stick stiffness and friction limit of a case, and the normal force `pressed` [N] if the case keeps it constant.
     fn at_rest(self, case: &StaticCase, pressed: f64) -> Resting<'a> {
         Resting {
             slip: self.slip.map(|slip| Slip {
@@ -184,14 +184,14 @@ impl Push {
         slope(0) + weights.friction / weights.force * slope(1)
     }
 
-    /// Tangent with the node after.
+    /// Tangent with respect to the next node.
     fn tangent_after(&self, weights: &Weights) -> Matrix3<f64> {
         weights.position * self.after[0] + weights.velocity * self.after[1]
     }
 }
 
-/// Contact of a node of a line with the seabed. Dampers fade in over ± `reach` per segment [m]; at rest, without one, there are none. `None` where
-/// the seabed does not act.
+/// Contact of a node of a line with the seabed. Dampers fade in over ± `reach` per segment [m]; without a `reach`, at rest, there are no dampers.
+/// `None` where the seabed does not act.
 pub fn resting_node<'a>(
     line: &'a Line,
     state: &LineState,
@@ -214,8 +214,8 @@ pub fn resting_node<'a>(
     ))
 }
 
-/// Contact of a free point with the seabed. Its damper fades in over ± `reach` [m]; at rest, without one,
-/// there is none. `None` where the seabed does not act.
+/// Contact of a free point with the seabed. Its damper fades in over ± `reach` [m]; without a `reach`, at rest, there is no damper. `None` where the
+/// seabed does not act.
 pub fn resting_point<'a>(
     free: &FreePoint,
     seabed: &'a Seabed,
@@ -245,7 +245,7 @@ pub fn resting_point<'a>(
         velocity,
         slip: friction.map(|(friction, anchor)| Slip {
             friction,
-            tangent: Vector3::z(), // a point is across in all directions
+            tangent: Vector3::z(), // for a point, every direction is across
             anchor,
             stick: POINT_STICK * contact.coefficients.stiffness,
             limit: 1.0,
@@ -254,14 +254,14 @@ pub fn resting_point<'a>(
     })
 }
 
-/// Stiffness along the seabed of a free point that sticks [N/m].
+/// Stiffness along the seabed of a sticking free point [N/m].
 pub fn point_stick(free: &FreePoint) -> f64 {
     free.contact
         .map_or(0.0, |contact| POINT_STICK * contact.coefficients.stiffness)
 }
 
 impl LineWork {
-    /// Adds the seabed's springs and friction under a line at rest.
+    /// Adds the springs and the friction of the seabed under a line at rest.
     pub(super) fn add_contact_at_rest(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
         let Some(contact) = &line.nodes.contact else {
             return;
@@ -311,7 +311,7 @@ impl LineWork {
         }
     }
 
-    /// Contact of node `i` with the bearing found for it; `None` where the seabed does not act.
+    /// Contact of node `i` with the bearing found before; `None` where the seabed does not act.
     fn resting<'a>(
         &self,
         contact: &Contact,
@@ -325,7 +325,7 @@ impl LineWork {
         (bearing.seabed.force > 0.0).then(|| Resting::on(contact, line, state, i, (bearing, after), moves))
     }
 
-    /// Stores the friction on a node, where the seabed is more than a level plane without friction.
+    /// Stores the friction on a node, unless the seabed is a level plane without friction.
     fn keep_friction(&mut self, node: usize, push: Option<&Push>) {
         if let Some(rubbed) = self.rubbed.get_mut(node) {
             *rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
@@ -373,7 +373,7 @@ impl PointWork {
     }
 }
 
-/// Moves the anchors of the nodes of a network that slid, as found by the last assembly.
+/// Moves the anchors of those nodes of a network that slid in the last assembly.
 pub(super) fn move_anchors(model: &Model, network: &Network, state: &mut State, work: &super::Workspace) {
     for &index in &network.lines {
         let (line, shape, work) = (&model.lines[index], &mut state.lines[index], &work.lines[index]);
@@ -396,8 +396,7 @@ pub(super) fn move_anchors(model: &Model, network: &Network, state: &mut State, 
     }
 }
 
-/// Moves the anchors of a network at rest at time `t` [s] to places at which every node in motion is within its
-/// limit.
+/// Moves the anchors of a network at rest at time `t` [s] to positions at which every node starts its motion within the friction limit.
 pub(crate) fn hold_at_rest(
     model: &Model,
     network: &Network,
@@ -439,7 +438,7 @@ pub fn drop_anchors(model: &Model, state: &mut State) {
     }
 }
 
-/// Removes the anchors of a network, and with them its friction.
+/// Removes the anchors of a network, and thereby its friction.
 pub(crate) fn remove_anchors(network: &Network, state: &mut State) {
     for &index in &network.lines {
         state.lines[index].anchor.clear();
@@ -486,7 +485,7 @@ mod tests {
         seabed(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
     }
 
-    /// A moving node slightly below the seabed, `slid` from its anchor.
+    /// Moving node slightly below the seabed, `slid` from its anchor.
     fn resting(
         seabed: &Seabed,
         shift: Vector3<f64>,

@@ -1,8 +1,8 @@
 //! Bending in the assembled system: joints that couple three nodes, and the chain that they form.
 //!
-//! A joint at node i has the slopes g₁ and g₂ of its energy with the vectors e₁ and e₂ of its two segments, and so
-//! R_{i−1} −= g₁, R_i += g₁ − g₂, R_{i+1} += g₂; J likewise from the second derivatives. A clamp takes the place of a segment
-//! that nothing moves. A moment on an end is a couple of forces ± f on the nodes of its segment, and its slope a part of that segment's block.
+//! A joint at node i has the slopes g₁ and g₂ of its energy with respect to the vectors e₁ and e₂ of its two segments, so that R_{i−1} −= g₁, R_i +=
+//! g₁ − g₂, R_{i+1} += g₂; J follows likewise from the second derivatives. A clamp acts as a segment that does not move. A moment on an end is a
+//! couple of forces ± f on the nodes of its segment, and its slope is part of the block of that segment.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,18 +11,18 @@ use crate::math::block_banded::{Blocks, Chain, Ends, Pivots};
 use crate::model::{Bending, End, Line, LineState, PointState, joint, joint_of_segments};
 use crate::physics::bending::{Couple, Hessian};
 
-/// Scratch of a line with bending stiffness.
+/// Workspace of a line with bending stiffness.
 #[derive(Debug, Clone)]
 pub(crate) struct BendingWork {
-    /// True where the last assembly included bending.
+    /// True if the last assembly included bending.
     pub active: bool,
-    /// J of the joints in the rows of nodes and the columns of the next ones, transposed the other way.
+    /// J of the joints in the rows of nodes and the columns of the next ones; the opposite blocks are the transposes.
     pub near: Vec<Matrix3<f64>>,
     /// J in the rows of nodes and the columns of the nodes after next.
     pub far: Vec<Matrix3<f64>>,
-    /// Greatest force of a joint on a node at the last assembly [N].
+    /// Largest force of a joint on a node at the last assembly [N].
     pub greatest: f64,
-    /// `near` with the segments' coupling, above and below the diagonal.
+    /// `near` plus the coupling of the segments, above and below the diagonal.
     above: Vec<Matrix3<f64>>,
     below: Vec<Matrix3<f64>>,
     chain: Chain<true>,
@@ -31,20 +31,19 @@ pub(crate) struct BendingWork {
 /// Parts of residual and tangent to add.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parts {
-    /// Weight of the joints' forces in R [-].
+    /// Weight of the forces of the joints in R [-].
     pub force: f64,
     /// c_k: weight of ∂R/∂r [-].
     pub position: f64,
     /// c_c: weight of ∂R/∂v [1/s].
     pub velocity: f64,
-    /// True where the tangent is required.
+    /// True if the tangent is required.
     pub tangent: bool,
-    /// True where the tangent must be positive semi-definite, rather than exact.
+    /// True if the tangent must be positive semi-definite, rather than exact.
     pub convex: bool,
 }
 
 impl Parts {
-    /// Weights of statics.
     pub(super) const AT_REST: Parts = Parts {
         force: 1.0,
         position: 1.0,
@@ -53,7 +52,6 @@ impl Parts {
         convex: false,
     };
 
-    /// Weights of a time step.
     pub(super) fn of_step(weights: &Weights, tangent: bool) -> Parts {
         Parts {
             force: weights.force,
@@ -66,7 +64,7 @@ impl Parts {
 }
 
 impl BendingWork {
-    /// Scratch for a line of `nodes` nodes.
+    /// Workspace for a line of `nodes` nodes.
     pub(super) fn new(nodes: usize) -> BendingWork {
         let zeros = |count: usize| vec![Matrix3::zeros(); count];
         BendingWork {
@@ -82,7 +80,7 @@ impl BendingWork {
 }
 
 impl LineWork {
-    /// Adds the joints of a line to residual and tangent, after its segments; without damping where no velocities are given.
+    /// Adds the joints of a line to residual and tangent, after its segments; without damping if no velocities are given.
     pub(super) fn add_bending(
         &mut self,
         bending: &Bending,
@@ -129,8 +127,7 @@ impl LineWork {
         work.greatest = greatest.sqrt();
     }
 
-    /// Adds the moments [N m] on the ends of a line that bends; with no slope where the tangent must be positive
-    /// semi-definite.
+    /// Adds the moments [N m] on the ends of a line that bends; without their slope if the tangent must be positive semi-definite.
     pub(super) fn add_end_moments(
         &mut self,
         position: &[Vector3<f64>],
@@ -149,7 +146,7 @@ impl LineWork {
         }
     }
 
-    /// Removes the nodes between the ends from the system; `None` if a pivot cannot be taken.
+    /// Eliminates the nodes between the ends from the system; `None` if a pivot is not accepted.
     pub(crate) fn eliminate(&mut self, first_free: bool, pivots: Pivots) -> Option<Ends> {
         let Some(work) = self.bending.as_mut().filter(|work| work.active) else {
             let blocks = Blocks {
@@ -173,7 +170,7 @@ impl LineWork {
         work.chain.eliminate(blocks, &self.residual, first_free, pivots)
     }
 
-    /// Right-hand sides of the condensed system by the present residual, after [`Self::eliminate`] with the present tangent.
+    /// Right-hand sides of the condensed system for the present residual, after [`Self::eliminate`] with the present tangent.
     pub(crate) fn eliminate_right(&mut self) -> [Vector3<f64>; 2] {
         match self.bending.as_mut().filter(|work| work.active) {
             Some(work) => {
@@ -184,7 +181,7 @@ impl LineWork {
         }
     }
 
-    /// Full solution from that of the ends.
+    /// Computes the full solution from the solution at the ends.
     pub(crate) fn substitute(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
         match self.bending.as_mut().filter(|work| work.active) {
             Some(work) => work.chain.substitute(a, b),
@@ -192,7 +189,7 @@ impl LineWork {
         }
     }
 
-    /// The solution, one block per node.
+    /// Solution, one vector per node.
     pub(crate) fn solution(&self) -> &[Vector3<f64>] {
         match self.bending.as_ref().filter(|work| work.active) {
             Some(work) => work.chain.solution(),
@@ -220,13 +217,13 @@ impl BendingWork {
     }
 }
 
-/// Dampers of the joints [N m s], where velocities are given.
+/// Dampers of the joints [N m s], if velocities are given.
 fn moving<'a>(bending: &'a Bending, velocity: &[Vector3<f64>]) -> Option<&'a [f64]> {
     let damping = bending.damping.as_deref();
     damping.filter(|_| !velocity.is_empty())
 }
 
-/// The couples of moments [N m] on the ends of a line, with their segments.
+/// Couples of moments [N m] on the ends of a line, with the indices of their segments.
 fn couples(position: &[Vector3<f64>], moments: [Vector3<f64>; 2]) -> impl Iterator<Item = (Couple, usize)> {
     let segments = [0, position.len() - 2];
     let acting = moments.into_iter().zip(segments);
@@ -246,7 +243,7 @@ pub fn end_moment_power(
         .sum()
 }
 
-/// Rates [m/s] of the vectors that meet at a node, those up to `last` moving at `velocity`; zero where a clamp or nothing moves.
+/// Rates [m/s] of the two segment vectors at a node of a line whose nodes up to `last` move at `velocity`; zero where the line ends.
 pub(crate) fn rates(node: usize, last: usize, velocity: impl Fn(usize) -> Vector3<f64>) -> [Vector3<f64>; 2] {
     let rate = |from: usize| velocity(from + 1) - velocity(from);
     [
@@ -259,8 +256,7 @@ pub(crate) fn rates(node: usize, last: usize, velocity: impl Fn(usize) -> Vector
     ]
 }
 
-/// Power dissipated by the dampers of a line's joints [W] at nodes with these velocities [m/s], the dampers resisting
-/// the velocities of a state.
+/// Power dissipated by the joint dampers of a line [W] at node velocities `motion` [m/s]; the dampers resist the velocities of `state`.
 pub fn joint_damping_power(
     line: &Line,
     state: &LineState,
@@ -283,9 +279,9 @@ pub fn joint_damping_power(
     damping.iter().enumerate().map(power).sum()
 }
 
-/// Shear [N] of segment `i` of a line: the force of the joints at both of its nodes, and of the moments [N m] on the line's ends, on the
-/// node towards `end`, where the line may be clamped at the orientation of the `point`; the other end is taken as pinned. Without velocities
-/// there is no damping.
+/// Shear [N] of segment `i` of a line: the force of the joints at both of its nodes, and of the moments [N m] on the ends of the line, on the node
+/// towards `end`. The line may be clamped there at the orientation of the `point`; the other end is treated as pinned. Without velocities there is no
+/// damping.
 pub fn shear(
     line: &Line,
     [position, velocity]: [&[Vector3<f64>]; 2],

@@ -1,4 +1,4 @@
-//! A line in the assembled system: segments, weight, inertia and drag of its nodes.
+//! Line in the assembled system: segments, weight, inertia and drag of its nodes.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -16,18 +16,17 @@ use crate::physics::slender::Slender;
 use crate::physics::stretch::total_tension;
 use crate::physics::stretch_step::Stretched;
 
-/// Least length for the lateral stiffness of a segment, over its unstretched length: a segment folded to zero length
-/// has no direction [-].
+/// Minimum length for the lateral stiffness of a segment, relative to its unstretched length [-]: a segment folded to zero length has no direction.
 const FOLDED: f64 = 0.1;
 
-/// Scratch of a line; without nodes by default.
+/// Workspace of a line; without nodes by default.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LineWork {
-    /// R of every node, ends included [N].
+    /// R of every node, including the ends [N].
     pub residual: Vec<Vector3<f64>>,
-    /// J of every node on itself.
+    /// J of every node: diagonal blocks.
     pub diagonal: Vec<Matrix3<f64>>,
-    /// J of neighbouring nodes on each other, per segment: −A.
+    /// J of neighbouring nodes, per segment: off-diagonal blocks −A.
     pub coupling: Vec<Matrix3<f64>>,
     /// Unit tangent of every node of a moving line at the last assembly [-].
     pub(super) tangent: Vec<Vector3<f64>>,
@@ -45,28 +44,28 @@ pub(crate) struct LineWork {
     pub history: Vec<Vector3<f64>>,
     /// Half the range of penetrations over which the seabed damper fades in, per segment [m].
     pub reach: Vec<f64>,
-    /// Position of every node relative to the seabed, and the bearing of the segments next to it, at the last assembly; empty without a seabed.
+    /// Position of every node relative to the seabed, and the bearing of its adjacent segments, at the last assembly; empty without a seabed.
     pub(super) stand: Vec<Stand>,
     pub(super) bearing: Vec<Bearing>,
-    /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
+    /// Maximum compression of the segments [N]; 0 in lines without bending stiffness.
     pub push: Vec<f64>,
-    /// Drag of the current that statics keeps constant, per node [N]; empty where none acts.
+    /// Drag of the current that statics keeps constant, per node [N]; empty if there is none.
     pub load: Vec<Vector3<f64>>,
-    /// Effect of the water's surface on every node; empty where the line does not reach it.
+    /// Effect of the water surface on every node; empty if the line does not reach it.
     pub dry: Vec<Dry>,
-    /// Joints, where the line has bending stiffness.
+    /// Joints, if the line has bending stiffness.
     pub bending: Option<BendingWork>,
     /// Friction of the seabed at the last assembly, per node [N]; empty over a level seabed without friction.
     pub rubbed: Vec<Vector3<f64>>,
     /// Normal force that limits friction at rest, per node [N]; empty like `rubbed`.
     pub pressed: Vec<f64>,
-    /// Memory of viscoelastic segments, where the line has any.
+    /// Memory of viscoelastic segments, if the line has any.
     pub(super) viscoelastic: Option<ViscoelasticWork>,
-    /// True where ends A and B are released from their points.
+    /// True if ends A and B are released from their points.
     pub(super) released: [bool; 2],
     /// Blocks of the last elimination of released ends.
     pub(super) loose: Option<Released>,
-    /// Elimination where nothing bends.
+    /// Elimination without bending.
     pub(super) chain: Chain<false>,
 }
 
@@ -102,7 +101,7 @@ impl Geometry {
 }
 
 impl LineWork {
-    /// Scratch for a line of `model`.
+    /// Workspace for a line of `model`.
     pub(super) fn new(model: &Model, line: &Line) -> LineWork {
         let n = line.segment_count();
         LineWork {
@@ -132,7 +131,7 @@ impl LineWork {
         }
     }
 
-    /// Sets the greatest compression of the segments: none unless the line `bends`.
+    /// Sets the maximum compression of the segments: zero unless the line `bends`.
     fn set_push(&mut self, line: &Line, bends: bool) {
         if let (Some(bending), Some(work)) = (&line.bending, &mut self.bending) {
             work.active = bends;
@@ -162,7 +161,7 @@ impl LineWork {
         self.coupling[i] = -stiffness;
     }
 
-    /// Residual and tangent of a line at rest.
+    /// Assembles residual and tangent of a line at rest.
     pub(super) fn assemble_static(&mut self, model: &Model, state: &State, index: usize, case: &StaticCase) {
         let (line, shape) = (&model.lines[index], &state.lines[index]);
         let position = &shape.position;
@@ -225,13 +224,12 @@ impl LineWork {
         self.add_segment::<true>(i, tension * g.direction.along, stiffness);
     }
 
-    /// Segment whose tension T is complementary to the excess of T over the elastic force N except for m =
-    /// `case.slack`: T (T − N) = m EA. Newton's method on T and the nodes together, from the predicted tension t,
-    /// gives
+    /// Adds a segment whose tension T is complementary to the excess of T over the elastic force N except for m = `case.slack`: T (T − N) = m EA.
+    /// Newton's method on T and the nodes together, from the predicted tension t, gives
     ///
     ///   T ← (t² + m EA)/(2t − N) + t/(2t − N) dN.
     ///
-    /// Where t is less than N, t is replaced by the solution for N alone.
+    /// If t is less than N, t is replaced by the solution for N alone.
     fn add_taut_segment(&mut self, g: &Geometry, case: &StaticCase, [ea, unstretched]: [f64; 2], i: usize) {
         let (elastic, product) = (self.elastic[i], case.slack * ea);
         let root = elastic.hypot(2.0 * product.sqrt());
@@ -250,7 +248,7 @@ impl LineWork {
         self.add_segment::<true>(i, self.elastic[i] * g.direction.along, stiffness);
     }
 
-    /// Residual and, if TANGENT, tangent of a moving line.
+    /// Assembles the residual and, if TANGENT, the tangent of a moving line.
     pub(super) fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
         model: &Model,
@@ -385,7 +383,7 @@ impl LineWork {
         }
     }
 
-    /// Force of water that waves accelerate; it depends on the state only through the tangent, which is frozen.
+    /// Adds the force of water accelerated by waves; it depends on the state only through the tangent, which is frozen.
     fn add_froude_krylov(&mut self, line: &Line, water: WaterAlong, weights: &Weights) {
         let (Some(pressed), Some(waves)) = (&line.nodes.froude_krylov, &water.waves) else {
             return;
@@ -429,7 +427,7 @@ impl LineWork {
     }
 }
 
-/// Unit tangent of a node: along its two neighbours, at an end along the segment.
+/// Unit tangent of a node: along the chord of its two neighbours, at an end along the segment.
 #[inline(always)]
 pub(crate) fn node_tangent(position: &[Vector3<f64>], i: usize) -> Vector3<f64> {
     let (before, after) = (i.saturating_sub(1), (i + 1).min(position.len() - 1));

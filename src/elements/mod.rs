@@ -1,24 +1,22 @@
 //! The assembled system of a network of lines: residual, exact tangent, and the solution of one linear system.
 //!
-//! Unknowns are the positions of the nodes between the ends of every line and of the free points on their free axes. The
-//! residual of a node is the force that would have to be added to hold it,
+//! The unknowns are the positions of the nodes between the ends of every line and of the free points along their free axes. The residual of a node is
+//! the force that would have to be added to hold it,
 //!
 //!   R_i = M_i(t) a_i − f_i,   f_i = T_i q_i − T_{i−1} q_{i−1} − w_i ẑ + drag + contact − (αm)_i v_i,
 //!
-//! with the segment's direction q, its total tension T = max(0, N(ε) + BA·ε̇) and M_i = M_n I + (M_t − M_n) t tᵀ. A
-//! line's end nodes contribute the same to their points. Free points add their mass, weight, drag, contact and load,
-//! and the buoyancy and added mass of their submerged part.
+//! with the segment's direction q, its total tension T = max(0, N(ε) + BA·ε̇) and M_i = M_n I + (M_t − M_n) t tᵀ. End nodes of a line contribute
+//! likewise to their points. Free points add their mass, weight, drag, contact and load, and the buoyancy and added mass of their submerged part.
 //!
 //! The tangent J = c_k ∂R/∂r + c_c ∂R/∂v + c_m ∂R/∂a is exact except that the tangent t of mass and drag is frozen. Per segment,
 //! with P = I − q qᵀ and ġ the rate of its end-to-end vector, J = [[A, −A], [−A, A]] with
 //!
 //!   A = c_k [EA·N'/l₀ q qᵀ + T/l P + BA/(l l₀) q (P ġ)ᵀ] + c_c BA/l₀ q qᵀ.
 //!
-//! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the
-//! joints of `bending` at its nodes and carries compression up to the limit of its segments, T ≥ −P; its tangent is
-//! exact, or positive semi-definite with `convex`. Statics keeps springs, weight and the drag of a current, whose
-//! forces are constant while the shape is sought. A line that may pierce the water's surface loses the buoyancy
-//! given by `surface` there.
+//! The geometric stiffness T/l P is never negative in a line that carries no compression. A line with bending stiffness has the joints of `bending`
+//! at its nodes and carries compression up to the limit of its segments, T ≥ −P; its tangent is exact, or positive semi-definite with `convex`.
+//! Statics includes springs, weight and the drag of a current, whose forces are constant during the search. A line that may pierce the water surface
+//! loses there the buoyancy given by `surface`.
 
 pub mod beam;
 mod contact;
@@ -48,18 +46,18 @@ pub(crate) use places::{copy_network, place_ends};
 pub(crate) use point::{PointWork, free_points};
 pub(crate) use segment::{stretch_step, stretched};
 
-/// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
+/// Workspace of the implicit solvers for a whole model; never read before it is written.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    /// Per line of the model.
+    /// Workspace per line of the model.
     pub(crate) lines: Vec<LineWork>,
-    /// Per point of the model.
+    /// Workspace per point of the model.
     pub(crate) points: Vec<PointWork>,
-    /// Per network of the model.
+    /// System of the free points per network of the model.
     pub(crate) systems: Vec<PointSystem>,
     /// Per line of the model: its closed form at the last evaluation of a network of catenaries.
     pub(crate) catenaries: Vec<Option<Catenary>>,
-    /// Per line of the model: −∂F/∂r of the forces F on ends A and B by their positions r, on the closed form [N/m].
+    /// Per line of the model: −∂F/∂r of the forces F on ends A and B with respect to their positions r, on the closed form [N/m].
     pub(crate) stiffness: Vec<[[Matrix3<f64>; 2]; 2]>,
     /// State before a step of the caller.
     pub(crate) start: State,
@@ -69,7 +67,7 @@ pub struct Workspace {
     pub(crate) hung: State,
     /// First guess of an equilibrium.
     pub(crate) saved: State,
-    /// Last equilibrium between two others.
+    /// Last equilibrium found during a search.
     pub(crate) trial: State,
     /// Counts since they were last cleared.
     pub(crate) counters: Counters,
@@ -80,7 +78,7 @@ pub struct Workspace {
 pub struct Counters {
     /// Time steps or load steps.
     pub steps: usize,
-    /// Linear systems that were factorised; closed-form catenaries where a network is solved with those.
+    /// Factorised linear systems, or closed-form catenaries if a network is solved on those.
     pub solves: usize,
     /// Steps that were halved.
     pub halvings: usize,
@@ -94,12 +92,12 @@ impl std::ops::AddAssign for Counters {
     }
 }
 impl Workspace {
-    /// Scratch for `model`.
+    /// Workspace for `model`.
     pub fn new(model: &Model) -> Workspace {
         Workspace::serving(model, |_| true)
     }
 
-    /// Scratch for `model`; lines have scratch only in networks whose number `serves` accepts.
+    /// Workspace for `model`; lines have workspace only in networks whose number `serves` accepts.
     pub(crate) fn serving(model: &Model, serves: impl Fn(usize) -> bool) -> Workspace {
         let mut points = vec![PointWork::default(); model.points.len()];
         for network in &model.networks {
@@ -131,14 +129,14 @@ impl Workspace {
         work
     }
 
-    /// Allocates the scratch of the lines of a network.
+    /// Allocates the workspace of the lines of a network.
     pub(crate) fn serve(&mut self, model: &Model, number: usize) {
         for &line in &model.networks[number].lines {
             self.lines[line] = LineWork::new(model, &model.lines[line]);
         }
     }
 
-    /// Frees the scratch of the lines of a network; its memory is then available to another one.
+    /// Frees the workspace of the lines of a network; its memory is then available to another one.
     pub(crate) fn release(&mut self, model: &Model, number: usize) {
         for &line in &model.networks[number].lines {
             self.lines[line] = LineWork::default();
@@ -155,7 +153,7 @@ impl Workspace {
 pub(crate) struct StaticCase {
     /// Time of the loads [s].
     pub time: f64,
-    /// Part of weight and loads that acts [-].
+    /// Fraction of weight and loads that acts [-].
     pub load: f64,
     /// Upper limit of EA [N].
     pub stiffness_max: f64,
@@ -163,23 +161,21 @@ pub(crate) struct StaticCase {
     pub tension_min: f64,
     /// Pseudo-transient mass over Δτ² on every unknown [N/m].
     pub anchoring: f64,
-    /// True where the geometric stiffness comes from the predicted tension instead of the elastic one.
+    /// True if the geometric stiffness comes from the predicted tension instead of the elastic one.
     pub predicted: bool,
-    /// True if bending stiffness acts, and lines with it push.
+    /// True if bending stiffness acts and lines with it carry compression.
     pub bends: bool,
-    /// Part of the stiffness of sticking friction, on nodes that have anchors [-].
+    /// Fraction of the stiffness of sticking, on nodes that have anchors [-].
     pub stick: f64,
-    /// Part of the limit of friction in use: [`friction::AT_REST`], or [`friction::SLIDING`] where nodes at rest at
-    /// that limit are to slide [-].
+    /// Fraction of the friction limit in use [-]: [`friction::AT_REST`], or [`friction::SLIDING`] if nodes at rest at that limit are to slide.
     pub limit: f64,
-    /// True where friction uses the normal forces of the last assembly that did not keep them.
+    /// True if friction uses the normal forces of the last assembly that did not keep them.
     pub keeps_pressure: bool,
-    /// Least radius with which lines pierce the water's surface [m].
+    /// Minimum radius with which lines pierce the water surface [m].
     pub breadth: f64,
-    /// True where every correction is limited to a moderate rotation of each segment, at the cost of more
-    /// corrections.
+    /// True if every correction is limited to a moderate rotation of each segment, at the cost of more corrections.
     pub cautious: bool,
-    /// Tension of a segment that is shortened to zero length; zero where slack segments carry no tension [N].
+    /// Tension of a segment that is shortened to zero length; zero if slack segments carry no tension [N].
     pub slack: f64,
 }
 
@@ -209,8 +205,8 @@ impl StaticCase {
 pub(crate) struct Weights {
     /// Weight of all forces except inertia in R [-].
     pub force: f64,
-    /// Weight of the seabed's friction in R [-], which acts in full at the end of a step: forces that jump excite
-    /// vibrations where a mean of old and new ones is taken.
+    /// Weight of the seabed friction in R [-]. It acts in full at the end of a step, because forces that jump excite vibrations if old and new ones
+    /// are averaged.
     pub friction: f64,
     /// Weight of inertia in R [-].
     pub inertia: f64,
@@ -222,7 +218,7 @@ pub(crate) struct Weights {
     pub acceleration: f64,
     /// Time at which the tension of the segments is evaluated.
     pub stretch: Stretch,
-    /// True where the tangent must be positive semi-definite, rather than exact.
+    /// True if the tangent must be positive semi-definite, rather than exact.
     pub convex: bool,
 }
 
@@ -231,16 +227,16 @@ pub(crate) struct Weights {
 pub(crate) enum Stretch {
     /// At the present state.
     Now,
-    /// Terms carried over to a step from before it.
+    /// Terms carried over to a step from the state before it.
     Before,
     /// Over the step to the present nodes: their tautness and geometric stiffness follow from the predicted tension.
     OverStep,
 }
 
-/// Compression that is treated as rounding [-], as a strain.
+/// Compressive strain that counts as rounding [-].
 const PUSH_STRAIN: f64 = 1e-12;
 impl Workspace {
-    /// Residual and tangent of a network at rest.
+    /// Assembles residual and tangent of a network at rest.
     pub(crate) fn assemble_static(
         &mut self,
         model: &Model,
@@ -264,7 +260,7 @@ impl Workspace {
         self.gather(model, network);
     }
 
-    /// Residual and, if TANGENT, tangent of a moving network at time `t` [s].
+    /// Assembles the residual and, if TANGENT, the tangent of a moving network at time `t` [s].
     pub(crate) fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
         model: &Model,
@@ -306,13 +302,13 @@ impl Workspace {
         }
     }
 
-    /// Solves J x = R for the nodes of all lines, ends included, and the free points; false if J is not positive definite.
-    /// The correction of the positions is −x.
+    /// Solves J x = R for the nodes of all lines, including the ends, and the free points; returns false if J is not positive definite. The
+    /// correction of the positions is −x.
     pub(crate) fn solve(&mut self, model: &Model, number: usize) -> bool {
         self.solve_with(model, number, Pivots::Positive)
     }
 
-    /// The same where J need not be positive definite: false if one of the `pivots` cannot be taken.
+    /// Solves like [`Self::solve`], with these `pivots`; returns false if one of them is not accepted.
     pub(crate) fn solve_with(&mut self, model: &Model, number: usize, pivots: Pivots) -> bool {
         let network = &model.networks[number];
         self.counters.solves += 1;
@@ -333,7 +329,7 @@ impl Workspace {
         true
     }
 
-    /// Solution at all nodes from that of the system of the free points.
+    /// Computes the solution at all nodes from that of the system of the free points.
     fn substitute(&mut self, model: &Model, network: &Network) {
         for &index in &network.lines {
             let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
@@ -341,7 +337,7 @@ impl Workspace {
         }
     }
 
-    /// Solves J x = R for the present residual with the tangent of the last solution; false where ends are released.
+    /// Solves J x = R for the present residual with the tangent of the last solution; returns false if ends are released.
     pub(crate) fn solve_again(&mut self, model: &Model, number: usize) -> bool {
         let network = &model.networks[number];
         self.systems[number].clear_right();
@@ -366,7 +362,7 @@ impl Workspace {
         true
     }
 
-    /// Positions, in the system of the free points, of the points that hold the ends of a line; `None` for a held or released end.
+    /// Indices, in the system of the free points, of the end points of a line; `None` for a held or released end.
     fn end_slots(&self, model: &Model, line: usize) -> [Option<usize>; 2] {
         let released = self.lines[line].released;
         let slot = |side: usize| {
@@ -394,7 +390,7 @@ impl Workspace {
         }
     }
 
-    /// Solves for the free points of a network whose lines were all added to their system; false if one of the `pivots` cannot be taken.
+    /// Solves for the free points of a network whose lines were all added to their system; returns false if one of the `pivots` is not accepted.
     pub(crate) fn solve_points(&mut self, model: &Model, number: usize, pivots: Pivots) -> bool {
         let (network, system) = (&model.networks[number], &mut self.systems[number]);
         for (slot, (index, free)) in free_points(model, network).enumerate() {
@@ -416,8 +412,8 @@ impl Workspace {
         }
     }
 
-    /// Tensions after a `part` of the correction, by the linear system. False if a segment taken as taut is in
-    /// compression beyond rounding.
+    /// Predicts the tensions after a `part` of the correction from the linear system. Returns false if a segment treated as taut is in compression
+    /// beyond rounding.
     pub(crate) fn predict_tensions(&mut self, model: &Model, network: &Network, part: f64) -> bool {
         let mut consistent = true;
         for &index in &network.lines {
@@ -506,20 +502,20 @@ impl Workspace {
         self.gather(model, network);
     }
 
-    /// Solution at a point, zero where it is not free.
+    /// Solution at a point; zero if the point is not free.
     pub(crate) fn solution_at(&self, point: usize) -> Vector3<f64> {
         let point = &self.points[point];
         point.slot.map_or(Vector3::zeros(), |_| point.solution)
     }
 
-    /// Longest entry of the last solution [m]; NaN if one of them is.
+    /// Largest displacement of a node in the last solution [m]; NaN if any is NaN.
     pub(crate) fn greatest_solution(&self, network: &Network) -> f64 {
         let longer = |a: f64, b: f64| if a.is_nan() || a >= b { a } else { b };
         let lines = network.lines.iter().flat_map(|&line| self.lines[line].solution());
         lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
     }
 
-    /// Greatest change of the vector along a segment by the last solution, over the length of the segment [-].
+    /// Largest change of a segment vector by the last solution, relative to the segment length [-].
     pub(crate) fn greatest_strain(&self, network: &Network) -> f64 {
         let of_line = |&line: &usize| {
             let line = &self.lines[line];
@@ -529,7 +525,7 @@ impl Workspace {
         network.lines.iter().flat_map(of_line).fold(0.0, f64::max)
     }
 
-    /// Greatest force out of balance [N], with its place.
+    /// Largest out-of-balance force [N], with its location.
     pub(crate) fn greatest_residual(&self, network: &Network) -> (f64, Place) {
         let mut greatest = (
             0.0,

@@ -1,15 +1,13 @@
-//! Places in a network: names for messages, copies of states.
+//! Locations in a network and their names for messages; copies of states.
 
 use crate::model::{LineState, Model, Network, PointState, State};
 
-/// A node between the ends of a line, or a free point.
+/// Node between the ends of a line, or free point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
     /// Node of a line, by their indices.
     Node {
-        /// Index of the line.
         line: usize,
-        /// Index of the node.
         node: usize,
     },
     /// Free point, by its index.
@@ -17,7 +15,7 @@ pub(crate) enum Place {
 }
 
 impl Place {
-    /// A line and a node there.
+    /// Index of a line and a node at this location.
     pub(crate) fn node(self, model: &Model) -> (usize, usize) {
         match self {
             Place::Node { line, node } => (line, node),
@@ -28,7 +26,7 @@ impl Place {
         }
     }
 
-    /// In words.
+    /// Name for messages.
     pub(crate) fn name(self, model: &Model) -> String {
         match self {
             Place::Node { line, node } => {
@@ -38,7 +36,7 @@ impl Place {
         }
     }
 }
-/// Puts the end nodes of a network's lines at their points, with the same motion.
+/// Puts the end nodes of a network's lines at their points, with the motion of the points.
 pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     for &index in &network.lines {
         let line = &model.lines[index];
@@ -53,7 +51,7 @@ pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     }
 }
 
-/// Copies a network's points and nodes from one state to another, which allocates the first time only.
+/// Copies the points and nodes of a network from one state to another; allocates only the first time.
 pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &mut State) {
     if to.lines.len() != from.lines.len() {
         to.lines

@@ -8,7 +8,7 @@ use crate::physics::airy::Orbit;
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::flow::Stream;
 
-/// Scratch of a point, prescribed until it gets a slot.
+/// Workspace of a point, which is prescribed unless it has a slot.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PointWork {
     /// Index among the free points of its network.
@@ -31,11 +31,11 @@ pub(crate) struct PointWork {
     pub reach: f64,
     /// Friction of the seabed at the last assembly [N].
     pub rubbed: Vector3<f64>,
-    /// Normal force of the limit of friction at rest [N].
+    /// Normal force that limits friction at rest [N].
     pub pressed: f64,
 }
 impl PointWork {
-    /// Residual and tangent of a point at rest, without its lines.
+    /// Assembles residual and tangent of a point at rest, without its lines.
     pub(super) fn assemble_static(
         &mut self,
         point: &Point,
@@ -59,7 +59,7 @@ impl PointWork {
         self.residual = -case.load * force;
     }
 
-    /// Adds a level seabed without friction under a point at rest at a height `z` [m].
+    /// Adds a level seabed without friction under a point at rest at the height `z` [m].
     pub(super) fn add_seabed_at_rest(&mut self, free: &FreePoint, z: f64) {
         if let Some((stiffness, push)) = free.seabed_at_rest(z) {
             self.residual.z -= push;
@@ -67,7 +67,7 @@ impl PointWork {
         }
     }
 
-    /// Residual and, if TANGENT, tangent of a moving point under a `load` [N], without its lines.
+    /// Assembles the residual and, if TANGENT, the tangent of a moving point under a `load` [N], without its lines.
     pub(super) fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
@@ -110,7 +110,7 @@ impl PointWork {
         }
     }
 }
-/// The free points of a network, with their indices, in the order of its system.
+/// Free points of a network with their indices, in the order of its system.
 pub(crate) fn free_points<'a>(
     model: &'a Model,
     network: &'a Network,
@@ -169,7 +169,7 @@ mod tests {
         }
     }
 
-    /// Deep, touching the seabed, half in the water, touching the surface from below and out of it; no kink nearby.
+    /// Heights of the buoy: deep, touching the seabed, half in the water, touching the surface from below and out of it; no kink nearby.
     const HEIGHTS: [f64; 5] = [-0.995, -0.9, 0.1, 0.6, 2.0];
 
     #[test]

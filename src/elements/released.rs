@@ -1,11 +1,11 @@
-//! Ends that are released from their points: unknowns of their line, solved with it.
+//! Line ends that are released from their points: unknowns of their line, solved with it.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::LineWork;
 use crate::math::block_banded::Ends;
 
-/// Equations of a line condensed on its ends, for those released.
+/// Equations of a line condensed on its ends, for the released ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Released {
     ends: Ends,
@@ -14,7 +14,7 @@ pub(super) struct Released {
 }
 
 impl LineWork {
-    /// Removes released ends from the condensed equations of the line; `None` if a block cannot be inverted.
+    /// Eliminates released ends from the condensed equations of the line; `None` if a block cannot be inverted.
     pub(super) fn eliminate_released(&mut self, mut ends: Ends) -> Option<Ends> {
         if self.released == [false; 2] {
             return Some(ends);
@@ -36,7 +36,7 @@ impl LineWork {
         Some(ends)
     }
 
-    /// Full solution from that of the points at the ends.
+    /// Computes the full solution from the solution at the end points.
     pub(super) fn substitute_all(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
         let (mut a, mut b) = (a, b);
         if let (Some(Released { ends, inverse }), true) = (self.loose, self.released != [false; 2]) {
@@ -45,7 +45,7 @@ impl LineWork {
                 a = inverse[0] * (ends.a - ends.ab * tied);
             }
             if self.released[1] {
-                // without an unknown at end A its blocks mean nothing
+                // if end A has no unknown, its blocks are meaningless
                 let pull = if a == Vector3::zeros() { a } else { ends.ba * a };
                 b = inverse[1] * (ends.b - pull);
             }

@@ -1,16 +1,15 @@
-//! Segments over a step of an implicit integrator, which moves their nodes by
+//! Segments over a step of an implicit integrator. The force on their nodes is
 //!
 //!   F = T̄ q̄ + (½ − α_f) (N' q' − N q) + (1 − α_f) C' q' + α_f C q
 //!
-//! with its spring's force N and its damper's C before and after. T̄ q̄ conserves the energy of the spring over the
-//! step ([`crate::physics::stretch_step`], [`crate::physics::viscoelastic`]); the second term is the effect of the
-//! integrator's weights beyond the mean of N, which is its dissipation; the others are the weighted damper.
+//! with the force N of the spring and C of the damper before and after the step. T̄ q̄ conserves the energy of the spring over the step
+//! ([`crate::physics::stretch_step`], [`crate::physics::viscoelastic`]). The second term is the effect of the integrator's weights beyond the mean of
+//! N, which is its algorithmic dissipation. The last two terms are the weighted damper.
 //!
-//! The mean itself is not sufficient: generalised-α overshoots where springs are not linear, and may gain energy
-//! without bound.
+//! The mean of N alone is not sufficient: generalised-α overshoots where springs are not linear, and may gain energy without bound.
 //!
-//! Source: Erlicher, Bonaventura & Bursi (2002), Comput. Mech. 28, 83-104, on generalised-α in nonlinear problems;
-//! the discrete gradient in place of the mean is derived here. Valid where the laws are.
+//! Source: Erlicher, Bonaventura & Bursi (2002), Comput. Mech. 28, 83-104, on generalised-α in nonlinear problems; the discrete gradient instead of
+//! the mean is derived here. Valid where the laws are.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -37,7 +36,7 @@ pub(crate) fn stretched(line: &Line, state: &LineState, i: usize) -> Stretched {
     }
 }
 
-/// Segment `i` of a line before and after a step of a length [s], and its force in between.
+/// Segment `i` of a line before and after a `step` [s], and its force over the step.
 pub(crate) fn stretch_step(
     line: &Line,
     states: [&LineState; 2],
@@ -62,26 +61,26 @@ pub(crate) fn stretch_step(
 pub(super) struct Response {
     /// Elastic force, before any limit [N].
     pub elastic: f64,
-    /// Slope with the strain [N].
+    /// Slope with respect to the strain [N].
     pub tangent: f64,
-    /// Damping of the strain rate [N s]; none for a viscoelastic law in a step, which includes it in its mean.
+    /// Damping of the strain rate [N s]; zero for a viscoelastic law in a step, which includes it in its mean.
     pub damping: f64,
 }
 
 /// Tension of a segment at the end of a step, from the last solution.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepEnd {
-    /// True where the segment is taut in the last solution, though its present nodes leave it slack.
+    /// True if the segment is taut in the last solution, although its present nodes leave it slack.
     pub keeps: bool,
-    /// Excess of the tension of the last solution over that of its present nodes [N].
+    /// Excess of the tension in the last solution over that at its present nodes [N].
     pub excess: f64,
 }
 
 /// Force of a segment over a step in excess of the weighted force at its end.
 pub(super) struct Beyond {
-    /// [N]
+    /// Force [N].
     pub force: Vector3<f64>,
-    /// [N/m]
+    /// Stiffness [N/m].
     pub stiffness: Matrix3<f64>,
 }
 

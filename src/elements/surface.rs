@@ -1,8 +1,7 @@
-//! The water's surface in the residual and tangent of a line: the buoyancy that its dry nodes lose.
+//! Water surface in the residual and tangent of a line: the buoyancy that its dry nodes lose.
 //!
-//! The missing buoyancy has an exact tangent, symmetric and never negative. Drag and added mass are proportional to
-//! the wet part of a node; their slope with the node's height is in the tangent, that with its neighbours' heights is
-//! not.
+//! The missing buoyancy has an exact tangent, symmetric and positive semi-definite. Drag and added mass are proportional to the wet part of a node;
+//! the tangent includes their slope with respect to the height of the node, but not with respect to the heights of its neighbours.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,8 +9,8 @@ use super::LineWork;
 use crate::model::{Dry, Line, WaterAlong};
 
 impl LineWork {
-    /// Finds the dry parts of a line at `position` [m] in the `water`, and adds their weight, times `force`, and its
-    /// tangent, times `stiffness`. Segments of a radius below `breadth` [m] get that radius.
+    /// Finds the dry parts of a line at `position` [m] in the `water`, and adds the buoyancy they lose, times `force`, and its tangent, times
+    /// `stiffness`. Segments with a radius below `breadth` [m] get that radius.
     pub(super) fn add_surface(
         &mut self,
         line: &Line,
@@ -43,14 +42,14 @@ impl LineWork {
         }
     }
 
-    /// Effect of the surface on a node; none where the line does not meet it.
+    /// Effect of the surface on a node; none if the line does not meet it.
     #[inline(always)]
     pub(super) fn dry(&self, node: usize) -> Dry {
         self.dry.get(node).copied().unwrap_or_default()
     }
 }
 
-/// Slope with the node's height of a force f(1 − p), with p the `dry` part: the third column of a tangent, for f [N].
+/// Slope of a force f(1 − p), with p the `dry` part, with respect to the height of the node: the third column of a tangent, for f [N].
 #[inline(always)]
 pub(super) fn by_height(dry: &Dry, force: Vector3<f64>) -> Matrix3<f64> {
     force * (-dry.slope * Vector3::z()).transpose()

@@ -18,7 +18,7 @@ const FORCES: Weights = Weights {
     convex: false,
 };
 
-/// A repeatable number in −1 … 1.
+/// Pseudo-random number in −1 … 1.
 fn noise(seed: &mut u64) -> f64 {
     *seed = seed
         .wrapping_mul(6364136223846793005)
@@ -45,7 +45,7 @@ fn network(surroundings: &str, line_type: &str) -> Model {
     .model()
 }
 
-/// Both lines bent, stretched by about a tenth, and moving.
+/// State in which both lines are bent, stretched by about a tenth, and moving.
 fn random_state(model: &Model, size: f64) -> State {
     let points = model.points.iter();
     let mut state = State {
@@ -94,7 +94,7 @@ fn collect(work: &Workspace) -> Vec<Vector3<f64>> {
     nodes.chain([work.points[1].total]).collect()
 }
 
-/// Which of r, v and a is varied.
+/// Variable to be varied: r, v or a.
 #[derive(Clone, Copy)]
 enum Varied {
     Position,
@@ -169,7 +169,7 @@ fn block(line: &LineWork, row: usize, column: usize) -> Matrix3<f64> {
     }
 }
 
-/// Gives both lines bending stiffness, damped, and clamps them at fixed points; taut enough not to push.
+/// Gives both lines damped bending stiffness, and clamps them at fixed points; they are taut enough not to be compressed.
 fn stiffen(model: &mut Model) {
     for (line, along) in model.lines.iter_mut().zip([Vector3::x(), -Vector3::x()]) {
         let n = line.segment_count();
@@ -222,7 +222,7 @@ fn the_stiffness_is_the_slope_of_the_residual_where_a_moment_turns_an_end() {
     let mut state = random_state(&model, 0.5);
     for nodes in &mut state.lines {
         nodes.velocity.fill(Vector3::zeros());
-        // in the plane across the moment, so that it has a potential and the blocks of J are symmetric
+        // in the plane normal to the moment, so that it has a potential and the blocks of J are symmetric
         nodes.position.iter_mut().for_each(|r| {
             let axis = Vector3::new(0.0, 40.0, -25.0).normalize();
             *r -= r.dot(&axis) * axis;
@@ -282,7 +282,7 @@ fn the_mass_is_the_slope_of_the_residual_with_unequal_added_mass() {
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
 }
 
-/// Water whose surface, at z = 0, the lines of [`network`] cross.
+/// Water with a surface at z = 0 that the lines of [`network`] cross.
 const SURFACE: &str = "water = { density = 1025.0, surface = true }";
 
 #[test]
@@ -311,7 +311,7 @@ fn damping_and_mass_are_slopes_of_the_residual_where_lines_pierce_the_surface() 
 
 #[test]
 fn drag_and_added_mass_have_their_own_slope_with_a_nodes_height() {
-    // alike along and across, so that the frozen tangent of the line changes nothing
+    // equal along and across, so that the frozen tangent of the line has no effect
     let line_type = "mass = 2.0, diameter = 0.2, added_mass_normal = 1.0, added_mass_tangential = 1.0";
     let model = network(SURFACE, line_type);
     let mut state = random_state(&model, 1.0);

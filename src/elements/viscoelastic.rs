@@ -15,12 +15,12 @@ pub(super) struct ViscoelasticWork {
     start: Vec<[f64; 2]>,
     /// Length of the step [s].
     dt: f64,
-    /// True where the line moves: at rest it has no internal variables.
+    /// True if the line moves: at rest it has no internal variables.
     pub moves: bool,
 }
 
 impl ViscoelasticWork {
-    /// Scratch for a line; `None` where it is not viscoelastic.
+    /// Workspace for a line; `None` if it is not viscoelastic.
     pub(super) fn new(line: &Line) -> Option<ViscoelasticWork> {
         let laws = line.segments.viscoelastic.clone()?;
         Some(ViscoelasticWork {
@@ -40,7 +40,7 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Force and slope of segment `i` at a strain [-]: at the end of the step, or of the state as it is.
+    /// Force and slope of segment `i` at a strain [-], at the end of the step or in the present state.
     #[inline(always)]
     pub(super) fn respond(
         &self,
@@ -73,8 +73,7 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling in the last
-    /// solution.
+    /// Tension of segment `i` over the step to a strain [-]; if it `keeps` pulling in the last solution, it is computed as if it could push.
     #[inline(always)]
     pub(super) fn mean(&self, i: usize, strain: f64, keeps: bool) -> Mean {
         let ([before, slow], law) = (self.start[i], &self.laws[i]);
@@ -85,7 +84,7 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Stores the memory at the end of the step in the state, whose nodes are there.
+    /// Stores the memory at the end of the step in `state`, whose nodes are at the end of the step.
     pub(super) fn finish(&self, line: &Line, state: &mut LineState) {
         if state.viscoelastic.is_empty() {
             return;

@@ -87,7 +87,7 @@ fn push_matrix(variables: &mut Vec<Variable>, body: Body, name: &str, quantity: 
     }
 }
 
-/// Value of a quantity; `None` where there is none.
+/// Value of a quantity; `None` if there is none.
 pub(super) fn read(
     simulation: &Simulation,
     body: Body,
@@ -107,7 +107,7 @@ pub(super) fn read(
     })
 }
 
-/// Reason why there is no value.
+/// Reason why a quantity has no value.
 pub(super) fn missing(name: &str, quantity: InterfaceQuantity) -> String {
     match quantity {
         InterfaceQuantity::StaticStiffness => {

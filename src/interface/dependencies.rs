@@ -1,9 +1,9 @@
-//! Variables on which the static solution, and so every output during initialization, depends.
+//! Variables on which the static solution, and therefore every output during initialization, depends.
 //!
-//! Lines that share free points are one network; a network depends on the displacements of the coupled points that it hangs on and on the parameters that
-//! enter its equilibrium. Velocities, rotary inertia and damping do not enter, since nothing moves. Drag enters where the water flows, and added mass in
-//! waves, whose load on the last half segment is part of the end force from the start. The flow that a host gives enters at that node. The closed-form
-//! catenary is that of the reference configuration, in still water, and so depends on no displacement.
+//! Lines that share free points are one network. A network depends on the displacements of the coupled points at its ends and on the parameters of its
+//! equilibrium. Velocities, rotary inertia and damping have no effect at rest. Drag has an effect in flowing water, and added mass in waves, whose load on
+//! the last half segment is part of the end force from the start. The flow given by a host acts at that node. The closed-form catenary is that of
+//! the reference configuration in still water, and so depends on no displacement.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -58,8 +58,8 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     add_flow(variables, model);
 }
 
-/// Adds the flow of the water that a host gives. At rest it acts on the last half segment, whose load is part of the end force; in the coming step it acts
-/// on whole networks.
+/// Adds the flow of the water given by a host. At rest it acts on the last half segment, whose load is part of the end force; in the coming step it
+/// acts on whole networks.
 fn add_flow(variables: &mut [Variable], model: &Model) {
     let flow = |(index, variable): (usize, &Variable)| match variable.binding {
         Binding::Flow {
@@ -108,21 +108,21 @@ fn add_flow(variables: &mut [Variable], model: &Model) {
     }
 }
 
-/// Returns whether a component of the flow at a node, or at all nodes, enters the force at an end of a line: the drag of a half node whose load is linear
-/// follows from two velocities.
+/// Returns whether a component of the flow at a node, or at all nodes, affects the force at an end of a line: the drag on a half node with linear load
+/// depends on two velocities.
 fn acts_at(line: &Line, end: End, (component, node): (usize, Option<usize>)) -> bool {
     let count = 1 + usize::from(component < 3 && line.linear_load[end as usize]);
     node.is_none_or(|node| node.abs_diff(line.end_node(end)) < count)
 }
 
-/// Lines that end at the points of a body, with these ends.
+/// Lines with an end at a point of a body, each with that end.
 fn attached(model: &Model, body: Body) -> impl Iterator<Item = (usize, End)> {
     let points = (0..model.points.len()).filter(move |&point| model.moves_with(point, body));
     points.flat_map(|point| model.points[point].attached.iter().copied())
 }
 
 impl Interface {
-    /// Displacements and velocities of bodies on which an output of a step depends through the motion at its end, as value references.
+    /// Value references of the displacements and velocities of bodies on which an output of a step depends through the motion at its end.
     pub fn motions_of(&self, output: &Variable) -> Vec<u32> {
         let known = |index: usize| output.initial_dependencies.contains(&Interface::reference(index));
         let rows = || self.variables.iter().enumerate();
@@ -142,7 +142,7 @@ impl Interface {
     }
 }
 
-/// All lines of the networks that the given lines belong to.
+/// All lines of the networks of the given lines.
 fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSet<usize> {
     let networks = lines.into_iter().flat_map(|line| {
         let networks = model.networks.iter();
@@ -157,11 +157,11 @@ fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSe
 struct Known {
     reference: u32,
     binding: Binding,
-    /// Lines at the points that it moves.
+    /// Lines that end at the points that it moves.
     moves: Vec<usize>,
 }
 
-/// Lines from whose equilibrium a variable is read.
+/// Lines on whose equilibrium a variable depends.
 struct Scope<'a> {
     scene: &'a Scene,
     model: &'a Model,
@@ -229,7 +229,7 @@ impl Scope<'_> {
         }
     }
 
-    /// Returns whether buoyancy is subtracted from the weight of a line type, under water or where it comes out.
+    /// Returns whether buoyancy is subtracted from the weight of a line type, under water or where a line emerges.
     fn is_buoyant(&self, name: &str) -> bool {
         let line_type = &self.scene.line_types[name];
         self.scene.water.is_some()
@@ -237,7 +237,7 @@ impl Scope<'_> {
             && (line_type.weight.is_none() || self.emerges())
     }
 
-    /// Returns whether the water moves; closed forms are those of still water.
+    /// Returns whether the water moves; closed forms are for still water.
     fn flows(&self) -> bool {
         let water = self.scene.water.as_ref();
         !self.closed_form && water.is_some_and(|water| water.current.is_some() || water.accelerates())
@@ -253,7 +253,7 @@ impl Scope<'_> {
         self.flows() && self.scene.line_types[name].diameter.is_some()
     }
 
-    /// Returns whether a line may come out of the water; in closed forms it never does.
+    /// Returns whether a line may come out of the water; in closed forms, no line does.
     fn emerges(&self) -> bool {
         let mut lines = self.lines.iter();
         !self.closed_form && lines.any(|&line| self.model.lines[line].surface.is_some())

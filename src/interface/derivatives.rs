@@ -1,7 +1,7 @@
 //! Derivatives of outputs with respect to the motion of the bodies at the end of the last step, and to time.
 //!
-//! Outputs of type Float64 have derivatives with respect to displacements and velocities of points and vessels at the end of the last step. The host has
-//! given these for that time (`input_reconstruction = "interpolate"`), or they were extrapolated.
+//! Outputs of type Float64 have derivatives with respect to displacements and velocities of points and vessels at the end of the last step. These were
+//! given by the host for that time (`input_reconstruction = "interpolate"`), or extrapolated.
 
 use super::{Binding, Causality, Interface, Kind, Variable};
 use crate::simulation::{EndMotion, Simulation};
@@ -42,7 +42,7 @@ fn expect_differentiable(outputs: &[&Variable]) -> Result<(), String> {
     }
 }
 
-/// Component of the motion that an input gives.
+/// Component of the motion that an input sets.
 fn end_motion(input: &Variable) -> Result<EndMotion, String> {
     let (body, axis, is_velocity) = match input.binding {
         Binding::Displacement { body, axis } => (body, axis, false),

@@ -1,11 +1,11 @@
-//! Variables for the flow of the water that a host gives at the nodes of a line, and for the positions at which it is due.
+//! Variables for the flow of the water that a host gives at the nodes of a line, and for the positions at which the host must evaluate it.
 
 use super::rows::{AXES, at_nodes, range, row};
 use super::{Binding, Causality, Layout, Unit, Variable};
 use crate::model::Model;
 use crate::simulation::{FLOW_COMPONENTS, Simulation};
 
-/// Rows of all lines that take a flow.
+/// Adds the flow at the nodes of all lines on which it acts.
 pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout) {
     for (line, built) in model.lines.iter().enumerate() {
         let (count, owner) = (built.flow_count(model), &built.name);
@@ -42,7 +42,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
     }
 }
 
-/// Writes a coordinate of the positions at which the next flow is due.
+/// Writes a coordinate of the positions at which the next flow is needed.
 pub(super) fn read_place(
     simulation: &Simulation,
     line: usize,

@@ -1,4 +1,4 @@
-//! Inputs as a host writes them.
+//! Inputs as written by a host.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,32 +6,32 @@ use super::{Binding, Variable};
 use crate::model::Body;
 use crate::simulation::{BodyInput, Inputs, WaterFlow};
 
-/// Inputs of a simulation, with the velocities as a host has written them, variable by variable.
+/// Inputs of a simulation, with the velocities as a host has written them, one variable at a time.
 ///
-/// Hosts that write all inputs at every communication point write the start value 0 to unconnected ones. A velocity of 0 therefore does not count as
-/// given if it is written before the first step, or if the body has moved and no velocity other than 0 was ever written.
+/// Hosts that write all inputs at every communication point write the start value 0 to unconnected inputs. A velocity of 0 therefore does not count
+/// as given if it is written before the first step, or if the body has moved and no velocity other than 0 has ever been written.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct HostInputs {
     given: Inputs,
-    /// Of every point, then of every vessel.
+    /// Velocities of every point, then of every vessel.
     velocities: Vec<WrittenVelocity>,
 }
 
-/// Velocity that a host has written for a point, which has the first three axes, or for a vessel.
+/// Velocity that a host has written for a point, which has the first three axes, or for a vessel, which has six.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct WrittenVelocity {
-    /// Velocity [m/s] and angular velocity [rad/s]; 0 before one is written.
+    /// Velocity [m/s] and angular velocity [rad/s]; 0 before the host writes one.
     value: [f64; 6],
     /// True if the host gives the velocity.
     is_given: [bool; 6],
-    /// True if the body has moved since the start, along and about the axes.
+    /// True if the body has moved since the start, in translation and in rotation.
     has_moved: [bool; 2],
-    /// True if any velocity was ever non-zero, along and about the axes.
+    /// True if a velocity has ever been non-zero, in translation and in rotation.
     has_speed: [bool; 2],
 }
 
 impl WrittenVelocity {
-    /// Sets the velocities of an input along the axes (`kind` 0) or about them (`kind` 1).
+    /// Sets the velocities of an input: translational (`kind` 0) or angular (`kind` 1).
     fn pass_on(&self, kind: usize, input: &mut BodyInput) {
         let gives = self.has_speed[kind] || !self.has_moved[kind];
         for axis in 3 * kind..3 * kind + 3 {
@@ -41,7 +41,7 @@ impl WrittenVelocity {
 }
 
 impl HostInputs {
-    /// Inputs before a host writes any, those of a simulation `at_rest`.
+    /// Inputs before a host has written any: those of a simulation `at_rest`.
     pub fn new(at_rest: &Inputs) -> HostInputs {
         HostInputs {
             velocities: vec![WrittenVelocity::default(); at_rest.bodies().len()],
@@ -54,7 +54,7 @@ impl HostInputs {
         &self.given
     }
 
-    /// Flow of the water, to be set.
+    /// Flow of the water, for modification.
     pub fn flow_mut(&mut self) -> &mut WaterFlow {
         &mut self.given.flow
     }
@@ -68,7 +68,7 @@ impl HostInputs {
         *self.given.body_mut(body) = input;
     }
 
-    /// Values of an input as written; returns whether the variable is an input.
+    /// Reads the values of an input as written; returns whether the variable is an input.
     pub fn read(&self, variable: &Variable, values: &mut [f64]) -> bool {
         match variable.binding {
             Binding::Velocity { body, axis } => {
@@ -79,7 +79,7 @@ impl HostInputs {
         }
     }
 
-    /// Writes the values of an input; `steps` is true from the start of stepping on, when 0 counts as a velocity of a body that rests.
+    /// Writes the values of an input. From the start of stepping `steps` is true; a written 0 then counts as the velocity of a body at rest.
     pub fn write(&mut self, variable: &Variable, values: &[f64], steps: bool) {
         match variable.binding {
             Binding::Velocity { body, axis } => self.write_velocity(body, axis, values[0], steps),

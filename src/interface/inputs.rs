@@ -3,11 +3,12 @@
 use super::{Binding, Variable};
 use crate::simulation::Inputs;
 
-/// Greatest magnitude of an input [m, rad, m/s, rad/s, m/s²]: beyond this, squares and cubes of it would overflow.
+/// Maximum magnitude of an input [m, rad, m/s, rad/s, m/s²]; squares and cubes of greater ones would overflow.
 pub const INPUT_MAX: f64 = 1e12;
 
 impl Variable {
-    /// Writes the values of an input, whose size `values` has; a velocity that is derived from the displacements is 0. Returns whether the variable is an input.
+    /// Writes the values of an input into `values`, which has its size; a velocity derived from the displacements is 0. Returns whether the variable
+    /// is an input.
     pub fn read_input(&self, inputs: &Inputs, values: &mut [f64]) -> bool {
         values[0] = match self.binding {
             Binding::Displacement { body, axis } => inputs.body(body).displacement[axis],

@@ -1,4 +1,4 @@
-//! The parameters of a scene: numbers and choices of the property table that a host may change before the simulation starts.
+//! Parameters of a scene: numbers and choices of the property table that a host may change before the simulation starts.
 
 use super::rows::row;
 use super::{Binding, Causality, Kind, Unit, Variable};
@@ -37,7 +37,7 @@ pub enum Place {
 }
 
 impl Parameter {
-    /// Value in a scene, in its unit; `None` if the scene does not have the key.
+    /// Value in a scene, in its unit; `None` if the scene does not contain the key.
     pub fn value(&self, scene: &Scene) -> Option<f64> {
         let key = self.key;
         let value = match &self.place {
@@ -68,17 +68,17 @@ impl Parameter {
         }
     }
 
-    /// Sets the parameter in a scene that has it.
+    /// Sets the parameter in a scene that contains it.
     ///
     /// # Errors
-    /// The accepted numbers, for one that stands for no choice. Ranges are left to [`Scene::check`].
+    /// The accepted numbers, if the number denotes no choice. Bounds are left to [`Scene::check`].
     pub fn set(&self, scene: &mut Scene, value: f64) -> Result<(), String> {
         self.value_mut(scene)
             .map_or(Ok(()), |target| target.set_number(value))
     }
 }
 
-/// Rows of all parameters that the scene gives.
+/// Variables of all parameters that the scene gives.
 pub(super) fn variables(scene: &Scene) -> Vec<Variable> {
     let mut variables = Vec::new();
     let mut add = |place: Place, keys: &'static [Key], names: (&str, &str), about: &str| {
@@ -111,7 +111,7 @@ pub(super) fn variables(scene: &Scene) -> Vec<Variable> {
     variables
 }
 
-/// Row of a key, if the scene gives it. `names` are the name of the owner and the prefix of the variable's name; `about` ends the description.
+/// Variable of a key, if the scene gives it. `names` are the name of the owner and the prefix of the variable's name; `about` ends the description.
 fn variable(
     scene: &Scene,
     place: &Place,

@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::scene::Axis;
 use crate::simulation::Simulation;
 
-/// Rows of the profiles of all lines.
+/// Adds the profiles of all lines.
 pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout) {
     for (line, built) in model.lines.iter().enumerate() {
         let (nodes, owner) = (built.nodes_max(), &built.name);
@@ -21,7 +21,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
     }
 }
 
-/// Label, meaning, unit and binding of the quantities of a line's nodes.
+/// Label, meaning, unit and binding of the quantities at the nodes of a line.
 fn quantities(bends: bool) -> Vec<(&'static str, String, Unit, ProfileQuantity)> {
     let axes = [Axis::X, Axis::Y, Axis::Z].into_iter().zip(AXES);
     let position = |(axis, label)| {

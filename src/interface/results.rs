@@ -1,11 +1,11 @@
-//! Results of lines and of the solver. One entry holds a result's description, with its unit, its name and its value.
+//! Results of lines and of the solver. One entry contains the description of a result with its unit, its name and its value.
 
 use super::{Binding, Causality, Unit, Variable, rows};
 use crate::scene::table::{meaning, unit};
 use crate::simulation::{NodeBending, Simulation};
 
-/// Declares results: an enum, and for each variant the name of the variable and its value from a simulation and the number of a line. The
-/// doc comment of a variant is the description of the variable.
+/// Declares results: an enum, and for each variant the name of the variable and the function of a simulation and a line index that gives its
+/// value. The doc comment of a variant is the description of the variable.
 macro_rules! results {
     ($(#[doc = $about:literal])+ pub enum $name:ident {
         $($(#[doc = $doc:literal])+ $variant:ident = $label:literal => $read:expr,)+
@@ -22,7 +22,7 @@ macro_rules! results {
                 match self { $($name::$variant => ($label, &[$($doc),+]),)+ }
             }
 
-            /// The value, in the unit of the variable; `None` where there is none.
+            /// Value in the unit of the variable; `None` if there is none.
             pub(super) fn read(self, simulation: &Simulation, line: usize) -> Option<f64> {
                 let read: fn(&Simulation, usize) -> Option<f64> = match self { $($name::$variant => $read,)+ };
                 read(simulation, line)
@@ -75,7 +75,7 @@ results! {
     }
 }
 
-/// Bending at the nodes of a line; none if the host has set the bending stiffness to zero.
+/// Bending at the nodes of a line; empty if the host has set the bending stiffness to zero.
 fn nodes(simulation: &Simulation, line: usize) -> &[NodeBending] {
     simulation.bending(line).unwrap_or_default()
 }
@@ -111,7 +111,7 @@ impl LineResult {
         LineResult::CatenaryTensionB,
     ];
 
-    /// Returns whether the result is one of the closed-form catenary, which the parameters alone determine.
+    /// Returns whether the result belongs to the closed-form catenary, which depends on parameters only.
     pub(super) fn is_catenary(self) -> bool {
         LineResult::OF_CATENARY.contains(&self)
     }

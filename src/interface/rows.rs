@@ -39,8 +39,8 @@ pub(super) fn row(
     }
 }
 
-/// Adds a quantity at a number of nodes: an array, or a scalar for each node. `row` makes a variable from its name, the words for its place, with which the
-/// description ends except for "from end A", and its only node.
+/// Adds a quantity at `count` nodes: an array, or a scalar for each node. `row` makes a variable from its name, the words for its place, which
+/// precede "from end A" in the description, and the index of its node for a scalar.
 pub(super) fn at_nodes(
     variables: &mut Vec<Variable>,
     (layout, count): (Layout, usize),
@@ -61,14 +61,14 @@ pub(super) fn at_nodes(
     }
 }
 
-/// Range of nodes of a quantity: the only node, or all of them.
+/// Range of nodes of a quantity: one node, or all of them.
 pub(super) fn range(node: Option<usize>, count: usize) -> Range<usize> {
     node.map_or(0..count, |node| node..node + 1)
 }
 
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Origin of a velocity that the host does not give.
+/// Sentence on a velocity that the host does not give.
 const NOT_GIVEN: &str = "if never set to a non-zero value, it is derived from the displacements, or 0 if solver.input_reconstruction is 1";
 
 /// Displacements of a body; a point has the first three.
@@ -78,7 +78,7 @@ const RATES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
 /// Forces and moments on a body.
 pub(super) const FORCES: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 
-/// Rows of a coupled point or a vessel: its displacement, its velocity, and the force and moment of its moorings.
+/// Adds the variables of a coupled point or a vessel: displacement, velocity, and force and moment of the moorings.
 pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
     let is_point = matches!(body, Body::Point(_));
     let axes = if is_point { 0..3 } else { 0..6 };
@@ -128,7 +128,7 @@ pub(super) fn component(of: &str, name: &str, along: &str) -> String {
     format!("{of} {name}, component {along} in global axes")
 }
 
-/// Inputs that the scene of a line declares: its release and its winch.
+/// Adds the inputs of a line that the scene declares: release and winch.
 pub(super) fn controls(variables: &mut Vec<Variable>, index: usize, line: &scene::Line) {
     let name = &line.name;
     let mut add = |label: &str, meaning: String, unit, binding| {

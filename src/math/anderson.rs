@@ -6,25 +6,25 @@
 //!
 //! by modified Gram-Schmidt from the newest difference to the oldest; differences that add no direction are left out.
 //!
-//! Source: Walker & Ni (2011), SIAM J. Numer. Anal. 49(4), 1715-1735, section 2. On a linear problem it is equivalent to GMRES, so that the
-//! plain iteration need not converge.
+//! Source: Walker & Ni (2011), SIAM J. Numer. Anal. 49(4), 1715-1735, section 2. On a linear problem the method is equivalent to GMRES and does not
+//! require the plain iteration to converge.
 
-/// A difference whose component orthogonal to the newer ones is smaller than this fraction of it adds no direction [-].
+/// Minimum norm of the part of a difference ΔF orthogonal to the newer ones, relative to |ΔF|, for which the difference is used [-].
 const INDEPENDENT: f64 = 1e-9;
 
-/// The last iterates.
+/// State of the iteration: the last iterate and the differences before it.
 #[derive(Debug, Clone, Default)]
 pub struct Anderson {
     /// x and f of the last call.
     last: Option<[Vec<f64>; 2]>,
     /// ΔX and ΔF, the newest last.
     differences: Vec<[Vec<f64>; 2]>,
-    /// Greatest number of differences kept [-].
+    /// Maximum number of differences kept [-].
     depth: usize,
 }
 
 impl Anderson {
-    /// Keeps at most `depth` differences [-].
+    /// Returns an accelerator that keeps at most `depth` differences [-].
     pub fn new(depth: usize) -> Anderson {
         Anderson {
             depth,

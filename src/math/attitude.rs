@@ -1,11 +1,11 @@
 //! Attitude of a rigid body by roll, pitch and yaw, with its angular velocity and acceleration.
 //!
-//! R = R_z(ψ) R_y(θ) R_x(φ) (Z-Y'-X'') takes body axes to global ones; in the other order R = R_x(φ) R_y(θ) R_z(ψ) (X-Y'-Z''). With the axes that
-//! the angles turn about, in the first order u_ψ = ẑ, u_θ = R_z ŷ and u_φ = R_z R_y x̂, the angular velocity in global axes is
+//! R = R_z(ψ) R_y(θ) R_x(φ) (Z-Y'-X'') takes body axes to global ones; in the other order R = R_x(φ) R_y(θ) R_z(ψ) (X-Y'-Z''). With the rotation axes
+//! of the first order, u_ψ = ẑ, u_θ = R_z ŷ and u_φ = R_z R_y x̂, the angular velocity in global axes is
 //!
 //!   ω = ψ̇ u_ψ + θ̇ u_θ + φ̇ u_φ,   ω̇ = ψ̈ u_ψ + θ̈ u_θ + φ̈ u_φ + θ̇ ψ̇ u_ψ × u_θ + φ̇ (ψ̇ u_ψ + θ̇ u_θ) × u_φ,
 //!
-//! and in the second the same with φ and ψ exchanged, u_φ = x̂, u_θ = R_x ŷ and u_ψ = R_x R_y ẑ.
+//! and in the second order the same with φ and ψ exchanged, u_φ = x̂, u_θ = R_x ŷ and u_ψ = R_x R_y ẑ.
 //!
 //! Source: Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control, section 2.2. Where |θ| = π/2 the rates of the first and the
 //! last angle are not unique.
@@ -32,7 +32,7 @@ impl Order {
         *self == Order::Zyx
     }
 
-    /// Angles by the axis that they turn about, x, y and z, from the outermost rotation to the innermost.
+    /// Indices of the rotation axes (x, y, z = 0, 1, 2), from the outermost rotation to the innermost.
     fn sequence(self) -> [usize; 3] {
         match self {
             Order::Zyx => [2, 1, 0],
@@ -53,7 +53,7 @@ impl Order {
         }
     }
 
-    /// Roll, pitch and yaw [rad] of a rotation; of those that differ by whole turns the ones nearest to `near` [rad].
+    /// Roll, pitch and yaw [rad] of a rotation, each shifted by whole turns to the value nearest to `near` [rad].
     pub fn angles(self, rotation: &UnitQuaternion<f64>, near: Vector3<f64>) -> Vector3<f64> {
         let angles = match self {
             Order::Zyx => {
@@ -73,7 +73,7 @@ impl Order {
 /// Attitude of a body with its rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attitude {
-    /// From body axes to global axes.
+    /// Rotation from body axes to global axes.
     pub rotation: UnitQuaternion<f64>,
     /// Angular velocity ω in global axes [rad/s].
     pub spin: Vector3<f64>,
@@ -82,7 +82,7 @@ pub struct Attitude {
 }
 
 impl Attitude {
-    /// Attitude from roll, pitch and yaw [rad] in an order, their rates [rad/s] and second derivatives [rad/s²].
+    /// Attitude from roll, pitch and yaw [rad] in the given order, their rates [rad/s] and second derivatives [rad/s²].
     pub fn new(order: Order, angles: Vector3<f64>, rates: Vector3<f64>, seconds: Vector3<f64>) -> Attitude {
         let axes = axes(order, angles);
         let sequence = order.sequence();
@@ -98,8 +98,8 @@ impl Attitude {
     }
 }
 
-/// Rates of roll, pitch and yaw [rad/s] of a body with these angles [rad] in the order Z-Y-X that turns by `spin` [rad/s] in global axes;
-/// `None` where pitch is a right angle.
+/// Rates of roll, pitch and yaw [rad/s], in the order Z-Y'-X'', of a body with these angles [rad] and the angular velocity `spin` [rad/s] in global
+/// axes; `None` where pitch is a right angle.
 pub fn angle_rates(angles: Vector3<f64>, spin: Vector3<f64>) -> Option<Vector3<f64>> {
     let axes = axes(Order::Zyx, angles);
     (axes.determinant().abs() > 1e-9)
@@ -135,7 +135,7 @@ mod tests {
 
     const ORDERS: [Order; 2] = [Order::Zyx, Order::Xyz];
 
-    /// The attitude `t` [s] after the one of the constants.
+    /// Attitude `t` [s] after the one given by the constants.
     fn after(order: Order, t: f64) -> Attitude {
         let [a, b, c] = [ANGLES, RATES, SECONDS].map(Vector3::from);
         Attitude::new(order, a + t * b + 0.5 * t * t * c, b + t * c, c)

@@ -7,41 +7,41 @@
 //! last node.
 //!
 //! Source: Golub & Van Loan (2013), Matrix Computations, 4th ed., sections 4.3.5 (band Gaussian elimination), 4.5.1 (block tridiagonal) and 3.2 (LU).
-//! Matrices that are positive definite, or close to it where damping makes them unsymmetric, need no row exchanges, and a pivot that is not
-//! positive is reported; others are eliminated with row exchanges within blocks, see [`Pivots`].
+//! Matrices that are positive definite, or close to it where damping makes them unsymmetric, need no row exchanges, and elimination fails at a pivot
+//! that is not positive. Other matrices are eliminated with row exchanges within blocks, see [`Pivots`].
 
 use nalgebra::{Matrix3, Vector3};
 
 /// Pivots that an elimination accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pivots {
-    /// Positive ones in the given order; any other is reported.
+    /// Positive pivots in the given order; elimination fails at any other pivot.
     Positive,
-    /// Of either sign, the greatest of the rows of a block; only a zero pivot is reported.
+    /// Pivots of either sign, found by row exchanges within a block; elimination fails only at a zero pivot.
     Any,
 }
 
-/// The blocks of a chain of n nodes.
+/// Blocks of a chain of n nodes.
 #[derive(Debug, Clone, Copy)]
 pub struct Blocks<'a> {
-    /// D_i: n blocks of nodes on themselves.
+    /// D_i: n diagonal blocks.
     pub diagonal: &'a [Matrix3<f64>],
     /// A_i: n − 1 blocks in the row of node i and the column of node i + 1.
     pub above: &'a [Matrix3<f64>],
     /// B_i: n − 1 blocks in the row of node i + 1 and the column of node i.
     pub below: &'a [Matrix3<f64>],
-    /// F_i: n − 2 blocks in the row of node i and the column of node i + 2; not read where a chain is not `FAR`.
+    /// F_i: n − 2 blocks in the row of node i and the column of node i + 2; not read unless the chain is `FAR`.
     pub far: &'a [Matrix3<f64>],
 }
 
-/// Scratch of one chain, whose nodes are coupled to their second neighbours too where it is `FAR`; never read before it is written.
+/// Workspace of one chain, never read before it is written. In a chain that is `FAR`, nodes are also coupled to their second neighbours.
 #[derive(Debug, Clone, Default)]
 pub struct Chain<const FAR: bool> {
-    /// D_i of the eliminated nodes, factorised; the blocks of nodes i + 1 and of the first end on them.
+    /// Factors of the eliminated D_i; the blocks in their columns, in the rows of node i + 1 and of the first end.
     pivots: Vec<Lu3>,
     last: Vec<Matrix3<f64>>,
     border: Vec<Matrix3<f64>>,
-    /// D_i⁻¹ times the blocks of the eliminated nodes on nodes i + 1 and i + 2, and on the first end.
+    /// D_i⁻¹ times the blocks in the rows of the eliminated nodes, in the columns of nodes i + 1 and i + 2 and of the first end.
     next: Vec<Matrix3<f64>>,
     far: Vec<Matrix3<f64>>,
     first: Vec<Matrix3<f64>>,
@@ -53,13 +53,13 @@ pub struct Chain<const FAR: bool> {
 /// Condensed system of a chain on its two ends: [[aa, ab], [ba, bb]] (x_a, x_b) = (a, b).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ends {
-    /// First end on itself.
+    /// Block in the row and column of the first end.
     pub aa: Matrix3<f64>,
-    /// Last end on the first.
+    /// Block in the row of the first end and the column of the last.
     pub ab: Matrix3<f64>,
-    /// First end on the last.
+    /// Block in the row of the last end and the column of the first.
     pub ba: Matrix3<f64>,
-    /// Last end on itself.
+    /// Block in the row and column of the last end.
     pub bb: Matrix3<f64>,
     /// Right-hand side of the first end.
     pub a: Vector3<f64>,
@@ -67,25 +67,25 @@ pub struct Ends {
     pub b: Vector3<f64>,
 }
 
-/// Row that is not eliminated yet, including the changes by earlier nodes.
+/// Row that is not yet eliminated, updated by the elimination of earlier nodes.
 #[derive(Clone, Copy)]
 struct Row {
-    /// Block on itself.
+    /// Diagonal block.
     own: Matrix3<f64>,
-    /// Block on the next node.
+    /// Block in the column of the next node.
     next: Matrix3<f64>,
-    /// Block on the node before.
+    /// Block in the column of the previous node.
     last: Matrix3<f64>,
-    /// Block on the first end.
+    /// Block in the column of the first end.
     first: Matrix3<f64>,
-    /// Block of the first end on this node.
+    /// Block in the row of the first end and the column of this node.
     border: Matrix3<f64>,
     /// Right-hand side.
     right: Vector3<f64>,
 }
 
 impl Row {
-    /// Row `i`, from 1, as given; empty beyond the last.
+    /// Row `i` ≥ 1 before elimination; zero beyond the last node.
     #[inline(always)]
     fn new<const FAR: bool>(blocks: &Blocks, right: &[Vector3<f64>], i: usize) -> Row {
         let zero = Matrix3::zeros();
@@ -107,7 +107,7 @@ impl Row {
 }
 
 impl<const FAR: bool> Chain<FAR> {
-    /// Scratch for a chain of `nodes` nodes, ends included.
+    /// Workspace for a chain of `nodes` nodes, including the ends.
     pub fn new(nodes: usize) -> Chain<FAR> {
         let zeros = |count: usize| vec![Matrix3::zeros(); count];
         Chain {
@@ -122,8 +122,8 @@ impl<const FAR: bool> Chain<FAR> {
         }
     }
 
-    /// Removes the nodes between the ends; `None` if a pivot cannot be taken. Where the first end is held
-    /// (`first_free` false), only bb and b of the result are meaningful.
+    /// Eliminates the nodes between the ends; `None` if a pivot is not accepted. Where the first end is held (`first_free` false), only bb and b of
+    /// the result are meaningful.
     pub fn eliminate(
         &mut self,
         blocks: Blocks,
@@ -207,7 +207,7 @@ impl<const FAR: bool> Chain<FAR> {
         [corner, row]
     }
 
-    /// The whole solution, ends included, from that of the ends; after [`Chain::eliminate`].
+    /// Computes the whole solution from the solution at the ends, `a` and `b`, after [`Chain::eliminate`].
     pub fn substitute(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
         let last = self.solution.len() - 1;
         (self.solution[0], self.solution[last]) = (a, b);
@@ -223,13 +223,13 @@ impl<const FAR: bool> Chain<FAR> {
         }
     }
 
-    /// The solution, one block per node.
+    /// Solution, one vector per node.
     pub fn solution(&self) -> &[Vector3<f64>] {
         &self.solution
     }
 }
 
-/// LU factors of a 3×3 matrix; the pivots are stored inverted.
+/// LU factors of a 3×3 matrix, with the pivots and their inverses.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lu3 {
     /// Rows of the original matrix in the order of the factors.
@@ -307,7 +307,7 @@ impl Lu3 {
         Vector3::new((y0 - u01 * y - u02 * z) * self.inverse[0], y, z)
     }
 
-    /// The same with quotients in place of products with reciprocals, which round once more.
+    /// Solves like `solve`, but divides by the pivots instead of multiplying by their reciprocals, which saves one rounding.
     pub(super) fn solve_dividing(&self, b: Vector3<f64>) -> Vector3<f64> {
         let [l10, l20, l21] = self.l;
         let [u01, u02, u12] = self.u;
@@ -403,7 +403,7 @@ mod tests {
             (matrix, DVector::from_iterator(3 * nodes, right))
         }
 
-        /// Greatest difference from the dense solution, with both ends free or both held.
+        /// Maximum difference from the dense solution, with both ends free or both held.
         fn error(&self, free: bool, pivots: Pivots) -> f64 {
             let (mut matrix, mut right) = self.dense();
             let (size, nodes) = (right.len(), self.diagonal.len());

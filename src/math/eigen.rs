@@ -1,16 +1,15 @@
 //! Eigenvalues of sparse symmetric matrices: all of them, or the lowest by inverse subspace iteration.
 //!
-//! A y = λ y. With a block Q of orthonormal vectors, more than are requested, and B = (A + σI)⁻¹ by sparse Cholesky
-//! factors, every iteration takes Y = B Q, solves the small problem QᵀY v = μ v, and continues from the
-//! orthonormalised Y V; λ = 1/μ − σ. The error of the k-th of p vectors falls by (λ_k + σ)/(λ_{p+1} + σ) in each. A
-//! block finds equal eigenvalues, of which systems with symmetries have many; a single Krylov sequence finds only one
-//! of them.
+//! A y = λ y. With a block Q of orthonormal vectors, more than are requested, and B = (A + σI)⁻¹ by sparse Cholesky factors, every iteration computes
+//! Y = B Q, solves the small problem QᵀY v = μ v, and continues from the orthonormalised Y V; λ = 1/μ − σ. Each iteration reduces the error of the
+//! k-th of p vectors by the factor (λ_k + σ)/(λ_{p+1} + σ). A block finds equal eigenvalues, which are common in symmetric systems; a single Krylov
+//! sequence finds only one of them.
 //!
-//! The shift σ lifts eigenvalues of 0 above rounding. Valid for matrices without negative eigenvalues beyond the greatest shift.
+//! The shift σ raises zero eigenvalues above rounding. Valid for matrices without negative eigenvalues beyond the largest shift.
 //!
-//! Source: Bathe & Wilson (1976), Numerical Methods in Finite Element Analysis, section 12.4 (subspace iteration). Sparse factors are computed by the crate
-//! faer. All eigenvalues are found by QR iteration, which keeps the low ones of a stiff chain: with faer's divide and conquer, the rounding of the greatest
-//! eigenvalue is in all of them, 2e-4 of the lowest of a hanging chain of 160 elements.
+//! Source: Bathe & Wilson (1976), Numerical Methods in Finite Element Analysis, section 12.4 (subspace iteration). Sparse factors are computed by the
+//! crate faer. All eigenvalues are computed by QR iteration, which resolves the low ones of a stiff chain. faer's divide and conquer leaves the
+//! rounding error of the largest eigenvalue in all of them: 2e-4 of the lowest for a hanging chain of 160 elements.
 
 use faer::Side;
 use faer::prelude::{Mat, Solve, SparseColMat};
@@ -19,17 +18,17 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::random::Random;
 
-/// An entry of the lower triangle of a matrix: row, column and value. Those of one place add up.
+/// Entry of the lower triangle of a matrix: row, column and value. Entries at the same position are summed.
 pub type Entry = Triplet<usize, usize, f64>;
 
-/// Shifts σ over the greatest entry of the diagonal [-]; each is tried where the one before leaves a matrix without Cholesky factors.
+/// Shifts σ relative to the largest diagonal entry [-], tried in this order until the Cholesky factorisation succeeds.
 const SHIFTS: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-8];
-/// Change of the eigenvalues that ends the iteration, over themselves, and over the greatest entry of the diagonal [-].
+/// Convergence tolerances for the change of an eigenvalue, relative to itself and to the largest diagonal entry [-]; the two are added.
 const TOLERANCE: [f64; 2] = [1e-12, 1e-15];
-/// Greatest number of iterations.
+/// Maximum number of iterations.
 const ITERATIONS_MAX: usize = 300;
 
-/// Eigenvalues, lowest first, and their vectors of unit length.
+/// Eigenvalues in ascending order, with eigenvectors of unit length.
 #[derive(Debug, Clone)]
 pub struct Eigen {
     /// λ, in the unit of the matrix.
@@ -38,7 +37,7 @@ pub struct Eigen {
 }
 
 impl Eigen {
-    /// All eigenvalues of a matrix of this `size`.
+    /// All eigenvalues of a `size` × `size` matrix.
     pub fn all(size: usize, entries: &[Entry]) -> Eigen {
         let mut matrix = DMatrix::<f64>::zeros(size, size);
         for entry in entries {
@@ -53,7 +52,7 @@ impl Eigen {
         }
     }
 
-    /// The `count` lowest eigenvalues; `None` where there are negative ones, or the iteration does not converge.
+    /// The `count` lowest eigenvalues; `None` if there are negative ones or the iteration does not converge.
     pub fn lowest(size: usize, entries: &[Entry], count: usize) -> Option<Eigen> {
         let diagonal = entries.iter().filter(|entry| entry.row == entry.col);
         let greatest = diagonal.map(|entry| entry.val.abs()).fold(0.0, f64::max);
@@ -91,7 +90,7 @@ impl Eigen {
         None
     }
 
-    /// Entry of the vector of an eigenvalue [-].
+    /// Component `row` of the eigenvector of eigenvalue number `value` [-].
     pub fn vector(&self, value: usize, row: usize) -> f64 {
         self.vectors[(row, value)]
     }
@@ -101,7 +100,7 @@ impl Eigen {
 mod tests {
     use super::*;
 
-    /// Springs in a plane grid, held at its rim: eigenvalues in closed form, most of them twice.
+    /// Plane grid of springs held at its rim, with eigenvalues in closed form, most of them double.
     fn grid(count: usize) -> (Vec<Entry>, Vec<f64>) {
         let mut entries = Vec::new();
         for (i, k) in (0..count).flat_map(|i| (0..count).map(move |k| (i, k))) {

@@ -1,26 +1,26 @@
-//! Sine, cosine and exponential of four numbers at once, without a branch, so that loops over them become vector code.
+//! Sine, cosine and exponential of four numbers at once, without branches, so that loops over them vectorise.
 //!
 //! sin x = (−1)ⁿ sin r,  cos x = (−1)ⁿ cos r,  x = nπ + r;     exp x = 2ⁿ exp r,  x = n ln 2 + r
 //!
-//! with polynomials of least greatest error in r, and n rounded by adding and subtracting 1.5·2⁵². Absolute error of sine and cosine below
-//! 2e-12 for |x| ≤ 1e5; relative error of the exponential below 2e-12 for −708 ≤ x ≤ 708. Sums over waves, which leave out a ten
-//! thousandth, need no more. Results are the same on every machine, bit for bit.
+//! with minimax polynomials in r, and n rounded by adding and subtracting 1.5·2⁵². The absolute error of sine and cosine is below 2e-12 for |x| ≤
+//! 1e5, the relative error of the exponential below 2e-12 for −708 ≤ x ≤ 708. Sums over waves, which leave out contributions of up to 1e-4, need no
+//! more. Results are the same on every machine, bit for bit.
 //!
-//! Source: Cody & Waite (1980), Software Manual for the Elementary Functions, chapters 6 and 8 (reduction in parts); the coefficients are by Remez's
+//! Source: Cody & Waite (1980), Software Manual for the Elementary Functions, chapters 6 and 8 (reduction in parts); coefficients by the Remez
 //! exchange algorithm.
 
 use super::lanes::Lanes;
 
 /// Rounds a number to an integer when added to it: the lowest bits of the sum are the integer.
 const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²
-/// π in two parts, the first with zeros at its end so that n times it is exact.
+/// π in two parts; the first ends in zero bits, so that its product with n is exact.
 const PI_PARTS: [f64; 2] = [3.141_592_653_468_251_2, 1.215_420_101_301_238_4e-10];
 /// ln 2 in two parts.
 const LN_2_PARTS: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
-/// Least and greatest argument of the exponential.
+/// Largest magnitude of the exponential's argument.
 const EXPONENT_MAX: f64 = 708.0;
 
-/// (sin r − r)/r³ for |r| ≤ π/2, by powers of r²; the error of the sine is 5e-14.
+/// (sin r − r)/r³ for |r| ≤ π/2, in powers of r²; the error of the sine is 5e-14.
 const SINE: [f64; 6] = [
     -0.166_666_666_664_021_66,
     0.008_333_333_316_509_723,
@@ -29,7 +29,7 @@ const SINE: [f64; 6] = [
     -2.502_845_764_070_504_3e-8,
     1.538_736_678_026_43e-10,
 ];
-/// (cos r − 1)/r² for |r| ≤ π/2, by powers of r²; the error of the cosine is 8e-13.
+/// (cos r − 1)/r² for |r| ≤ π/2, in powers of r²; the error of the cosine is 8e-13.
 const COSINE: [f64; 6] = [
     -0.499_999_999_979_371_8,
     0.041_666_666_503_885_195,
@@ -38,7 +38,7 @@ const COSINE: [f64; 6] = [
     -2.752_565_460_072_348_3e-7,
     1.991_985_758_235_505_5e-9,
 ];
-/// (exp r − 1 − r)/r² for |r| ≤ ½ ln 2, by powers of r; the error of the exponential is 1.2e-12 of it.
+/// (exp r − 1 − r)/r² for |r| ≤ ½ ln 2, in powers of r; the relative error of the exponential is 1.2e-12.
 const EXPONENTIAL: [f64; 7] = [
     0.500_000_000_042_715_2,
     0.166_666_667_845_117_52,
@@ -75,7 +75,7 @@ pub fn sin_cos(x: Lanes) -> (Lanes, Lanes) {
     (sine.flip_signs(odd), cosine.flip_signs(odd))
 }
 
-/// exp x for |x| ≤ 708; beyond, the value at that limit.
+/// exp x for |x| ≤ 708; arguments outside this range are clamped to it.
 #[inline(always)]
 pub fn exp(x: Lanes) -> Lanes {
     let (least, most) = (Lanes::splat(-EXPONENT_MAX), Lanes::splat(EXPONENT_MAX));
@@ -102,7 +102,7 @@ mod tests {
         values
     }
 
-    /// Numbers on both sides of zero up to a limit, four at a time.
+    /// Numbers between −`limit` and `limit`, four at a time.
     fn numbers(limit: f64) -> impl Iterator<Item = [f64; LANES]> {
         let golden = 0.618_033_988_749_894_9;
         (0..50_000_u32).map(move |i| {

@@ -1,7 +1,7 @@
-//! Hermite segments between two points: cubic with given slopes, quintic with given curvatures too.
+//! Hermite segments between two points: cubics with given slopes, quintics with given slopes and curvatures.
 //!
-//! The quintic of a curve f deviates from it by f⁽⁶⁾ h⁶ u³(1 − u)³/720, with the sixth derivative somewhere between the ends: at most by
-//! max|f⁽⁶⁾| h⁶/46080, in the middle.
+//! The quintic of a curve f deviates from it by f⁽⁶⁾ h⁶ u³(1 − u)³/720, with the sixth derivative at some point between the ends. The deviation is at
+//! most max|f⁽⁶⁾| h⁶/46080, at mid-span.
 //!
 //! Source: the remainder of Hermite interpolation, e.g. Stoer & Bulirsch (2002), Introduction to Numerical Analysis, theorem 2.1.5.9.
 
@@ -55,7 +55,7 @@ impl Hermite {
         }
     }
 
-    /// Coefficients of powers of the elapsed fraction of its span.
+    /// Coefficients of the powers of the elapsed fraction u of the span.
     pub fn powers(&self) -> [f64; 4] {
         self.powers
     }
@@ -74,7 +74,7 @@ impl Hermite {
 }
 
 impl Hermites {
-    /// Segment from a start over a span, with its inverse, through values and slopes at both ends.
+    /// Cubics from time `start` over `span`, with the inverse span `rate`, through values and slopes at both ends.
     #[inline(always)]
     pub fn bridge([start, span, rate]: [f64; 3], [p0, m0]: [Lanes; 2], [p1, m1]: [Lanes; 2]) -> Hermites {
         let (two, three) = (Lanes::splat(2.0), Lanes::splat(3.0));
@@ -88,14 +88,14 @@ impl Hermites {
         }
     }
 
-    /// Mean slopes over the span, and its inverse; 0 where the curves are constant.
+    /// Mean slopes over the span, and the inverse span; both are 0 where the curves are constant.
     #[inline(always)]
     pub fn secant(&self) -> (Lanes, f64) {
         let [_, b, c, d] = self.powers;
         ((b + (c + d)) * Lanes::splat(self.rate), self.rate)
     }
 
-    /// The same values at all times.
+    /// Curves that are constant in time.
     pub fn constant(values: Lanes) -> Hermites {
         let zero = Lanes::splat(0.0);
         Hermites {
@@ -119,7 +119,7 @@ impl Hermites {
         ]
     }
 
-    /// The same at both ends.
+    /// Values, first and second derivatives at both ends.
     #[inline(always)]
     pub fn ends(&self) -> [[Lanes; 3]; 2] {
         let rate = Lanes::splat(self.rate);
@@ -137,18 +137,18 @@ impl Hermites {
     }
 }
 
-/// Greatest error of a quintic over the sixth derivative times the sixth power of its span [-].
+/// Maximum error of a quintic relative to the sixth derivative times the sixth power of its span [-].
 pub const QUINTIC_ERROR: f64 = 1.0 / 46080.0;
 
 /// Value, first and second derivative of a curve in space.
 pub type Motion = [Vector3<f64>; 3];
 
-/// p(u), 0 ≤ u ≤ 1, from values, slopes and curvatures at both ends, in space: coefficients of powers of u.
+/// Quintic p(u), 0 ≤ u ≤ 1, in space, as coefficients of the powers of u.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quintic([Vector3<f64>; 6]);
 
 impl Quintic {
-    /// Quintic between two ends that lie `span` apart in time.
+    /// Quintic through values, slopes and curvatures at two ends, `span` apart in time.
     pub fn new([r0, v0, a0]: Motion, [r1, v1, a1]: Motion, span: f64) -> Quintic {
         let (slope, half_curvature) = (span * v0, 0.5 * span * span * a0);
         let rise = r1 - r0 - slope - half_curvature;
@@ -164,7 +164,7 @@ impl Quintic {
         ])
     }
 
-    /// Values at the fraction u of the span, whose inverse is `rate`.
+    /// Value and derivatives at the fraction u of the span, whose inverse is `rate`.
     #[inline]
     pub fn at(&self, u: f64, rate: f64) -> Motion {
         let [a, b, c, d, e, f] = self.0;
@@ -191,7 +191,7 @@ mod tests {
         assert_relative_eq!(sample.slope, dp(1.3), epsilon = 1e-13);
         assert_relative_eq!(sample.curvature, -12.0 * 1.3, epsilon = 1e-12);
     }
-    /// A curve, with its first two derivatives, at a time.
+    /// Test curve with its first two derivatives at time `t`.
     fn wave(t: f64) -> Motion {
         let (x, y) = ((1.3 * t).sin_cos(), (0.7 * t).sin_cos());
         [
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_quintic_misses_a_curve_by_no_more_than_its_remainder() {
         for span in [0.5, 0.25, 0.125] {
-            let start = 0.5 * (std::f64::consts::PI / 1.3 - span); // where the sixth derivative of x is greatest in the middle
+            let start = 0.5 * (std::f64::consts::PI / 1.3 - span); // the sixth derivative of x is largest at mid-span
             let curve = Quintic::new(wave(start), wave(start + span), span);
             let bound = 1.3_f64.powi(6) * span.powi(6) * QUINTIC_ERROR;
             let miss = |u: f64| (curve.at(u, 1.0 / span)[0] - wave(start + u * span)[0]).x.abs();

@@ -1,7 +1,6 @@
 //! Four numbers side by side, so that the compiler emits vector instructions for the kernels.
 //!
-//! A plain array with inlined element-wise operations: portable, without intrinsics, and compiled for any vector
-//! unit the surrounding function may use.
+//! A plain array with inlined element-wise operations: portable, without intrinsics, and compiled for the vector unit of the calling function.
 
 use std::array::from_fn;
 use std::ops::{Add, Index, IndexMut, Mul, Sub};
@@ -24,7 +23,7 @@ impl Lanes {
         Lanes([value; LANES])
     }
 
-    /// Four numbers.
+    /// Lanes with four given numbers.
     #[inline(always)]
     pub fn new(values: [f64; LANES]) -> Lanes {
         Lanes(values)
@@ -67,7 +66,7 @@ impl Lanes {
         Lanes(from_fn(|i| if self.0[i] > 0.0 { self.0[i] } else { 0.0 }))
     }
 
-    /// Slope of the secant of max(x, 0) from these values to others; 0 where both are the same.
+    /// Secant slope of max(x, 0) between these values and `other`; 0 where they are equal.
     #[inline(always)]
     pub fn positive_secant(self, other: Lanes) -> Lanes {
         let least = Lanes::splat(f64::MIN_POSITIVE);
@@ -87,7 +86,7 @@ impl Lanes {
         Lanes(from_fn(|i| if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] }))
     }
 
-    /// The greater of two, lane by lane.
+    /// The larger of two, lane by lane.
     #[inline(always)]
     pub fn max(self, other: Lanes) -> Lanes {
         Lanes(from_fn(|i| {
@@ -111,7 +110,7 @@ impl Lanes {
         }))
     }
 
-    /// The greatest lane, in all lanes.
+    /// Largest lane, in all lanes.
     #[inline(always)]
     pub fn greatest(self) -> Lanes {
         let pairs = self.max(self.moved_up());
@@ -130,7 +129,7 @@ impl Lanes {
         self.positive_bits(1) == 0
     }
 
-    /// Bits of the lanes that are > 0, each inverted by `flip`: compilers test in one instruction whether all are 0.
+    /// One bit per lane, set where the lane is > 0, inverted if `flip` is 1. Compilers test in one instruction whether all bits are 0.
     #[inline(always)]
     fn positive_bits(self, flip: u8) -> u8 {
         let [a, b, c, d] = self.0.map(|value| u8::from(value > 0.0) ^ flip);
@@ -143,19 +142,19 @@ impl Lanes {
         Lanes(self.0.map(f))
     }
 
-    /// The bits of every lane, a whole number added and shifted to the left.
+    /// Bits of every lane, plus `add`, shifted to the left by `left` bits.
     #[inline(always)]
     pub fn shifted_bits(self, add: u64, left: u32) -> [u64; LANES] {
         from_fn(|i| self.0[i].to_bits().wrapping_add(add) << left)
     }
 
-    /// The numbers that have these bits.
+    /// Numbers with these bits.
     #[inline(always)]
     pub fn from_bits(bits: [u64; LANES]) -> Lanes {
         Lanes(from_fn(|i| f64::from_bits(bits[i])))
     }
 
-    /// Changes the sign of the lanes whose highest bit is set in `signs`, of which all other bits are 0.
+    /// Changes the sign of the lanes whose highest bit is set in `signs`; all other bits of `signs` must be 0.
     #[inline(always)]
     pub fn flip_signs(self, signs: [u64; LANES]) -> Lanes {
         Lanes(from_fn(|i| f64::from_bits(self.0[i].to_bits() ^ signs[i])))
@@ -167,7 +166,7 @@ impl Lanes {
         Lanes([self.0[3], self.0[0], self.0[1], self.0[2]])
     }
 
-    /// Lane k takes the number of lane k − 1, and lane 0 that of the same lane of another.
+    /// Lane k takes the number of lane k − 1, and lane 0 that of lane 0 of `first`.
     #[inline(always)]
     pub fn moved_up_after(self, first: Lanes) -> Lanes {
         Lanes([first.0[0], self.0[0], self.0[1], self.0[2]])
@@ -179,7 +178,7 @@ impl Lanes {
         Lanes([self.0[1], self.0[2], self.0[3], self.0[0]])
     }
 
-    /// Lane k takes the number of lane k + 1, and lane 3 that of the same lane of another.
+    /// Lane k takes the number of lane k + 1, and lane 3 that of lane 3 of `last`.
     #[inline(always)]
     pub fn moved_down_before(self, last: Lanes) -> Lanes {
         Lanes([self.0[1], self.0[2], self.0[3], last.0[3]])
@@ -282,7 +281,7 @@ impl Vectors {
         (self.x[lane], self.y[lane], self.z[lane]) = (vector.x, vector.y, vector.z);
     }
 
-    /// Components rounded to multiples of about 1e-16 times a number, if they are smaller than it.
+    /// Rounds components to multiples of about 1e-16 `size`, provided that they are smaller than `size`.
     #[inline(always)]
     pub fn rounded(self, size: f64) -> Vectors {
         let size = Lanes::splat(size);

@@ -1,18 +1,18 @@
-//! Zero-phase low-pass filter: Butterworth's of second order, run forwards and backwards.
+//! Zero-phase low-pass filter: second-order Butterworth, run forwards and backwards.
 //!
 //! H(s) = 1/(s² + √2 s + 1) by the bilinear transform with the cut-off pre-warped, K = tan(π f_c Δt):
 //!
 //!   b = K²/(1 + √2 K + K²) · [1, 2, 1],   a₁ = 2(K² − 1)/(1 + √2 K + K²),   a₂ = (1 − √2 K + K²)/(1 + √2 K + K²)
 //!
-//! Both passes together have no phase, gain ½ at f_c and fourth order beyond it. Each pass starts from the steady
-//! state of its first value.
+//! Both passes together have zero phase, a gain of ½ at f_c and a fourth-order roll-off above it. Each pass starts from the steady state of its first
+//! value.
 //!
 //! Source: Butterworth (1930), Experimental Wireless 7, 536-541; the transform as in Oppenheim & Schafer (2010), Discrete-Time Signal Processing, section
 //! 7.2. Valid for f_c < 1/(2Δt); above, the signal is returned unchanged.
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// Returns the signal, sampled every `interval` [s], without frequencies above `cut_off` [Hz].
+/// Returns the signal, sampled every `interval` [s], with frequencies above `cut_off` [Hz] attenuated.
 pub fn low_pass(signal: &[f64], interval: f64, cut_off: f64) -> Vec<f64> {
     if cut_off * interval >= 0.5 {
         return signal.to_vec();
@@ -48,7 +48,7 @@ mod tests {
 
     const INTERVAL: f64 = 0.01;
 
-    /// Gain of a sine of this frequency [Hz] after a filter with a cut-off of 1 Hz.
+    /// Gain of the filter, with a cut-off of 1 Hz, for a sine of this frequency [Hz].
     fn gain(frequency: f64) -> f64 {
         let sine = |i: usize| (2.0 * PI * frequency * INTERVAL * i as f64).sin();
         let signal: Vec<f64> = (0..4000).map(sine).collect();

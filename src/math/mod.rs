@@ -1,4 +1,4 @@
-//! No physics: small fixed-size algebra, banded and sparse block systems, eigenvalues, interpolation, random numbers.
+//! Mathematics without physics: small fixed-size algebra, banded and sparse block systems, eigenvalues, interpolation, random numbers.
 pub mod anderson;
 pub mod attitude;
 pub mod block_banded;

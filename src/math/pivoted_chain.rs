@@ -1,11 +1,12 @@
 //! Block-tridiagonal systems of 6×6 blocks, with row exchanges within the blocks that need them.
 //!
-//! Row i reads L_{i−1} x_{i−1} + D_i x_i + U_i x_{i+1} = b_i; blocks need not be symmetric. Elimination runs from the first node to the last:
-//! D_i ← D_i − L_{i−1} D_{i−1}⁻¹ U_{i−1}. A block is inverted in place on its diagonal, in vectors; if a pivot there is small compared with its column, by LU
-//! factors with partial pivoting. An inverse takes a right-hand side in one product, where factors take two substitutions of dependent steps.
+//! Row i reads L_{i−1} x_{i−1} + D_i x_i + U_i x_{i+1} = b_i; blocks need not be symmetric. Elimination runs from the first node to the last: D_i ←
+//! D_i − L_{i−1} D_{i−1}⁻¹ U_{i−1}. A block is inverted in place in vector operations, with the pivots on its diagonal. If a pivot is small compared
+//! with its column, LU factors with partial pivoting give the inverse instead. An inverse takes one product per right-hand side; factors take two
+//! substitutions of dependent steps.
 //!
-//! Source: block Thomas algorithm, e.g. Golub & Van Loan, Matrix Computations, section 4.5. Valid where all leading block minors
-//! are regular: chains held from either end, and chains with mass, are of that kind.
+//! Source: block Thomas algorithm, e.g. Golub & Van Loan, Matrix Computations, section 4.5. Valid where all leading block minors are regular, as in
+//! chains held at either end and in chains with mass.
 
 use std::ops::{AddAssign, Index, IndexMut};
 
@@ -16,23 +17,23 @@ use super::lanes::{LANES, Lanes};
 use super::triad::each;
 use super::unit::VectorUnit;
 
-/// Greatest multiple of a pivot row that is subtracted from another before rows are exchanged [-].
+/// Largest multiple of a pivot row subtracted from another row without row exchanges [-].
 const MULTIPLE_MAX: f64 = 1e3;
 
-/// A system, and after [`PivotedChain::solve`] its solution.
+/// Block-tridiagonal system; contains the solution after [`PivotedChain::solve`].
 #[derive(Debug, Clone, Default)]
 pub struct PivotedChain {
-    /// D: blocks of every node on itself, then their inverses.
+    /// D: diagonal block of every node, then its inverse.
     pub diagonal: Vec<Block>,
-    /// U: in the row of a node, the column of the next one.
+    /// U: blocks in the row of a node and the column of the next one.
     pub upper: Vec<Block>,
-    /// L: in the row of the next node, the column of the one before.
+    /// L: blocks in the row of the next node and the column of the one before.
     pub lower: Vec<Block>,
     /// Right-hand side, then solution.
     pub right: Vec<Vector6<f64>>,
 }
 
-/// Six numbers in two vectors, of which the last two lanes are 0.
+/// Six numbers in two vectors; the last two lanes are 0.
 type Column = [Lanes; 2];
 
 /// A 6×6 block by columns.
@@ -92,7 +93,8 @@ impl Block {
         self.inverse_with_exchanges()
     }
 
-    /// Step `K` of the inversion in place; raises `multiple` to the numbers below the pivot over it. Returns whether the pivot has an inverse.
+    /// Step `K` of the inversion in place; raises `multiple` to the size of the entries below the pivot relative to the pivot. Returns whether the
+    /// pivot has an inverse.
     #[inline(always)]
     fn pivot<const K: usize>(&mut self, multiple: &mut Lanes) -> bool {
         let inverse = 1.0 / self.0[K][K / LANES][K % LANES];
@@ -152,7 +154,6 @@ impl Block {
         Some(inverse)
     }
 
-    /// Sets a row to zero.
     fn clear_row(&mut self, row: usize) {
         (0..6).for_each(|column| self[(row, column)] = 0.0);
     }
@@ -201,7 +202,7 @@ impl AddAssign for Block {
 }
 
 impl PivotedChain {
-    /// Room for a chain of `nodes` nodes.
+    /// Zero system for a chain of `nodes` nodes.
     pub fn new(nodes: usize) -> PivotedChain {
         PivotedChain {
             diagonal: vec![Block::zeros(); nodes],
@@ -224,7 +225,7 @@ impl PivotedChain {
         self.right.fill(Vector6::zeros());
     }
 
-    /// Holds one unknown of a node: it takes the value `value`.
+    /// Fixes one unknown of a node at `value`.
     pub fn hold(&mut self, node: usize, unknown: usize, value: f64) {
         self.diagonal[node].clear_row(unknown);
         self.diagonal[node][(unknown, unknown)] = 1.0;
@@ -237,7 +238,7 @@ impl PivotedChain {
         }
     }
 
-    /// Solves in place; false where a block is singular or the solution is not finite.
+    /// Solves in place; returns false if a block is singular or the solution is not finite.
     pub fn solve(&mut self) -> bool {
         VectorUnit::best().dispatch(Solve {
             chain: self,
@@ -272,7 +273,7 @@ impl PivotedChain {
         is_finite
     }
 
-    /// Solves for another right-hand side, after [`PivotedChain::solve`]; false where the solution is not finite.
+    /// Solves for another right-hand side, after [`PivotedChain::solve`]; returns false if the solution is not finite.
     pub fn solve_again(&mut self) -> bool {
         VectorUnit::best().dispatch(Solve {
             chain: self,
@@ -280,7 +281,7 @@ impl PivotedChain {
         })
     }
 
-    /// Inverts the blocks on the diagonal and takes those above to D⁻¹ U; false where a block is singular.
+    /// Inverts the diagonal blocks and replaces those above by D⁻¹ U; returns false if a block is singular.
     #[inline(always)]
     fn factorise(&mut self) -> bool {
         for i in 0..self.diagonal.len() {
@@ -301,7 +302,7 @@ impl PivotedChain {
         true
     }
 
-    /// Solves with the inverses; false where the solution is not finite.
+    /// Solves with the inverses; returns false if the solution is not finite.
     #[inline(always)]
     fn substitute(&mut self) -> bool {
         let nodes = self.diagonal.len();
@@ -322,7 +323,7 @@ impl PivotedChain {
     }
 }
 
-/// Solves a chain, with its factors as they are or new ones.
+/// Kernel that solves a chain, with new factors or the existing ones.
 struct Solve<'a> {
     chain: &'a mut PivotedChain,
     factorise: bool,
@@ -349,7 +350,7 @@ mod tests {
         block
     }
 
-    /// A repeatable number in −1 … 1.
+    /// Pseudo-random number in −1 … 1.
     fn noise(seed: &mut u64) -> f64 {
         *seed = seed
             .wrapping_mul(6364136223846793005)
@@ -366,7 +367,7 @@ mod tests {
         chain.diagonal.iter_mut().for_each(|d| *d = block());
         chain.right.iter_mut().for_each(|b| *b = vector(&block().0[0]));
         for d in &mut chain.diagonal {
-            d[(0, 0)] = 0.0; // only an exchange of rows gets past it
+            d[(0, 0)] = 0.0; // requires a row exchange
         }
         chain
     }

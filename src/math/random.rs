@@ -1,4 +1,4 @@
-//! Random numbers from a seed: the same on every machine.
+//! Pseudo-random numbers from a seed, the same on every machine.
 //!
 //! s ← s + 0x9e3779b97f4a7c15;   z = (s ⊕ s>>30)·0xbf58476d1ce4e5b9;   z = (z ⊕ z>>27)·0x94d049bb133111eb;   out z ⊕ z>>31
 //!
@@ -7,19 +7,19 @@
 //! Source: Steele, Lea & Flood (2014), Fast splittable pseudorandom number generators, OOPSLA '14, 453-472 (SplitMix64, with the constants of
 //! its variant 13). Passes the usual statistical tests; not for cryptography.
 
-/// The generator.
+/// Pseudo-random number generator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Random {
     state: u64,
 }
 
 impl Random {
-    /// Numbers that follow from a seed [-].
+    /// Generator with this seed [-].
     pub fn new(seed: u64) -> Random {
         Random { state: seed }
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = self.state;
@@ -28,7 +28,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Uniform in [0, 1) [-].
+    /// Returns the next number, uniform in [0, 1) [-].
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }

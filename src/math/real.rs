@@ -1,4 +1,4 @@
-//! Numbers and vectors for which a pointwise law is written: single ones, or those in the lanes of a machine vector.
+//! Number and vector types of pointwise laws: single values, or one value in every lane of a machine vector.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::lanes::{Lanes, Vectors};
 
-/// A number, or one in every lane.
+/// Single number, or a number in every lane.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
@@ -16,19 +16,19 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn recip(self) -> Self;
     /// |x|.
     fn abs(self) -> Self;
-    /// The greater of two, lane by lane; `other` where either is not a number.
+    /// The larger of two, lane by lane; `other` where either is NaN.
     fn max(self, other: Self) -> Self;
     /// `yes` where this is positive, else `no`.
     fn choose(self, yes: Self, no: Self) -> Self;
-    /// True if a lane is positive.
+    /// Returns whether any lane is positive.
     fn any_positive(self) -> bool;
 }
 
-/// A vector in space, or one in every lane.
+/// Single vector in space, or a vector in every lane.
 pub trait RealVector: Copy + Add<Output = Self> + Sub<Output = Self> {
-    /// Components and products.
+    /// Type of components and products.
     type Real: Real;
-    /// Scalar product. The name leaves nalgebra's `dot`, which takes a reference, unambiguous.
+    /// Scalar product, named to avoid ambiguity with nalgebra's `dot`, which takes a reference.
     fn inner(self, other: Self) -> Self::Real;
     /// The vector times a factor.
     fn scaled(self, factor: Self::Real) -> Self;
@@ -36,7 +36,7 @@ pub trait RealVector: Copy + Add<Output = Self> + Sub<Output = Self> {
     fn crossed(self, other: Self) -> Self;
     /// Components along x, y and z.
     fn components(self) -> [Self::Real; 3];
-    /// The vector of components along x, y and z.
+    /// Vector with these components along x, y and z.
     fn of(components: [Self::Real; 3]) -> Self;
 }
 

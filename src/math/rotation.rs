@@ -34,7 +34,7 @@ pub fn cayley(theta: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + (hat + 0.5 * hat * hat) / (1.0 + 0.25 * theta.norm_squared())
 }
 
-/// Cayley vector of a rotation matrix [-]; grows without bound towards half a turn.
+/// Cayley vector of a rotation matrix [-]; unbounded as the angle approaches half a turn.
 pub fn cayley_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     let twice_cosine_half_squared = 0.5 * (1.0 + rotation.trace()); // 2cos²(α/2)
     2.0 * axial(rotation) / twice_cosine_half_squared.max(f64::MIN_POSITIVE)
@@ -50,7 +50,7 @@ pub fn turned_by_cayley<V: RealVector>(theta: V, directors: &Triad<V>) -> Triad<
     }))
 }
 
-/// T(θ)⁻¹ s = s + ¼ θ (θ·s) − ½ θ × s: the change of the Cayley vector that results in a spin.
+/// T(θ)⁻¹ s = s + ¼ θ (θ·s) − ½ θ × s: change of the Cayley vector that produces the spin s.
 #[inline(always)]
 pub fn cayley_of_spin<V: RealVector>(theta: V, spin: V) -> V {
     let number = V::Real::splat;
@@ -58,7 +58,7 @@ pub fn cayley_of_spin<V: RealVector>(theta: V, spin: V) -> V {
     spin + along - theta.crossed(spin).scaled(number(0.5))
 }
 
-/// Frame whose third column is the unit vector `direction` [-]; its first is as close to `reference` as possible.
+/// Frame whose third column is the unit vector `direction` [-] and whose first column is as close to `reference` as possible.
 pub fn frame_along(direction: Vector3<f64>, reference: Vector3<f64>) -> Matrix3<f64> {
     let across = |v: Vector3<f64>| {
         let rest = v - v.dot(&direction) * direction;
@@ -72,8 +72,8 @@ pub fn frame_along(direction: Vector3<f64>, reference: Vector3<f64>) -> Matrix3<
     Matrix3::from_columns(&[first, direction.cross(&first), direction])
 }
 
-/// The frame turned by the shortest rotation that takes its third column to the unit vector `direction` [-], so that it does not twist;
-/// where that is half a turn, about the first column.
+/// Frame turned by the smallest rotation that takes its third column to the unit vector `direction` [-], without twist. A rotation by half a turn is
+/// about the first column.
 pub fn turned_to(frame: &Matrix3<f64>, direction: Vector3<f64>) -> Matrix3<f64> {
     let from = frame.column(2).into_owned();
     let cosine = from.dot(&direction);

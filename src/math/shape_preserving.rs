@@ -1,20 +1,19 @@
-//! Slopes of piecewise cubics through the rows of a table, which leave the range of neighbouring rows at smooth extrema only.
+//! Slopes of piecewise cubics through the rows of a table; the cubics leave the range of neighbouring rows only at smooth extrema.
 //!
-//! [`slopes`] applies to values that may rise and fall: displacements in time, soundings in x and in y. The slope at a row is that of the quartic through
-//! the row and its two neighbours on either side, one order less for each missing neighbour; its error, like that of the cubics, is of the order h⁴. The
-//! first and the last slope are given by [`End`]. Where a cubic then turns between two rows i and i + 1, its excursion beyond both is that of a
-//! smooth extremum if, with the divided second differences d_k = (s_k − s_{k−1})/(h_k + h_{k−1}) of the secants s and
-//! spans h,
+//! [`slopes`] applies to values that may rise and fall: displacements in time, soundings in x and in y. The slope at a row is that of the quartic
+//! through the row and its two neighbours on either side, one order less for each missing neighbour; its error, like that of the cubics, is of the
+//! order h⁴. The first and the last slope are given by [`End`]. An extremum of a cubic between two rows i and i + 1 is smooth if its excursion beyond
+//! both satisfies, with the divided second differences d_k = (s_k − s_{k−1})/(h_k + h_{k−1}) of the secants s and spans h,
 //!
 //!   excursion ≤ ¾ min|d_k| min(h_i, 2h_{i−1}, 2h_{i+1})²,   k = i − 1 … i + 2, all d_k of one sign,
 //!
-//! three times the excursion of a parabola with the curvature 2d between equal rows; at the ends of the table three
-//! d_k suffice, and fewer never do.
-//! Any other extremum has no support in the rows: both slopes are then limited to 0 … 3 minmod(s_{k−1}, s_k), with which the cubics at a row are monotone
-//! from row to row. A harmonic of unit amplitude with 20 rows per period is reproduced within 3·10⁻⁵ (8 rows: 2·10⁻³) away from the ends, and within 2·10⁻⁴
-//! where the rows are shifted at random by up to 0.3 of their distance.
+//! which is three times the excursion of a parabola with the curvature 2d between equal rows. At the ends of the table three d_k suffice; fewer never
+//! do. Any other extremum is not supported by the rows: both slopes are then limited to 0 … 3 minmod(s_{k−1}, s_k), with which the cubics at a row
+//! are monotone from row to row. A harmonic of unit amplitude with 20 rows per period is reproduced within 3·10⁻⁵ (8 rows: 2·10⁻³) away from the
+//! ends, and within 2·10⁻⁴ if the rows are shifted at random by up to 0.3 of their spacing.
 //!
-//! [`rising_slopes`] applies to values that rise from row to row, such as tension over strain, and keeps them rising: the weighted harmonic mean
+//! [`rising_slopes`] applies to values that rise from row to row, such as tension over strain, and keeps the curve rising by the weighted harmonic
+//! mean
 //!
 //!   m_k = (w₁ + w₂)/(w₁/s_{k−1} + w₂/s_k),  w₁ = 2h_k + h_{k−1},  w₂ = h_k + 2h_{k−1},
 //!
@@ -36,13 +35,13 @@ pub enum End {
     Open,
 }
 
-/// Greatest excursion of an extremum over that of a parabola with the least curvature of the adjacent rows [-].
+/// Maximum excursion of a smooth extremum, relative to that of a parabola with the smallest curvature of the adjacent rows [-].
 const EXCURSION_MAX: f64 = 3.0;
-/// Greatest ratio of the span to the adjacent spans that counts in this test [-].
+/// Maximum ratio of the span to the adjacent spans in this test [-]; a longer span is cut to it.
 const SPAN_MAX: f64 = 2.0;
-/// Greatest slope of a monotone cubic at its ends, over its secant [-].
+/// Maximum end slope of a monotone cubic relative to its secant [-].
 const MONOTONE_MAX: f64 = 3.0;
-/// Least slope at the ends of a rising curve, over the secant there [-].
+/// Minimum end slope of a rising curve relative to the secant there [-].
 const END_SLOPE_MIN: f64 = 0.1;
 
 /// Slopes at ascending rows, in the unit of `values` over that of `at`.
@@ -52,7 +51,7 @@ pub fn slopes(at: &[f64], values: &[f64], ends: [End; 2]) -> Vec<f64> {
     slopes
 }
 
-/// The same without a limit.
+/// Slopes as from [`slopes`], but without limiting.
 pub fn smooth_slopes(at: &[f64], values: &[f64], ends: [End; 2]) -> Vec<f64> {
     let last = at.len().saturating_sub(1);
     let end = |i: usize, chord: usize, end: End| match end {
@@ -72,7 +71,7 @@ pub fn smooth_slopes(at: &[f64], values: &[f64], ends: [End; 2]) -> Vec<f64> {
     (0..at.len()).map(slope).collect()
 }
 
-/// Slopes of a curve that rises from row to row, at two ascending rows or more.
+/// Slopes of a curve that rises from row to row, at two or more ascending rows.
 pub fn rising_slopes(at: &[f64], values: &[f64]) -> Vec<f64> {
     let last = at.len() - 2;
     let span = |k: usize| at[k + 1] - at[k];
@@ -117,7 +116,7 @@ fn quartic_slope(at: &[f64], values: &[f64], i: usize) -> f64 {
             count += 1;
         }
     }
-    let mut difference = rows.map(|row| values[row]); // divided, of Newton's form
+    let mut difference = rows.map(|row| values[row]); // divided differences of Newton's form
     for order in 1..count {
         for k in (order..count).rev() {
             difference[k] = (difference[k] - difference[k - 1]) / (at[rows[k]] - at[rows[k - order]]);
@@ -131,7 +130,7 @@ fn quartic_slope(at: &[f64], values: &[f64], i: usize) -> f64 {
     if slope.is_finite() { slope } else { 0.0 }
 }
 
-/// Table whose cubics may turn at smooth extrema only.
+/// Limiter that allows extrema of the cubics only where they are smooth.
 struct Limiter<'a> {
     values: &'a [f64],
     spans: Vec<f64>,
@@ -153,8 +152,8 @@ impl<'a> Limiter<'a> {
         }
     }
 
-    /// Limits both slopes of every cubic that turns without support. A row is limited at most once, which may cause
-    /// the cubic before it to turn.
+    /// Limits both slopes of every cubic with an unsupported extremum. A row is limited at most once. As this may create an extremum in the cubic
+    /// before it, that cubic is checked again.
     fn limit(&self, slopes: &mut [f64]) {
         let mut limited = vec![false; slopes.len()];
         let mut k = 0;
@@ -172,7 +171,7 @@ impl<'a> Limiter<'a> {
         }
     }
 
-    /// The slope at a row with which the cubics on both sides may be monotone.
+    /// Slope at a row, limited so that the cubics on both sides can be monotone.
     fn monotone(&self, row: usize, slope: f64) -> f64 {
         let inner = row > 0 && row < self.spans.len();
         if !inner {
@@ -182,8 +181,7 @@ impl<'a> Limiter<'a> {
         slope.clamp(bound.min(0.0), bound.max(0.0))
     }
 
-    /// Returns whether the cubic from row k to the next, with the slopes at both, turns nowhere or at a smooth
-    /// extremum.
+    /// Returns whether the cubic from row k to the next, with the given end slopes, has no extremum or a smooth one.
     fn is_supported(&self, k: usize, slopes: [f64; 2]) -> bool {
         let (span, secant) = (self.spans[k], self.secants[k]);
         if is_monotone(secant, slopes) {
@@ -193,7 +191,7 @@ impl<'a> Limiter<'a> {
         excursion > 0.0 && excursion <= self.support(k)
     }
 
-    /// Greatest excursion of a smooth extremum between row k and the next.
+    /// Maximum excursion of a smooth extremum between row k and the next.
     fn support(&self, k: usize) -> f64 {
         // bends[j] belongs to row j + 1
         let around = &self.bends[k.saturating_sub(2)..(k + 2).min(self.bends.len())];
@@ -208,7 +206,7 @@ impl<'a> Limiter<'a> {
     }
 }
 
-/// The smaller of two numbers of one sign, else 0.
+/// The number of smaller magnitude if both have the same sign, else 0.
 fn minmod(a: f64, b: f64) -> f64 {
     if a * b <= 0.0 {
         0.0
@@ -229,11 +227,11 @@ fn is_monotone(secant: f64, [start, end]: [f64; 2]) -> bool {
         return false;
     }
     let steep = a + b - 2.0;
-    let least = a - (2.0 * a + b - 3.0).powi(2) / (3.0 * steep); // over the secant, of the slope in between
+    let least = a - (2.0 * a + b - 3.0).powi(2) / (3.0 * steep); // smallest slope in between, relative to the secant
     steep <= 0.0 || 2.0 * a + b <= 3.0 || a + 2.0 * b <= 3.0 || least >= 0.0
 }
 
-/// Excursion of a cubic beyond the range of the values at its ends, with its slopes there times its span.
+/// Excursion of a cubic beyond the range of its end values; `start` and `end` are its end slopes times the span.
 fn excursion([low, high]: [f64; 2], [start, end]: [f64; 2]) -> f64 {
     let rise = high - low;
     let [b, c, d] = [start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise];
@@ -254,7 +252,7 @@ mod tests {
     use crate::math::random::Random;
     use std::f64::consts::TAU;
 
-    /// Greatest and least value of the curve between row k and the next.
+    /// Minimum and maximum of the curve between row k and the next.
     fn range(at: &[f64], values: &[f64], slopes: &[f64], k: usize) -> [f64; 2] {
         let knot = |i: usize| (at[i], values[i], slopes[i]);
         let cubic = Hermite::new(knot(k), knot(k + 1));
@@ -265,7 +263,7 @@ mod tests {
         })
     }
 
-    /// Greatest error away from three rows at either end of a sine with `count` rows per period, shifted at random by up to a part of their distance.
+    /// Maximum error for a sine with `count` rows per period, moved by `shift`, without three rows at either end.
     fn error_of_sine(count: f64, phase: f64, mut shift: impl FnMut() -> f64) -> f64 {
         let at: Vec<f64> = (0..=(3.0 * count) as usize).map(|i| i as f64 + shift()).collect();
         let sine = |t: f64| (TAU * t / count + phase).sin();

@@ -1,19 +1,19 @@
 //! Direct solution of a sparse system of 3×3 blocks with a symmetric pattern: the points at which chains meet, three
 //! unknowns each.
 //!
-//! The points are eliminated in an order of approximate minimum degree. Order and pattern of the factors are found
-//! once (`Order`); a solve then computes numbers only and allocates nothing. With point k next in the order, U its
-//! blocks on the later points and L those of these on k,
+//! The points are eliminated in approximate minimum degree order. The order and the pattern of the factors are computed once (`Order`); a solve then
+//! computes numbers only and does not allocate. With point k next in the order, U its blocks in the columns of the later points and L the blocks in
+//! its column and their rows,
 //!
 //!   W_j = D_k⁻¹ U_kj,   y_k = D_k⁻¹ b_k,   A_ij ← A_ij − L_ik W_j,   b_i ← b_i − L_ik y_k,   at last x_k = y_k − Σ W_j x_j.
 //!
-//! Pivots stay in their blocks, so that signs of pivots keep their meaning: a matrix is positive definite where all of them are positive, see
-//! [`Pivots`]. Values need not be symmetric. The arithmetic is the same on every machine, for any width of its vectors.
+//! Row exchanges stay within blocks, so that the signs of the pivots keep their meaning: a matrix is positive definite if all of them are positive,
+//! see [`Pivots`]. Values need not be symmetric. The arithmetic is the same on every machine, for any vector width.
 //!
-//! Source: Davis (2006), Direct Methods for Sparse Linear Systems, chapters 4 (symbolic analysis) and 6 (LU with a symmetric pattern); Amestoy, Davis &
-//! Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886-905 (order). Order and pattern are computed by the crate faer, whose numeric factors are not suitable
-//! here: its Cholesky factors need symmetric values, its LU factors exchange rows between points, and both round differently on machines with other
-//! vectors.
+//! Source: Davis (2006), Direct Methods for Sparse Linear Systems, chapters 4 (symbolic analysis) and 6 (LU with a symmetric pattern); Amestoy, Davis
+//! & Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886-905 (order). The crate faer computes order and pattern. Its numeric factors are not suitable
+//! here: the Cholesky factors need symmetric values, the LU factors exchange rows between points, and the rounding of both depends on the vector unit
+//! of the machine.
 
 use std::sync::Arc;
 
@@ -29,18 +29,18 @@ use super::block_banded::{Lu3, Pivots};
 /// Order of elimination, and positions of the blocks of the factors.
 #[derive(Debug, Default)]
 struct Order {
-    /// Place of every point in the order.
+    /// Position of every point in the order.
     place: Vec<usize>,
-    /// Start of the blocks below the diagonal in each column, and their number.
+    /// Index of the first block below the diagonal in each column, then the total number of these blocks.
     start: Vec<usize>,
     /// Rows of the blocks below the diagonal, ascending in each column.
     rows: Vec<usize>,
-    /// Blocks that the pairs of blocks of a column change, column by column.
+    /// Index of the block that each pair of blocks in a column updates, column by column.
     targets: Vec<usize>,
 }
 
 impl Order {
-    /// Order for `points` points, of which `pairs` are coupled.
+    /// Order for `points` points that are coupled in `pairs`.
     fn new(points: usize, pairs: &[(usize, usize)]) -> Order {
         if points == 0 {
             return Order::default();
@@ -97,24 +97,24 @@ impl Order {
     }
 }
 
-/// The system of the points at which chains meet, three unknowns each.
+/// System of the points at which chains meet, with three unknowns per point.
 #[derive(Debug, Clone)]
 pub struct PointSystem {
     order: Arc<Order>,
-    /// Blocks of points on themselves, in the order of elimination, and b, then the solution.
+    /// Diagonal blocks in the order of elimination, and b, then the solution.
     diagonal: Vec<Matrix3<f64>>,
     right: Vec<Vector3<f64>>,
-    /// Blocks below the diagonal, and those opposite above it.
+    /// Blocks below the diagonal, and the opposite blocks above it.
     lower: Vec<Matrix3<f64>>,
     upper: Vec<Matrix3<f64>>,
-    /// Blocks on themselves as they are eliminated, factorised.
+    /// Factors of the diagonal blocks at their elimination.
     pivots: Vec<Lu3>,
     /// Axes whose unknown is zero, in the order of elimination.
     held: Vec<[bool; 3]>,
 }
 
 impl PointSystem {
-    /// Room for `points` points, of which `pairs` are coupled.
+    /// Zero system for `points` points that are coupled in `pairs`.
     pub fn new(points: usize, pairs: &[(usize, usize)]) -> PointSystem {
         let order = Order::new(points, pairs);
         let blocks = vec![Matrix3::zeros(); order.rows.len()];
@@ -138,7 +138,7 @@ impl PointSystem {
         self.held.fill([false; 3]);
     }
 
-    /// Adds a block in the rows of point `row` and the columns of point `column`, of one of the pairs or of a point on itself.
+    /// Adds a block in the rows of point `row` and the columns of point `column`, which are the same point or one of the pairs.
     pub fn add_block(&mut self, row: usize, column: usize, block: &Matrix3<f64>) {
         let [row, column] = [row, column].map(|point| self.order.place[point]);
         match row.cmp(&column) {
@@ -158,12 +158,12 @@ impl PointSystem {
         self.held[self.order.place[point]][axis] = true;
     }
 
-    /// Sets the right-hand side to zero, for another one of the system that was solved last.
+    /// Sets the right-hand side to zero, for another solution with the same blocks.
     pub fn clear_right(&mut self) {
         self.right.fill(Vector3::zeros());
     }
 
-    /// Solves in place; false if a pivot cannot be taken.
+    /// Solves in place; returns false if a pivot is not accepted.
     pub fn solve(&mut self, pivots: Pivots) -> bool {
         self.apply_holds();
         let order = &self.order;
@@ -197,7 +197,7 @@ impl PointSystem {
         true
     }
 
-    /// Solves for another right-hand side, after [`PointSystem::solve`] of the same blocks.
+    /// Solves for another right-hand side, after [`PointSystem::solve`] with the same blocks.
     pub fn solve_again(&mut self) {
         let order = &self.order;
         for (right, held) in self.right.iter_mut().zip(&self.held) {
@@ -259,7 +259,7 @@ mod tests {
     use crate::math::random::Random;
     use nalgebra::{DMatrix, DVector};
 
-    /// A system and the same as a dense one.
+    /// Sparse system and the same system as a dense one.
     struct Both {
         sparse: PointSystem,
         matrix: DMatrix<f64>,
@@ -309,7 +309,7 @@ mod tests {
             self.right[row] = 0.0;
         }
 
-        /// Greatest difference of both solutions.
+        /// Maximum difference between both solutions.
         fn error(&mut self, pivots: Pivots) -> f64 {
             assert!(self.sparse.solve(pivots));
             let exact = self

@@ -1,27 +1,25 @@
-//! Direct solution of a tridiagonal system that is striped over lanes: every lane eliminates its piece at the same
-//! time as the others.
+//! Direct solution of a tridiagonal system that is striped over lanes; all lanes eliminate their pieces at the same time.
 //!
-//! l_i x_{i−1} + d_i x_i + u_i x_{i+1} = b_i for i = 0 … 4m − 1; equation i is in row i mod m, lane i / m, so that a
-//! lane holds m consecutive equations and the next lane continues at its end. In the downward pass, with p the last
-//! unknown of the piece before, every equation becomes
+//! l_i x_{i−1} + d_i x_i + u_i x_{i+1} = b_i for i = 0 … 4m − 1. Equation i is in row i mod m, lane i / m, so that a lane holds m consecutive
+//! equations and the next lane continues at its end. In the downward pass, with p the last unknown of the previous piece, every equation becomes
 //!
 //! x_r = g_r − s_r p − c_r x_{r+1},  c_r = u_r/δ,  s_r = −l_r s_{r−1}/δ,  g_r = (b_r − l_r g_{r−1})/δ,  δ = d_r − l_r c_{r−1},
 //!
-//! from x_{−1} = p, and the piece's first unknown, carried along, x_0 = G − F p + E x_r. The last equation of every piece, with these two, couples the last
-//! unknowns of three pieces: a system of four, which one step of cyclic reduction splits into pairs for Cramer's rule. The x_r then follow from the last
-//! row up. Systems of other sizes are filled up with rows x = 0.
+//! from x_{−1} = p. The first unknown of the piece is updated in the same pass: x_0 = G − F p + E x_r. The last equation of every piece, with these
+//! two, couples the last unknowns of three pieces: a system of four, which one step of cyclic reduction splits into pairs for Cramer's rule. The x_r
+//! then follow from the last row up. Systems of other sizes are padded with rows x = 0.
 //!
-//! The elimination has no pivoting. A = 1 + K S with a diagonal K ≥ 0 and S positive semidefinite is similar to 1 +
-//! √K S √K, whose pivots are ≥ 1 in any order of elimination, and a diagonal similarity does not change pivots.
-//! Diagonally dominant matrices, the other intended kind, keep |δ| ≥ |d| − |l|.
+//! The elimination has no pivoting. A = 1 + K S with a diagonal K ≥ 0 and S positive semi-definite is similar to 1 + √K S √K, whose pivots are ≥ 1 in
+//! any order of elimination, and a diagonal similarity does not change pivots. In diagonally dominant matrices, the other intended kind, |δ| ≥ |d| −
+//! |l|.
 //!
 //! Source: Wang (1981), A parallel method for tridiagonal equations, ACM Trans. Math. Softw. 7, 170-183 (partition); Polizzi & Sameh
 //! (2006), A parallel hybrid banded system solver: the SPIKE algorithm, Parallel Computing 32, 177-194 (spikes, reduced system).
 
 use super::lanes::Lanes;
 
-/// Four equations l x_{r−1} + d x_r + u x_{r+1} = b, one of every piece. In the whole system the first l and the last u must be 0,
-/// the first l only where the last equation is not x = 0.
+/// Four equations l x_{r−1} + d x_r + u x_{r+1} = b, one of every piece. In the whole system the last u must be 0, and so must the first l unless the
+/// last equation is x = 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Equations {
     /// l [-].
@@ -35,7 +33,7 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// x = 0.
+    /// Equations x = 0.
     pub fn unit() -> Equations {
         let zero = Lanes::splat(0.0);
         Equations {
@@ -50,8 +48,7 @@ impl Equations {
 /// Result of the elimination for four equations: x_r = g − s p − c x_{r+1}; and of the first unknowns of their
 /// pieces, x_0 = G − F p + E x_r.
 ///
-/// A row continues from the stored row above: values carried from row to row in registers are not compiled to whole
-/// vectors.
+/// A row continues from the stored row above, because values carried from row to row in registers are not compiled to whole vectors.
 #[derive(Debug, Clone, Copy)]
 pub struct Eliminated {
     /// g, in the unit of x.
@@ -65,7 +62,7 @@ pub struct Eliminated {
 }
 
 impl Eliminated {
-    /// Above the first row; scratch that is written before it is read.
+    /// State above the first row; also the initial value of workspaces, which are written before they are read.
     #[inline(always)]
     pub fn start() -> Eliminated {
         let (zero, minus) = (Lanes::splat(0.0), Lanes::splat(-1.0));
@@ -100,7 +97,7 @@ impl Eliminated {
         }
     }
 
-    /// Advances to the last row. Returns the last unknowns of the pieces before, and of the pieces themselves.
+    /// Advances to the last row. Returns the last unknowns of the previous pieces, and of the pieces themselves.
     #[inline(always)]
     pub fn close(&self, row: &Equations) -> (Lanes, Lanes) {
         let zero = Lanes::splat(0.0);
@@ -114,7 +111,7 @@ impl Eliminated {
         (own.moved_up(), own)
     }
 
-    /// x_r from the last unknowns of the pieces before, and x_{r+1}.
+    /// x_r from the last unknowns of the previous pieces and x_{r+1}.
     #[inline(always)]
     pub fn substitute(&self, before: Lanes, after: Lanes) -> Lanes {
         self.known - self.before * before - self.after * after
@@ -125,7 +122,7 @@ impl Eliminated {
 #[inline(always)]
 fn solve_four(l: Lanes, u: Lanes, b: Lanes) -> Lanes {
     let zero = Lanes::splat(0.0);
-    // without the unknowns next to it, every lane has one other: e x + c x* = f, and that one's x* is two lanes on
+    // eliminating the adjacent unknowns leaves one other in every lane, x* two lanes further: e x + c x* = f
     let e = Lanes::splat(1.0) - l * u.moved_up() - u * l.moved_down();
     let f = b - l * b.moved_up() - u * b.moved_down();
     let c = zero - l * l.moved_up() - u * u.moved_down();
@@ -144,7 +141,7 @@ mod tests {
     /// [l, d, u, b] of every equation.
     type System = Vec<[f64; 4]>;
 
-    /// A system of `count` equations, cut off at its ends.
+    /// System of `count` equations, without couplings beyond its ends.
     fn system(count: usize, equation: impl FnMut(usize) -> [f64; 4]) -> System {
         let mut system: System = (0..count).map(equation).collect();
         (system[0][0], system[count - 1][2]) = (0.0, 0.0);

@@ -1,5 +1,4 @@
-//! Striped layout of a chain of nodes over the lanes of vectors, in which the neighbours of a vector of nodes are
-//! whole vectors too.
+//! Striped layout of a chain of nodes over the lanes of vectors: the neighbours of a vector of nodes are whole vectors too.
 //!
 //! With m = ⌈count/4⌉ rows, node i is in row i mod m of lane ⌊i/m⌋:
 //!
@@ -12,44 +11,42 @@
 //! row m+1, halo      m    2m     3m     ·
 //! ```
 //!
-//! The nodes before and after those of a row are those of the rows before and after it: no lane is shifted, and no
-//! vector is read that overlaps two written ones. The halo rows repeat the rows m and 1, shifted by a lane, and are
-//! renewed by `wrap` when these have changed. Nodes beyond the last one are padding. Segment i, between the nodes i
-//! and i + 1, is in the place of node i.
+//! The nodes before and after those of a row are in the rows before and after it: no lane is shifted, and no vector that is read overlaps two written
+//! ones. The halo rows repeat rows m and 1, shifted by one lane; `wrap` updates them after these rows have changed. Nodes beyond the last one are
+//! padding. Segment i, between nodes i and i + 1, is in the slot of node i.
 //!
-//! The last lane of the last halo row repeats nothing: it is the place of node 4m, which `wrap` does not change. A
-//! chain whose last node needs no row, since no value is computed for it, has one row less where its segments fill
-//! their rows ([`Striping::without_last`]).
+//! The last lane of the last halo row is not a copy: it is the slot of node 4m, which `wrap` does not change. A chain whose last node needs no row,
+//! because no value is computed for it, has one row fewer if its segments fill their rows ([`Striping::without_last`]).
 
 use nalgebra::Vector3;
 use std::ops::{Index, IndexMut};
 
 use super::lanes::{LANES, Lanes, Vectors};
 
-/// Number of rows of the striped layout of a chain.
+/// Striped layout of a chain, given by its number of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Striping {
     rows: usize,
 }
 
-/// Place of a node.
+/// Row and lane of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
-    /// Row, of which the first is number 1.
+    /// Row; the first is number 1.
     pub row: usize,
     /// Lane.
     pub lane: usize,
 }
 
 impl Striping {
-    /// For `count` nodes.
+    /// Layout for `count` nodes.
     pub fn new(count: usize) -> Striping {
         Striping {
             rows: count.div_ceil(LANES).max(1),
         }
     }
 
-    /// For `count` nodes, of which the last needs no row.
+    /// Layout for `count` nodes, the last of which needs no row.
     pub fn without_last(count: usize) -> Striping {
         Striping::new(count - 1)
     }
@@ -59,14 +56,14 @@ impl Striping {
         self.rows
     }
 
-    /// Number of nodes that there is room for [-].
+    /// Number of nodes that fit into the layout [-].
     pub fn room(self) -> usize {
         LANES * self.rows
     }
 
-    /// Place of node `i`.
+    /// Slot of node `i`.
     pub fn slot(self, i: usize) -> Slot {
-        // quicker than a division, and steps look up their ends
+        // faster than a division; every step looks up the end nodes
         let lane = (1..LANES).map(|k| usize::from(i >= k * self.rows)).sum();
         Slot {
             row: i - lane * self.rows + 1,
@@ -74,14 +71,14 @@ impl Striping {
         }
     }
 
-    /// Places of the nodes, from the first to the last that there is room for, and to the one behind these.
+    /// Slots of all nodes that fit into the layout, in order, then that of the next node.
     pub fn slots(self) -> impl Iterator<Item = Slot> {
         let rows = 1..=self.rows;
         let inner = (0..LANES).flat_map(move |lane| rows.clone().map(move |row| Slot { row, lane }));
         inner.chain(std::iter::once(self.slot(self.room())))
     }
 
-    /// A number for every node, and `padding` behind them.
+    /// Column with a number for every node, and `padding` after the last one.
     pub fn column(self, values: &[f64], padding: f64) -> Column {
         let mut column = Column::new(self, padding);
         column.assign(values);
@@ -90,7 +87,7 @@ impl Striping {
 }
 
 impl Slot {
-    /// Place of the node before: in a halo row, if need be.
+    /// Slot of the previous node, in a halo row at the start of a lane.
     pub fn before(self) -> Slot {
         Slot {
             row: self.row - 1,
@@ -98,7 +95,7 @@ impl Slot {
         }
     }
 
-    /// Place of the node after: in a halo row, if need be.
+    /// Slot of the next node, in a halo row at the end of a lane.
     pub fn after(self) -> Slot {
         Slot {
             row: self.row + 1,
@@ -107,33 +104,33 @@ impl Slot {
     }
 }
 
-/// A number for every node of a striped chain.
+/// One number for every node of a striped chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     rows: Vec<Lanes>,
 }
 
 impl Column {
-    /// The same number everywhere.
+    /// Column with the same number everywhere.
     pub fn new(striping: Striping, value: f64) -> Column {
         Column {
             rows: vec![Lanes::splat(value); striping.rows + 2],
         }
     }
 
-    /// The rows up to the halo behind row `last`.
+    /// Rows up to the halo after row `last`.
     #[inline(always)]
     pub fn rows(&self, last: usize) -> &[Lanes] {
         &self.rows[..last + 2]
     }
 
-    /// The rows up to the halo behind row `last`, to be written.
+    /// Rows up to the halo after row `last`, for writing.
     #[inline(always)]
     pub fn rows_mut(&mut self, last: usize) -> &mut [Lanes] {
         &mut self.rows[..last + 2]
     }
 
-    /// The numbers in a row.
+    /// Numbers in a row.
     #[inline(always)]
     pub fn load(&self, row: usize) -> Lanes {
         self.rows[row]
@@ -145,7 +142,7 @@ impl Column {
         self.rows[row] = lanes;
     }
 
-    /// Writes a number everywhere.
+    /// Sets all numbers to `value`.
     pub fn fill(&mut self, value: f64) {
         self.rows.fill(Lanes::splat(value));
     }
@@ -157,21 +154,21 @@ impl Column {
         self.wrap();
     }
 
-    /// The numbers of the first `count` nodes.
+    /// Numbers of the first `count` nodes.
     pub fn values(&self, count: usize) -> impl Iterator<Item = f64> + '_ {
         self.striping().slots().take(count).map(|at| self[at])
     }
 
-    /// Renews the halo.
+    /// Updates the halo.
     #[inline(always)]
     pub fn wrap(&mut self) {
         let last = self.rows.len() - 1;
         self.rows[0] = self.rows[last - 1].moved_up();
-        // the sum keeps a compiler from storing lane by lane, for which whole loads would wait
+        // the sum prevents the compiler from storing lane by lane, which would delay loads of the whole vector
         self.rows[last] = self.rows[1].moved_down_before(self.rows[last]) + Lanes::splat(0.0);
     }
 
-    /// Layout of the chain.
+    /// Striped layout of the chain.
     pub fn striping(&self) -> Striping {
         Striping {
             rows: self.rows.len() - 2,
@@ -192,33 +189,33 @@ impl IndexMut<Slot> for Column {
     }
 }
 
-/// A vector for every node of a striped chain.
+/// One vector for every node of a striped chain.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Field {
     rows: Vec<Vectors>,
 }
 
 impl Field {
-    /// Zero vectors.
+    /// Field of zero vectors.
     pub fn zeros(striping: Striping) -> Field {
         Field {
             rows: vec![Vectors::zero(); striping.rows + 2],
         }
     }
 
-    /// The rows up to the halo behind row `last`.
+    /// Rows up to the halo after row `last`.
     #[inline(always)]
     pub fn rows(&self, last: usize) -> &[Vectors] {
         &self.rows[..last + 2]
     }
 
-    /// The rows up to the halo behind row `last`, to be written.
+    /// Rows up to the halo after row `last`, for writing.
     #[inline(always)]
     pub fn rows_mut(&mut self, last: usize) -> &mut [Vectors] {
         &mut self.rows[..last + 2]
     }
 
-    /// The vectors in a row.
+    /// Vectors in a row.
     #[inline(always)]
     pub fn load(&self, row: usize) -> Vectors {
         self.rows[row]
@@ -230,7 +227,7 @@ impl Field {
         self.rows[row] = vectors;
     }
 
-    /// The vector of a node.
+    /// Vector of a node.
     #[inline(always)]
     pub fn get(&self, at: Slot) -> Vector3<f64> {
         self.rows[at.row].get(at.lane)
@@ -242,7 +239,7 @@ impl Field {
         self.rows[at.row].set(at.lane, vector);
     }
 
-    /// Renews the halo.
+    /// Updates the halo.
     #[inline(always)]
     pub fn wrap(&mut self) {
         let last = self.rows.len() - 1;
@@ -250,7 +247,7 @@ impl Field {
         self.wrap_after();
     }
 
-    /// Renews the halo behind the last nodes of the lanes.
+    /// Updates the halo after the last row.
     #[inline(always)]
     pub fn wrap_after(&mut self) {
         let last = self.rows.len() - 1;

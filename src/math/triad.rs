@@ -8,8 +8,8 @@ use super::real::{Real, RealVector};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triad<V>(pub [V; 3]);
 
-/// Values of an expression for each of some items. Large closures, as taken by `map`, are compiled as separate functions, without the vector instructions
-/// of the function around them.
+/// Array of the values of an expression for each item. Large closures passed to `map` are compiled as separate functions, without the vector
+/// instructions of the calling function.
 macro_rules! each {
     ($item:ident in [$($value:expr),+] => $result:expr) => {
         [$({
@@ -97,7 +97,7 @@ impl<V: RealVector> Triad<V> {
     }
 }
 
-/// A vector of equal components.
+/// Vector with equal components.
 #[inline(always)]
 pub fn repeated<V: RealVector>(a: V::Real) -> V {
     V::of([a; 3])

@@ -1,23 +1,23 @@
 //! Vector unit of the machine on which a kernel runs; results do not depend on it.
 //!
-//! The kernels compute with four numbers at a time. Where a machine has vectors of eight, compilers combine two of four: values that were just written as
-//! two vectors and are read again as one wait until both are in the cache. Vectors of eight are 5 to 20 % slower than those of four on an Intel Xeon
+//! The kernels compute with four numbers at a time. On machines with vectors of eight, compilers combine two vectors of four. A load that combines
+//! two vectors just written then waits until both are in the cache. Vectors of eight are 5 to 20 % slower than those of four on an Intel Xeon
 //! (Sapphire Rapids), and 3 to 8 % faster on lines of forty elements on Zen 5. They would make up a third of the compiled code and are not used.
 
 use pulp::NullaryFnOnce;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V3;
 
-/// Vectors on which kernels run.
+/// Vector unit for which kernels are compiled.
 #[derive(Debug, Clone, Copy)]
 pub struct VectorUnit {
-    /// Those of AVX2 and FMA; `None` for the ones that every machine of the target has.
+    /// AVX2 and FMA; `None` for the vectors that every machine of the target has.
     #[cfg(target_arch = "x86_64")]
     of_four: Option<V3>,
 }
 
 impl VectorUnit {
-    /// The best vectors of this machine.
+    /// Best vector unit of this machine.
     pub fn best() -> VectorUnit {
         VectorUnit {
             #[cfg(target_arch = "x86_64")]
@@ -25,7 +25,7 @@ impl VectorUnit {
         }
     }
 
-    /// Vectors that every machine of the target has.
+    /// Vector unit that every machine of the target has.
     pub fn portable() -> VectorUnit {
         VectorUnit {
             #[cfg(target_arch = "x86_64")]

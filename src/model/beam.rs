@@ -11,13 +11,13 @@ use crate::physics::section::{
 /// A line as a beam: two-node elements, one per segment, and lumped rotary inertia.
 #[derive(Debug, Clone)]
 pub struct Beam {
-    /// One per segment.
+    /// Elements, one per segment.
     pub elements: Vec<BeamElement>,
     /// Rotary inertia of the nodes about their three directors [kg m²].
     pub rotary_inertia: Vec<Vector3<f64>>,
-    /// Direction of the line at ends A and B where they are clamped, with the point in its scene attitude [-].
+    /// Direction of the line at ends A and B where they are clamped, with the point in its reference attitude [-].
     pub clamped: [Option<Vector3<f64>>; 2],
-    /// True if the initial shape is free of stress; else the straight line is.
+    /// True if the initial shape is free of stress; otherwise the straight line is.
     pub rests_as_it_starts: bool,
 }
 
@@ -39,16 +39,16 @@ pub struct BeamState {
     pub frames: Vec<Matrix3<f64>>,
     /// Angular velocities along those directors [rad/s].
     pub spins: Vec<Vector3<f64>>,
-    /// Starred strains of the elements without stress [-], [1/m].
+    /// Starred strains of the unstressed elements [-], [1/m].
     pub rest: Vec<Sextuple>,
-    /// Frames of ends A and B in their points' reference attitude where they are clamped [-].
+    /// Frames of clamped ends A and B in their points' reference attitude [-].
     pub carried: [Matrix3<f64>; 2],
     /// Course of the nodes over the last steps.
     pub course: Course,
 }
 
-/// Mean rates of the nodes of a beam over the last steps, from which the next one is predicted. The unknowns of a step are the rates over it. They do not
-/// contain motion that alternates from step to step, such as motion that the step does not resolve.
+/// Mean rates of the nodes of a beam over the last steps, from which those of the next step are predicted. The unknowns of a step are the mean rates
+/// over it. They contain no motion that alternates from step to step, such as motion that the step does not resolve.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Course {
     /// Length of the last step [s].
@@ -79,12 +79,13 @@ impl Course {
         self.rates[i] = [rate, change, change - first];
     }
 
-    /// Ends a step of a length [s] that all nodes have followed.
+    /// Ends a step of a length [s], after [`Course::follow`] for all nodes.
     pub fn end_step(&mut self, length: f64) {
         self.length = length;
     }
 
-    /// Rates and differences of node `i` for steps of a length [s], of which the last one and the next are apart by the second value [-].
+    /// Rates and differences of node `i`, scaled to steps of a length [s], and the time between the middles of the last step and
+    /// the next, relative to that length [-].
     fn scaled(&self, i: usize, length: f64) -> ([Sextuple; 3], f64) {
         if self.length == 0.0 {
             return (self.rates[i], 1.0);
@@ -171,13 +172,13 @@ fn mirrored(v: Vector3<f64>, about: Vector3<f64>) -> Vector3<f64> {
 }
 
 impl BeamElement {
-    /// Strain from rest between two sections.
+    /// Strain relative to the unstressed state, from the sections at both ends.
     #[inline(always)]
     pub fn strain(&self, a: &Section, b: &Section, rest: &Sextuple) -> Sextuple {
         section::corrected(&section::strain(a, b, self.length), self.length) - rest
     }
 
-    /// The element over a step between two plain strains [-], [1/m], from the starred strains at rest.
+    /// Strain of the element over a step between two plain strains [-], [1/m], relative to the unstressed starred strains.
     pub fn over_step(
         &self,
         strains: [&Sextuple; 2],
@@ -194,7 +195,7 @@ impl BeamElement {
         }
     }
 
-    /// Energy at a strain from rest.
+    /// Energy at a strain relative to the unstressed state.
     pub fn energy(&self, strain: &Sextuple) -> StrainEnergy {
         self.law.energy(strain, self.length)
     }

@@ -5,29 +5,29 @@ use nalgebra::Vector3;
 use super::{End, Line, Model, PointState};
 use crate::physics::bending::{Direction, Turn, compression_max, in_series, of_clamp};
 
-/// Lumped bending stiffness: every node is a joint between the segments that meet there, a clamped end one between the clamp and
+/// Lumped bending stiffness: every node is a joint between the segments that meet there; a clamped end is a joint between the clamp and
 /// its segment.
 #[derive(Debug, Clone)]
 pub struct Bending {
-    /// EI per segment [N m²]; 0 where it is a hinge.
+    /// EI per segment [N m²]; 0 for a segment whose joints are hinges.
     pub stiffness: Vec<f64>,
     /// B = EI/l̄ per node [N m]; 0 at hinges and pinned ends.
     pub joint: Vec<f64>,
-    /// Length l̄ of a joint [m]: that of the unstretched halves of its segments, and less at a clamp under tension.
+    /// Length l̄ of a joint [m]: the sum of the unstretched halves of its segments, less at a clamp under tension.
     pub length: Vec<f64>,
     /// |κb| of the unstressed shape per node [-].
     pub rest: Vec<f64>,
-    /// Greatest compressive force that a segment carries [N].
+    /// Maximum compressive force that a segment carries [N].
     pub compression_max: Vec<f64>,
-    /// Damping of the joints [N m s], where a line type has it.
+    /// Damping of the joints [N m s], if a line type has it.
     pub damping: Option<Vec<f64>>,
-    /// Direction from end A to end B of the clamp at each end [-]; pinned where there is none.
+    /// Direction from end A to end B of the clamp at each end [-]; `None` if the end is pinned.
     clamps: [Option<Vector3<f64>>; 2],
 }
 
 impl Bending {
-    /// Joints from the length [m], EI [N m²] and stiffness-proportional damping β [s] of every segment, straight
-    /// where unstressed.
+    /// Joints from the length [m], EI [N m²] and stiffness-proportional damping β [s] of every segment, unstressed
+    /// when straight.
     pub fn new(
         length: &[f64],
         stiffness: Vec<f64>,
@@ -64,8 +64,8 @@ impl Bending {
         }
     }
 
-    /// Sets stiffness and damping of the clamp at an end for the tension [N] and the unstretched length [m] of the segment there; returns whether there is
-    /// one.
+    /// Sets stiffness and damping of the clamp at an end for the tension [N] and the unstretched length [m] of the segment there; returns whether the end
+    /// is clamped.
     pub fn stiffen_clamp(&mut self, end: End, tension: f64, length: f64) -> bool {
         let (node, segment) = match end {
             End::A => (0, 0),
@@ -95,7 +95,7 @@ impl Bending {
 }
 
 impl Line {
-    /// Direction from end A to end B of the clamp at an end whose point is `point` [-]; pinned where there is none.
+    /// Direction from end A to end B of the clamp at an end whose point is `point` [-]; `None` if the end is pinned.
     /// No other function relates a clamp to its support.
     pub fn clamp(&self, end: End, point: &PointState) -> Option<Vector3<f64>> {
         let [a, b] = self.bending.as_ref()?.clamps;
@@ -112,14 +112,14 @@ impl Line {
         [self.clamp(End::A, a), self.clamp(End::B, b)]
     }
 
-    /// Greatest compressive force that a segment carries [N]: none without bending stiffness.
+    /// Maximum compressive force that a segment carries [N]; 0 without bending stiffness.
     pub fn compression_max(&self, segment: usize) -> f64 {
         self.bending
             .as_ref()
             .map_or(0.0, |bending| bending.compression_max[segment])
     }
 
-    /// The greatest compressive force that any of its segments carries [N].
+    /// Maximum compressive force that any of its segments carries [N].
     pub fn greatest_push(&self) -> f64 {
         let pushes = self.bending.iter().flat_map(|bending| &bending.compression_max);
         pushes.fold(0.0, |greatest, push| push.max(greatest))
@@ -127,7 +127,7 @@ impl Line {
 }
 
 impl Model {
-    /// Moments on ends A and B of a line that bends at time `t` [s], in [N m]: those of its free points, where it bends up to them.
+    /// Moments [N m] on ends A and B of a line at time `t` [s]: those of its points, if the line bends up to an end that is not clamped; otherwise zero.
     pub fn end_moments(&self, line: &Line, t: f64) -> [Vector3<f64>; 2] {
         let Some(bending) = &line.bending else {
             return [Vector3::zeros(); 2];
@@ -153,7 +153,7 @@ pub fn joint(clamps: [Option<Vector3<f64>>; 2], position: &[Vector3<f64>], node:
     joint_of_segments(clamps, [node, position.len() - 1], segment)
 }
 
-/// [`joint`] of a node of those up to `last`, from the directions of the segments.
+/// As [`joint`], for a line whose last node is `last`, from the directions of its segments.
 #[inline(always)]
 pub fn joint_of_segments(
     clamps: [Option<Vector3<f64>>; 2],

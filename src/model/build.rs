@@ -36,10 +36,10 @@ use crate::scene::{
     SceneError, Strain,
 };
 
-/// Greatest number of segments that a winch pays out.
+/// Maximum number of segments that a winch pays out.
 const WINCH_SEGMENTS_MAX: f64 = 1e5;
 
-/// Elements of every line over those of a line alone [-]: its length over that of the longest line that it meets at free points.
+/// Number of elements of every line relative to a single line [-]: its length over that of the longest line that it is connected to by free points.
 pub fn line_shares(scene: &Scene) -> Vec<f64> {
     spacing::shares(scene)
 }
@@ -98,13 +98,13 @@ impl Model {
         })
     }
 
-    /// Number and lengths [m] of the lines' elements with the reasons, where this is the model of that scene: one sentence per line.
+    /// Number and lengths [m] of the lines' elements with the reasons, one sentence per line. `scene` is the scene of this model.
     pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
         spacing::in_words(scene, self)
     }
 }
 
-/// Properties of the seabed other than a level plane without friction.
+/// Shape and friction of the seabed; `None` for a level plane without friction.
 fn seabed(seabed: &scene::Seabed) -> Option<Seabed> {
     let ground = match (&seabed.grid, seabed.slope) {
         (Some(grid), _) => {
@@ -128,11 +128,11 @@ fn seabed(seabed: &scene::Seabed) -> Option<Seabed> {
     })
 }
 
-/// Stiffness along the seabed of a node that sticks, over the greatest axial stiffness of its segments [-]: the
-/// displacement before a node slides is then a small part of the stretch between two nodes.
+/// Stiffness along the seabed of a node that sticks, relative to the maximum axial stiffness EA/l of its segments [-]: the
+/// displacement before a node slides is then small compared with the stretch between two nodes.
 const STICK: f64 = 10.0;
 
-/// Sets the seabed's surface of a line.
+/// Sets the seabed under a line, and the stiffness of nodes that stick to it.
 fn lay_on(line: &mut Line, seabed: Option<&Arc<Seabed>>) {
     if let Some(winch) = &mut line.winch {
         lay_on(winch.longest_mut(), seabed);
@@ -145,7 +145,7 @@ fn lay_on(line: &mut Line, seabed: Option<&Arc<Seabed>>) {
         .map(|(ea, length)| ea / length)
         .collect();
     if line.beam.is_some() {
-        return; // beams know a level seabed without friction only
+        return; // beams are modelled on a level seabed without friction only
     }
     if let (Some(contact), Some(seabed)) = (&mut line.nodes.contact, seabed) {
         contact.seabed = Some(seabed.clone());
@@ -157,7 +157,7 @@ fn lay_on(line: &mut Line, seabed: Option<&Arc<Seabed>>) {
     }
 }
 
-/// The current of the water, where it has one that is not zero at all heights.
+/// Current of the water; `None` if it is zero at all heights.
 fn current(water: &scene::Water) -> Option<Current> {
     let current = water.current.as_ref()?;
     let uniform = current.velocity.unwrap_or_default();
@@ -249,8 +249,8 @@ fn free_point(scene: &Scene, names: &Names, point: &scene::Point) -> FreePoint {
     }
 }
 
-/// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its
-/// lines' ends.
+/// Contact of a free point with the weight `dry` [N] in air that moves along `axes`; a point without weight rests on the ends of
+/// its lines.
 fn point_contact(
     (scene, names): (&Scene, &Names),
     point: &scene::Point,
@@ -280,8 +280,8 @@ pub(super) struct LineLaw {
     law: StretchLaw,
     axial_stiffness: f64,                 // EA [N], at rest
     viscoelastic: Option<[f64; 2]>,       // EA_d [N], BA_s [N s]
-    axial_damping: f64,                   // BA [N s], at least
-    numerical_damping: f64,               // BA over the length of a segment, at least [N s/m]
+    axial_damping: f64,                   // BA [N s], minimum
+    numerical_damping: f64,               // BA over the length of a segment, minimum [N s/m]
     mass: f64,                            // m [kg/m]
     displaced: f64,                       // ρA [kg/m]
     added_normal: f64,                    // ρA·C_an [kg/m]
@@ -296,13 +296,13 @@ pub(super) struct LineLaw {
     contact: Option<ContactCoefficients>, // [N/m², N s/m²]
 }
 
-/// ζ of a line at the elements that damping ratios refer to: as given, or the numerical one.
+/// Damping ratio ζ of a segment of the length that ratios refer to: as given, or the numerical one.
 fn damping_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     let open = numerical_ratio(scene, line_type);
     line_type.damping_ratio.unwrap_or(open)
 }
 
-/// Least ζ of every segment: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
+/// Minimum ζ of every segment: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
 fn numerical_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     let beam = line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam;
     if line_type.leaves_damping_open() && !beam {
@@ -312,7 +312,7 @@ fn numerical_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     }
 }
 
-/// EI of a cable's section [N m²]: as given or of its solid section, shared by its strands. Beams have their own.
+/// EI of a cable's section [N m²]: as given or of its solid section, divided among its strands; 0 for beams, which have their own.
 fn bending_stiffness(line_type: &LineType) -> f64 {
     if line_type.model == LineModel::Beam {
         return 0.0;
@@ -345,7 +345,7 @@ fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
     (law, stiffness.unwrap_or(0.0))
 }
 
-/// The law of a line type, whose damping ratio refers to segments of the length `damped` [m].
+/// Law of a line type, whose damping ratio refers to segments of the length `damped` [m].
 fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
     let displaced = line_type.diameter.map_or(0.0, |d| density * circle::area(d));
@@ -407,7 +407,7 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
     }
 }
 
-/// Line of the scene with this number of elements [-] where the scene leaves them open; damping ratios refer to
+/// Builds a line of the scene, with `elements` elements [-] if the scene leaves the number open; damping ratios refer to
 /// segments of the lengths `damped` [m], one per section.
 fn build_line(
     (scene, names): (&Scene, &Names),
@@ -463,7 +463,7 @@ fn build_line(
     }
     built.bending = line_bending(index, line, &parts, &built)?;
     if let Some(bending) = built.bending.as_mut().filter(|_| scene.solver.negative_tension) {
-        bending.compression_max.fill(0.0); // the springs of other codes carry none
+        bending.compression_max.fill(0.0); // springs of other codes carry no compression
     }
     if scene.meets_surface_between(line, names.ends(line)) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
@@ -472,8 +472,8 @@ fn build_line(
     Ok(built)
 }
 
-/// Lengthens the mesh of a line on a winch by all that can be paid out, and a segment more for paths that overshoot. Returns the first
-/// segment of the last section, and the number of segments at no change.
+/// Extends the mesh of a line on a winch by the maximum length paid out, and by one more segment for paths that overshoot. Returns the first
+/// segment of the last section and the number of segments at zero length change; `None` without a winch.
 fn winch_segments(
     index: usize,
     line: &scene::Line,
@@ -498,7 +498,7 @@ fn winch_segments(
     Ok(Some([before, before + within]))
 }
 
-/// Line on a winch at no change of its length, from the line with all that can be paid out.
+/// Line on a winch at zero length change, from the line at its maximum length.
 fn on_winch(
     index: usize,
     longest: Line,
@@ -546,7 +546,7 @@ fn releases(line: &scene::Line) -> Option<[Release; 2]> {
     (line.release.is_some() || line.failure.is_some()).then_some(releases)
 }
 
-/// Refuses a viscoelastic section next to one of another strain measure.
+/// Refuses a line with a viscoelastic section and a section of another strain measure.
 fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
     let viscoelastic = laws.iter().any(|law| law.viscoelastic.is_some());
     if viscoelastic && laws.iter().any(|law| law.law != StretchLaw::Engineering) {
@@ -577,7 +577,7 @@ fn pieces(line: &scene::Line) -> Vec<mesh::Piece> {
     line.sections.iter().map(piece).collect()
 }
 
-/// Joints and clamps of a line, where any of its sections has bending stiffness.
+/// Joints and clamps of a line, if any of its sections has bending stiffness.
 fn line_bending(
     index: usize,
     line: &scene::Line,
@@ -605,7 +605,7 @@ fn line_bending(
     )))
 }
 
-/// Takes the initial shape as the one without bending moments, where the scene selects it and gives one.
+/// Takes the initial shape as the one without bending moments, if the scene gives a shape and requests this.
 fn rest_as_it_lies(line: &mut Line, points: &[Point], rest_shape: RestShape) {
     let nodes = line.given_shape(line.ends.map(|point| points[point].reference));
     if let (Some(bending), Some(nodes), RestShape::Initial) = (&mut line.bending, nodes, rest_shape) {
@@ -679,7 +679,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_seabed: bool) -> Nodes 
     }
 }
 
-/// Sum of half of each neighbouring segment's share at every node.
+/// Lumps a quantity per length to the nodes, half of each neighbouring segment to a node.
 fn lumped(parts: &[SegmentPart], density: &dyn Fn(&LineLaw) -> f64) -> Vec<f64> {
     let mut nodes = vec![0.0; parts.len() + 1];
     for (i, part) in parts.iter().enumerate() {

@@ -17,7 +17,7 @@ impl Line {
         }
     }
 
-    /// Nodes on a parabola of a sag [m] between two ends [m], at equal parts of the chord and of the line.
+    /// Node positions [m] on a parabola with a sag [m] between two ends [m]; the fractions of the chord are those of the unstretched length.
     pub(crate) fn parabola(
         &self,
         [a, b]: [Vector3<f64>; 2],

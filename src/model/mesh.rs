@@ -1,31 +1,32 @@
 //! Elements of a line whose number the scene leaves open.
 //!
 //! The lumped two-node line has a relative error of about 0.8/n in the RMS of a fairlead tension (4 % at n = 20, 1.8
-//! % at n = 40 on a 900 m catenary), so n = 0.8/tolerance over the line where the scene gives no motion; where it
-//! does, [`crate::discretisation`] finds n. Of lines that meet at free points the longest gets n, and the others
-//! their share by length, at least one.
+//! % at n = 40 on a 900 m catenary), so n = 0.8/tolerance if the scene gives no motion; otherwise
+//! [`crate::discretisation`] selects n. The longest of the lines that meet at free points has n elements, the others a
+//! number in proportion to their length, at least one.
 //!
-//! Sections share a line's elements by length. Where that would put a long element next to one that is more than
-//! [`RATIO_MAX`] times shorter, the elements of the section with the long ones grow from the border on, as lengths
-//! h(s) with |dh/ds| ≤ [`GROWTH`]:
+//! Sections share a line's elements in proportion to length. Where this would put a long element next to one that is more than
+//! [`RATIO_MAX`] times shorter, the elements of the section with the long ones grow from the border, with lengths
+//! h(s) such that |dh/ds| ≤ [`GROWTH`]:
 //!
 //! h(s) = min(h_section, h_other + G·distance to it, h_fine + G·distance to its place).
 //!
-//! A cable that bends follows a clamp, and lifts off the seabed, over √(EI/T): h_fine is half of that at the touchdown. At a clamp it follows from
-//! the tolerance: elements of h there have an error of the curvature of 0.02 h²T/EI where the tension varies.
+//! A cable with bending stiffness adapts to a clamp, and lifts off the seabed, over the length √(EI/T): h_fine is half of that at the touchdown.
+//! At a clamp it follows from the tolerance: with elements of length h, the curvature there has an error of 0.02 h²T/EI where the tension varies.
 //!
-//! Sections with a given number of elements have elements of equal length, regardless of their neighbours; an open
-//! neighbour with longer elements adapts.
+//! Sections with a given number of elements have elements of equal length, regardless of their neighbours; a neighbour without a given
+//! number adapts if its elements are longer.
 //!
 //! Alternatives that were measured and rejected, on the public scenes and ten variants with n = 14 to 40:
 //! * elements of three times the length on the part that always lies on the seabed: 12 % less work on average, 26 % at most, and 8 % more
-//!   RMS error, 24 to 36 % on the lines that lie most: worse than fewer elements all along;
-//! * unstretched lengths shortened by (hκ)²/24 of the static curvature κ, chords for arcs: with 14 elements the position half-way along has 0.45 of its
-//!   error on oc3_catenary and 0.64 on oc4_chain, the tension 0.94 on average, with no gain where the line slackens. It moves the discrete equilibrium,
-//!   which is held to published values. With the compliance of that sag in the stiffness too, 1/EA' = 1/EA + (qh)²/(12T³) as Ernst (1965) has it for a
-//!   whole cable, q the transverse weight and T the tension at rest, the tension has 1.3 to 1.4 times its error on both (14 to 28 elements): a weight is
-//!   too slow to follow waves along the line. On taut_polyester neither does anything, (hκ)²/24 being 5e-8 with 10 elements: the curvature of that rope
-//!   comes from drag. Its tension was wrong at the end, see `dynamics/reaction.rs`.
+//!   RMS error, 24 to 36 % on the lines with the longest part on the seabed: worse than fewer elements along the whole line;
+//! * unstretched lengths shortened by (hκ)²/24 for the static curvature κ, chords instead of arcs: with 14 elements the error of the position at
+//!   mid-length falls to 0.45 of its value on oc3_catenary and 0.64 on oc4_chain, that of the tension to 0.94 on average, with no gain where the line
+//!   slackens. The discrete equilibrium moves, which is compared with published values. If the stiffness includes the compliance of that sag too,
+//!   1/EA' = 1/EA + (qh)²/(12T³) as given by Ernst (1965) for a whole cable, q being the transverse weight and T the tension at rest, the error of the
+//!   tension is 1.3 to 1.4 times as great on both (14 to 28 elements): a weight is too slow to follow waves along the line. On taut_polyester neither
+//!   has an effect, since (hκ)²/24 is 5e-8 with 10 elements: the curvature of that rope comes from drag. The error of its tension was at the end, see
+//!   `dynamics/reaction.rs`.
 //!
 //! Elements of half the length at the touchdown of a line without bending stiffness were measured with the same total
 //! number of elements (oc3 and oc4 scenes, n = 20 to 120, regularised contact): the error of the tension did not
@@ -35,15 +36,15 @@
 const ERROR_TIMES_ELEMENTS: f64 = 0.8;
 const LINE_ELEMENTS_MIN: f64 = 10.0;
 const LINE_ELEMENTS_MAX: f64 = 400.0;
-/// Length of an element over that of a shorter neighbour, from which it is graded [-].
+/// Ratio of the length of an element to that of a shorter neighbour above which lengths are graded [-].
 pub(crate) const RATIO_MAX: f64 = 1.5;
-/// Growth of the length of elements along the line [-]: e^0.25 from one to the next.
+/// Growth of the element length along the line [-]: a factor of e^0.25 from one element to the next.
 const GROWTH: f64 = 0.25;
-/// Elements of a section that is too short to be graded well [-].
+/// Maximum number of elements of a section that is too short to be graded well [-].
 const FEW: usize = 3;
-/// Points of the quadrature of 1/h in every element [-].
+/// Number of quadrature points of 1/h in every element [-].
 const QUADRATURE: f64 = 40.0;
-/// Factor by which fine elements are lengthened repeatedly, until the line has no more than its greatest number [-].
+/// Factor by which fine elements are lengthened, repeatedly, until the line has no more than the maximum number of elements [-].
 const COARSENING: f64 = 1.25;
 
 /// Section as used by the mesher.
@@ -51,20 +52,20 @@ const COARSENING: f64 = 1.25;
 pub(crate) struct Piece {
     /// Unstretched length [m].
     pub length: f64,
-    /// Number of elements, where the scene gives one.
+    /// Number of elements, if the scene gives one.
     pub elements: Option<usize>,
 }
 
 /// Place with short elements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Refinement {
-    /// From this arc length on [m].
+    /// Arc length at the start [m].
     pub from: f64,
-    /// Up to this one [m].
+    /// Arc length at the end [m].
     pub to: f64,
     /// Length of elements there [m].
     pub size: f64,
-    /// √(EI/T), over which the line bends there [m].
+    /// Length √(EI/T) over which the line bends there [m].
     pub bend: f64,
     /// Reason for the refinement.
     pub place: Place,
@@ -81,7 +82,7 @@ pub(crate) enum Place {
     Touchdown,
 }
 
-/// Elements of a line for a target error of fairlead tension [-], if it were alone.
+/// Number of elements of a single line for a target error of fairlead tension [-].
 pub(crate) fn line_elements(tolerance: f64) -> f64 {
     (ERROR_TIMES_ELEMENTS / tolerance).clamp(LINE_ELEMENTS_MIN, LINE_ELEMENTS_MAX)
 }
@@ -105,7 +106,7 @@ pub(crate) fn lengths(pieces: &[Piece], elements: f64, refinements: &[Refinement
         let first: Vec<Vec<f64>> = (0..pieces.len())
             .map(|index| field.piece(index, given(index)))
             .collect();
-        // sections of few elements stay as they are, and the others follow them
+        // sections of few elements stay as they are, and the others adapt to them
         for (piece, lengths) in field.pieces.iter_mut().zip(&first) {
             if lengths.len() <= FEW {
                 piece.size = (piece.to - piece.from) / lengths.len() as f64;
@@ -130,7 +131,7 @@ pub(crate) fn lengths(pieces: &[Piece], elements: f64, refinements: &[Refinement
     }
 }
 
-/// h(s) of a line.
+/// Element length h(s) along a line.
 struct Field<'a> {
     pieces: Vec<Uniform>,
     refinements: &'a [Refinement],
@@ -167,7 +168,7 @@ impl Field<'_> {
         }
     }
 
-    /// Lengths of the elements of a section: equal where its number is given or no refinement applies.
+    /// Lengths of the elements of a section: equal if their number is given or no shorter ones are needed.
     fn piece(&self, index: usize, given: bool) -> Vec<f64> {
         let piece = &self.pieces[index];
         let length = piece.to - piece.from;
@@ -177,7 +178,7 @@ impl Field<'_> {
         }
         let arc = self.counted(index);
         let whole = arc[arc.len() - 1].1;
-        // as far from one element too long as from one too short
+        // at √2, one element is too long by the same factor as two are too short
         let count = if whole <= std::f64::consts::SQRT_2 {
             1
         } else {
@@ -200,7 +201,7 @@ impl Field<'_> {
             })
     }
 
-    /// h at an arc length [m] without the section's own bound.
+    /// h at an arc length [m], without the bound of section `index` itself.
     fn least_near(&self, s: f64, index: usize) -> f64 {
         let away = |from: f64, to: f64| (from - s).max(s - to).max(0.0);
         let pieces = self.pieces.iter().enumerate();
@@ -230,7 +231,7 @@ impl Field<'_> {
     }
 }
 
-/// Arc length [m] before which `count` elements lie.
+/// Arc length [m] at the end of the first `count` elements.
 fn inverse(arc: &[(f64, f64)], count: f64) -> f64 {
     let next = arc
         .partition_point(|(_, before)| *before < count)
@@ -248,7 +249,7 @@ mod tests {
         Piece { length, elements }
     }
 
-    /// Greatest ratio of neighbouring elements [-].
+    /// Maximum ratio of neighbouring elements [-].
     fn steepest(mesh: &[Vec<f64>]) -> f64 {
         let all: Vec<f64> = mesh.iter().flatten().copied().collect();
         let ratios = all

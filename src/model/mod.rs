@@ -1,7 +1,7 @@
 //! The immutable discrete model: every line a chain of two-node segments with lumped nodes, every end at a point.
 //!
-//! [`Model::new`] is the only conversion from the user's [`Scene`]; the modules below do not read the scene. Physics
-//! that the scene does not contain is `None` here, not zero.
+//! [`Model::new`] is the only conversion from the user's [`Scene`], which the solver does not read. Physics that the
+//! scene does not contain is `None` here, not zero.
 
 mod beam;
 mod bending;
@@ -55,13 +55,13 @@ pub struct Model {
     pub gravity: f64,
     /// z of the seabed [m] if it is level; for others, z at the depth that the scene gives.
     pub seabed_level: Option<f64>,
-    /// Coulomb friction of the seabed along a line [-].
+    /// Coefficient of Coulomb friction of the seabed along a line [-].
     pub seabed_friction: f64,
-    /// Properties of the seabed other than a level plane without friction.
+    /// Shape and friction of the seabed; `None` for a level plane without friction.
     pub seabed: Option<Arc<Seabed>>,
-    /// The current, where the water flows.
+    /// Current, if there is one.
     pub current: Option<Current>,
-    /// The waves, where there are some.
+    /// Waves, if there are any.
     pub waves: Option<Waves>,
     /// True if a host gives velocity and acceleration of the water at the nodes.
     pub host_flow: bool,
@@ -111,13 +111,13 @@ pub struct Point {
     pub name: String,
     /// Reference position [m].
     pub reference: Vector3<f64>,
-    /// Origin of its motion.
+    /// Source of its motion.
     pub role: Role,
     /// Load in time.
     pub load: Option<PointForce>,
     /// Moment in time, on the end of a line that bends.
     pub moment: Option<PointMoment>,
-    /// Mass and submergence properties of a point that forces do not move; along no axis, and without contact.
+    /// Mass and submergence properties of a point that is not free; it moves along no axis and has no contact.
     pub own: Option<FreePoint>,
     /// (line, end) pairs that meet here.
     pub attached: Vec<(usize, End)>,
@@ -133,7 +133,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// Number of axes of the motion: x, y, z and of a vessel roll, pitch, yaw.
+    /// Number of axes of the motion: x, y, z and, for a vessel, roll, pitch, yaw.
     pub fn axes(self) -> usize {
         match self {
             Body::Point(_) => 3,
@@ -142,14 +142,14 @@ impl Body {
     }
 }
 
-/// Origin of a point's motion.
+/// Source of a point's motion.
 #[derive(Debug, Clone)]
 pub enum Role {
     /// Never moves.
     Fixed,
     /// The host moves it; the motion of the scene drives it in `moorline run`.
     Coupled {
-        /// Motion of the scene for it.
+        /// Motion given by the scene.
         motion: Option<Motion>,
     },
     /// Point fixed to a vessel, which the host moves.
@@ -159,16 +159,16 @@ pub enum Role {
         /// Place in the vessel's axes [m].
         arm: Vector3<f64>,
     },
-    /// Point moved by its path.
+    /// Moves along its path.
     Prescribed(Motion),
-    /// Forces move it.
+    /// Moves under forces.
     Free(FreePoint),
 }
 
 /// Forces on a point with mass in moving water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointForces {
-    /// Properties of the point at its height over the surface.
+    /// Properties of the point at its height above the surface.
     pub at: PointAtHeight,
     /// Velocity relative to the water [m/s].
     pub past: Vector3<f64>,
@@ -176,7 +176,7 @@ pub struct PointForces {
     pub sum: Vector3<f64>,
 }
 
-/// A point that forces move.
+/// Properties of a point that moves under forces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreePoint {
     /// Axes along which it moves.
@@ -185,9 +185,9 @@ pub struct FreePoint {
     pub mass: f64,
     /// Weight less buoyancy of the point, fully submerged [N].
     pub weight: f64,
-    /// Sphere of buoyancy, drag and added mass, where there is water and the point has a volume or a drag area.
+    /// Sphere of buoyancy, drag and added mass, if there is water and the point has a volume or a drag area.
     pub sphere: Option<Sphere>,
-    /// Contact, where there is a seabed in reach and it has a weight.
+    /// Contact, if a seabed is in reach and the point has weight.
     pub contact: Option<PointContact>,
 }
 
@@ -196,7 +196,7 @@ pub struct FreePoint {
 pub struct PointContact {
     /// z of the seabed [m].
     pub seabed_level: f64,
-    /// z below which the spring pushes [m]: such that the point lies on the seabed when it rests with all of its weight.
+    /// z below which the spring acts [m], such that the point lies on the seabed when it rests with its full weight.
     pub level: f64,
     /// Spring and damper.
     pub coefficients: ContactCoefficients,
@@ -237,22 +237,22 @@ pub struct Line {
     pub segments: Segments,
     /// n + 1 lumped nodes.
     pub nodes: Nodes,
-    /// Bending stiffness, where a line type has it.
+    /// Bending stiffness, if a line type has it.
     pub bending: Option<Bending>,
-    /// The water's surface, where the line may pierce it.
+    /// The water's surface, if the line may pierce it.
     pub surface: Option<Surface>,
     /// Sections for the closed-form catenary.
     pub sections: Vec<Section>,
     /// Shape at the start.
     pub initial: InitialShape,
-    /// Beam properties, where the line is a beam.
+    /// Beam properties, if the line is a beam.
     pub beam: Option<Beam>,
-    /// Conditions for the release of ends A and B, where one of them may be released.
+    /// Conditions for the release of ends A and B, if one of them may be released.
     pub release: Option<[Release; 2]>,
-    /// Winch at end B, where the line is on one; the line then has its present elements.
+    /// Winch at end B, if the line is on one; the line then has the elements that are paid out at present.
     pub winch: Option<Winch>,
-    /// True for ends whose load is taken as linear to the next node: the nodes are alike, and neither a winch nor a clamp at the other end
-    /// acts on the next one.
+    /// True for an end whose load is assumed to be linear to the next node: both nodes have the same properties per length, and neither a
+    /// winch nor a clamp at the other end acts on the next node.
     pub linear_load: [bool; 2],
 }
 
@@ -290,7 +290,7 @@ pub struct Segments {
     pub axial_damping: Vec<f64>,
     /// Strain measure.
     pub law: Vec<StretchLaw>,
-    /// Viscoelastic law in place of stiffness and damping in motion, where the line has a viscoelastic section; EA is
+    /// Viscoelastic law instead of stiffness and damping in motion, if the line has a viscoelastic section; EA is
     /// then the static one.
     pub viscoelastic: Option<Vec<Viscoelastic>>,
 }
@@ -310,13 +310,13 @@ pub struct Nodes {
     pub mass_tangent: Vec<f64>,
     /// Weight less buoyancy [N].
     pub weight: Vec<f64>,
-    /// Drag, where there is water and a coefficient.
+    /// Drag, if there is water and a coefficient.
     pub drag: Option<Drag>,
     /// Froude-Krylov force of accelerated water.
     pub froude_krylov: Option<FroudeKrylov>,
-    /// Contact, where there is a seabed in reach.
+    /// Contact, if a seabed is in reach.
     pub contact: Option<Contact>,
-    /// Mass-proportional damping α·m [N s/m], where a line type has it.
+    /// Mass-proportional damping α·m [N s/m], if a line type has it.
     pub mass_damping: Option<Vec<f64>>,
 }
 
@@ -358,7 +358,7 @@ impl FroudeKrylov {
         Slender::new(self.masses(node, 0.0)).times(acceleration, tangent)
     }
 
-    /// Mass across and along the line of this node with a `dry` part of it [-] out of the water [kg].
+    /// Mass across and along the line [kg] of a node, of which the part `dry` [-] is out of the water.
     #[inline]
     pub fn masses(&self, node: usize, dry: f64) -> [f64; 2] {
         [&self.normal, &self.tangent].map(|masses| (1.0 - dry) * masses[node])
@@ -370,8 +370,8 @@ impl FroudeKrylov {
 pub struct Contact {
     /// z of the seabed [m].
     pub seabed_level: f64,
-    /// z below which the springs push, per node [m]: the seabed, or the level of regularised contact at which a line at rest lies
-    /// on it.
+    /// z below which the springs act, per node [m]: the seabed, or with regularised contact the level at which a line at rest lies on
+    /// the seabed.
     pub level: Vec<f64>,
     /// Stiffness, per segment [N/m].
     pub stiffness: Vec<f64>,
@@ -381,9 +381,9 @@ pub struct Contact {
     pub weight: Vec<f64>,
     /// Mass across the line with the added mass, per segment [kg].
     pub mass: Vec<f64>,
-    /// True if contact acts at the nodes alone.
+    /// True if contact acts at the nodes only.
     pub at_nodes: bool,
-    /// Properties of the seabed other than a level plane without friction.
+    /// Shape and friction of the seabed; `None` for a level plane without friction.
     pub seabed: Option<Arc<Seabed>>,
     /// Stiffness along the seabed of a node that sticks [N/m]; empty without friction.
     pub stick: Vec<f64>,
@@ -463,7 +463,7 @@ impl Line {
         self.nodes.drag.is_some() && model.current.is_some()
     }
 
-    /// Segment `segment` at a strain [-] by its law alone, without its limit in compression.
+    /// Spring of segment `segment` at a strain [-], by its law alone, without its limit in compression.
     #[inline(always)]
     pub fn uncut_spring(&self, segment: usize, strain: f64) -> Spring {
         let ea = self.segments.axial_stiffness[segment];
@@ -476,7 +476,7 @@ impl Line {
         }
     }
 
-    /// Segment `segment` at a strain [-]: its law in tension, and its limit in compression.
+    /// Spring of segment `segment` at a strain [-]: its law in tension, and its limit in compression.
     #[inline(always)]
     pub fn spring(&self, segment: usize, strain: f64) -> Spring {
         let push = self.compression_max(segment);
@@ -484,7 +484,7 @@ impl Line {
         if strain > 0.0 || uncut.tension > -push {
             return uncut;
         }
-        let stiffness = self.uncut_spring(segment, 0.0).slope; // the push stops growing by the slope at no strain
+        let stiffness = self.uncut_spring(segment, 0.0).slope; // the limit is reached along the slope at zero strain
         let limit = -push / stiffness;
         Spring {
             strain,
@@ -494,7 +494,7 @@ impl Line {
         }
     }
 
-    /// Returns whether an end is held: by a point that forces do not move, and from which it is not released.
+    /// Returns whether an end is held: its point is not free, and the end is not released from it.
     pub fn is_held(&self, model: &Model, state: &LineState, end: End) -> bool {
         let side = usize::from(end == End::B);
         model.points[self.ends[side]].free().is_none() && !state.released[side]
@@ -505,7 +505,7 @@ impl Line {
         model.water_accelerates() && (self.nodes.drag.is_some() || self.nodes.froude_krylov.is_some())
     }
 
-    /// Number of nodes at which a host gives the flow [-]: all where it acts on the line, or on the body of a point at an end, else none.
+    /// Number of nodes at which a host gives the flow [-]: all if it acts on the line, or on the body of a point at an end, otherwise 0.
     pub fn flow_count(&self, model: &Model) -> usize {
         let on_end = || self.ends.iter().any(|&point| model.points[point].heaves());
         match model.host_flow && (self.heaves(model) || on_end()) {
@@ -522,8 +522,8 @@ impl Line {
         }
     }
 
-    /// Returns whether the leapfrogs can integrate the network: one strain measure, mass on every node, and no
-    /// bending stiffness.
+    /// Returns whether the leapfrogs can integrate the line: one strain measure, mass on every node and, if it bends, engineering
+    /// strain without Rayleigh damping or viscoelastic sections.
     pub fn serves_leapfrog(&self) -> bool {
         self.uniform_law().is_some()
             && self
@@ -534,13 +534,13 @@ impl Line {
             && (self.surface.is_none() || self.nodes.mass.iter().all(|mass| *mass > 0.0))
     }
 
-    /// Returns whether a leapfrog can take the joints of the line, and the compression of its segments.
+    /// Returns whether a leapfrog can integrate the joints of the line and the compression of its segments.
     fn joints_serve_leapfrog(&self, bending: &Bending) -> bool {
         let proportional = self.uniform_law() == Some(StretchLaw::Engineering);
         proportional && self.segments.viscoelastic.is_none() && bending.damping.is_none()
     }
 
-    /// Least mass of a node along any direction [kg]: in air where the line may pierce the water's surface.
+    /// Minimum mass of a node along any direction [kg]: in air if the line may pierce the water's surface.
     pub fn least_mass(&self, node: usize) -> f64 {
         let nodes = &self.nodes;
         match &self.surface {
@@ -549,7 +549,7 @@ impl Line {
         }
     }
 
-    /// The strain measure, where all segments share one.
+    /// Strain measure, if all segments share one.
     pub fn uniform_law(&self) -> Option<StretchLaw> {
         let first = &self.segments.law[0];
         self.segments
@@ -594,7 +594,7 @@ impl FreePoint {
         sphere.map_or(Vector3::zeros(), |sphere| sphere.drag(wetted, velocity))
     }
 
-    /// Force [N] of the accelerated water of waves, where the point is wet.
+    /// Force [N] of the water accelerated by waves on the submerged part of the point.
     #[inline]
     pub fn froude_krylov(&self, wetted: Wetted, orbit: &Orbit) -> Vector3<f64> {
         let sphere = self.sphere.as_ref();
@@ -602,7 +602,7 @@ impl FreePoint {
         mass * wetted.part * orbit.acceleration
     }
 
-    /// Forces at a place and velocity of the point under a `load` [N], in a current and waves.
+    /// Forces on the point in a `state` under a `load` [N], in a current and waves.
     pub fn forces(
         &self,
         load: Vector3<f64>,
@@ -631,7 +631,7 @@ impl FreePoint {
         }
     }
 
-    /// Greatest of the weight, the buoyancy and the difference of the two [N].
+    /// Maximum magnitude of the weight, the buoyancy and the difference of the two [N].
     pub fn weight_max(&self) -> f64 {
         let buoyancy = self.sphere.map_or(0.0, |sphere| sphere.buoyancy);
         (self.weight + buoyancy)
@@ -645,7 +645,7 @@ impl FreePoint {
         self.drag(self.at(z).wetted, -stream.velocity(z))
     }
 
-    /// Stiffness [N/m] and upward force [N] of the seabed's spring at a height z [m], at rest.
+    /// Stiffness [N/m] and upward force [N] of the seabed's spring at a height z [m], at rest; `None` without contact.
     pub fn seabed_at_rest(&self, z: f64) -> Option<(f64, f64)> {
         let contact = self.contact.as_ref()?;
         let (stiffness, penetration) = (contact.coefficients.stiffness, contact.level - z);
@@ -654,7 +654,7 @@ impl FreePoint {
 }
 
 impl Point {
-    /// The free point's properties, if it is free.
+    /// Properties of the point, if it is free.
     pub fn free(&self) -> Option<&FreePoint> {
         match &self.role {
             Role::Free(free) => Some(free),
@@ -675,7 +675,7 @@ impl Point {
         self.body().is_some_and(|body| body.sphere.is_some())
     }
 
-    /// Mass and submergence properties at the point, whether forces move it or not.
+    /// Mass and submergence properties of the point, whether it is free or not.
     pub fn body(&self) -> Option<&FreePoint> {
         self.free().or(self.own.as_ref())
     }
@@ -752,7 +752,7 @@ impl Model {
         self.lines.iter().position(|line| line.name == name)
     }
 
-    /// The current at time `t` [s], where the water flows.
+    /// Current at time `t` [s], if there is one.
     pub fn stream(&self, t: f64) -> Option<Stream<'_>> {
         self.current.as_ref().map(|current| current.at(t))
     }

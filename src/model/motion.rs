@@ -35,7 +35,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Translation alone.
+    /// Translational part.
     pub fn kinematics(&self) -> Kinematics {
         let first = |six: &Vector6<f64>| Vector3::new(six[0], six[1], six[2]);
         Kinematics {
@@ -47,7 +47,7 @@ impl Pose {
     }
 }
 
-/// A displacement in time.
+/// Displacement as a function of time.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Motion {
     /// ramp(t)·Σ amplitude·sin(ωt + phase) per axis.
@@ -61,22 +61,22 @@ pub enum Motion {
     Table(Vec<TableRow>),
 }
 
-/// Bounds of the first six derivatives of a motion, over their circular frequencies: Σ A ω^k.
+/// Bounds Σ A (ω + π/ramp)^k of the derivatives of a motion, up to order k = 6; Σ A ω^k without a ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derivatives {
-    /// Bound of displacement, of the sixth order [m/s⁶].
+    /// Bound of the sixth derivative of displacement [m/s⁶].
     sixth: f64,
-    /// Bounds of the sum of the angles, from the first order on [rad/s^k].
+    /// Bounds of the derivatives of the sum of the angles, from the first order on [rad/s^k].
     angles: [f64; 6],
 }
 
 impl Derivatives {
-    /// The bound of the sixth derivative of displacement times the sixth power of a span of time [s], in [m].
+    /// Bound of the sixth derivative of displacement times the sixth power of a time span [s], in [m].
     pub fn shift(&self, span: f64) -> f64 {
         self.sixth * span.powi(6)
     }
 
-    /// The bounds of the angles times the powers of a span of time [s], in [rad].
+    /// Bounds of the derivatives of the angles times the powers of a time span [s], in [rad].
     pub fn turn(&self, span: f64) -> [f64; 6] {
         let mut power = 1.0;
         self.angles.map(|bound| {
@@ -114,7 +114,7 @@ impl Motion {
         Motion::until(path, f64::INFINITY)
     }
 
-    /// Motion of a run that ends at a time [s]: a table that ends no earlier does not end at rest at its last row.
+    /// Motion of a run that ends at a time [s]. A table that extends to the end of the run does not come to rest at its last row.
     pub fn until(path: &MotionPath, end: f64) -> Motion {
         match path {
             MotionPath::Harmonic(motion) => Motion::Harmonic {
@@ -136,7 +136,7 @@ impl Motion {
         }
     }
 
-    /// Bounds of its derivatives; `None` where it is piecewise cubic.
+    /// Bounds of its derivatives; `None` if it is piecewise cubic.
     pub fn derivatives(&self) -> Option<Derivatives> {
         let Motion::Harmonic { axes, ramp } = self else {
             return None;
@@ -155,8 +155,8 @@ impl Motion {
         })
     }
 
-    /// Returns whether the path has no kink after the start of a span of time [s] and up to its end, beyond which
-    /// [`Self::pose`] continues.
+    /// Returns whether the path has no kink in a time span [s], excluding its start and including its end, from which
+    /// [`Self::pose`] follows the next piece.
     pub fn is_smooth(&self, [start, end]: [f64; 2]) -> bool {
         let within = |kink: f64| kink > start && kink <= end;
         match self {
@@ -224,7 +224,7 @@ fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
     }
 }
 
-/// Part of the time of a table by which a run may end later and still count as ending with it [-].
+/// Relative time by which a run may end after a table and still count as ending with it [-].
 const ROUNDING: f64 = 1e-9;
 
 fn table(rows: &[MotionRow], end: f64) -> Vec<TableRow> {
@@ -266,7 +266,7 @@ fn interpolate(rows: &[TableRow], t: f64) -> Pose {
         pose.acceleration[axis] = sample.curvature;
     }
     if ends {
-        (pose.value, pose.rate) = (high.displacement, high.slope); // to the last bit
+        (pose.value, pose.rate) = (high.displacement, high.slope); // exact to the last bit
     }
     pose
 }

@@ -1,10 +1,10 @@
 //! The water around lines and points at a time: the current by its profile, the waves by their kinematics at the
 //! nodes.
 //!
-//! Wave kinematics at the nodes are evaluated at both ends of a span of time, at the extrapolated places of the
-//! nodes, and follow cubics in between ([`Orbit::between`]). Every line and every point has a separate span. The
-//! spans are part of the state: a restored state continues to the last bit. Where a host gives the flow of the water, the
-//! spans hold that in place of waves, without an elevation.
+//! Wave kinematics at the nodes are evaluated at both ends of a time span, at the extrapolated positions of the
+//! nodes, and interpolated by cubics ([`Orbit::between`]). Every line and every point has a separate span. The
+//! spans are part of the state: a restored state continues identically to the last bit. If a host gives the flow of the
+//! water, the spans hold that flow instead of waves, without an elevation.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use super::{Model, State};
 use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 
-/// Motion of the water by waves.
+/// Motion of the water due to waves, or as a host gives it.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaveSpans {
     /// At the nodes of every line, in the order of the model.
@@ -22,12 +22,12 @@ pub struct WaveSpans {
     pub points: Vec<WaveSpan>,
 }
 
-/// Motion of the water by waves over a span of time.
+/// Motion of the water over a time span.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaveSpan {
     /// Start and end [s].
     pub times: [f64; 2],
-    /// Kinematics at both times, by node; empty where no waves act.
+    /// Kinematics at both times, by node; empty if no waves act.
     pub ends: [Vec<Orbit>; 2],
 }
 
@@ -60,7 +60,7 @@ impl Clone for WaveSpan {
 }
 
 impl WaveSpan {
-    /// At rest in one kind of motion from a time on [s].
+    /// Span of zero length at a time [s], with the given motion at the nodes.
     pub fn begun(time: f64, nodes: Vec<Orbit>) -> WaveSpan {
         WaveSpan {
             times: [time; 2],
@@ -73,7 +73,7 @@ impl WaveSpan {
         self.times[1] - self.times[0]
     }
 
-    /// Motion at the nodes at time `t` [s]; `None` where no waves act.
+    /// Motion at the nodes at time `t` [s]; `None` if no waves act.
     pub fn at(&self, t: f64) -> Option<WavesAlong<'_>> {
         let [before, after] = &self.ends;
         (!before.is_empty()).then_some(WavesAlong {
@@ -83,7 +83,7 @@ impl WaveSpan {
         })
     }
 
-    /// Motion at a point, of one node, at time `t` [s].
+    /// Motion at a point, whose span has one node, at time `t` [s].
     pub fn at_point(&self, t: f64) -> Orbit {
         let waves = self.at(t);
         waves.map_or_else(Orbit::default, |waves| waves.at(0))
@@ -110,9 +110,9 @@ impl WavesAlong<'_> {
 /// The water along a line at one time.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct WaterAlong<'a> {
-    /// The current, where the water flows.
+    /// Current, if there is one.
     pub stream: Option<Stream<'a>>,
-    /// Waves along the line, where they act on it.
+    /// Waves along the line, if they act on it.
     pub waves: Option<WavesAlong<'a>>,
 }
 
@@ -161,7 +161,7 @@ impl Model {
 }
 
 impl State {
-    /// Motion of the water by waves at a free point at time `t` [s], where there are waves.
+    /// Motion of the water at a point at time `t` [s], if there are waves or a host gives the flow.
     pub fn waves_at_point(&self, point: usize, t: f64) -> Option<Orbit> {
         let waves = self.waves.as_ref();
         waves.map(|waves| waves.points[point].at_point(t))

@@ -14,13 +14,13 @@ pub struct Seabed {
     pub ground: Ground,
     /// True if the shape is a level plane.
     pub level: bool,
-    /// Friction, where there is any.
+    /// Friction, if there is any.
     pub friction: Option<Friction>,
 }
 
 impl Seabed {
-    /// Position of a node at a place [m] relative to the level from which the seabed pushes it, `lift` [m] above the seabed
-    /// along its normal.
+    /// Position of a node at a place [m] relative to the level at which contact begins, `lift` [m] above the seabed along its
+    /// normal.
     pub fn touch(&self, place: Vector3<f64>, lift: f64) -> Touch {
         let touch = self.ground.touch(place);
         Touch {
@@ -70,7 +70,7 @@ impl Contact {
         before.into_iter().chain(after)
     }
 
-    /// Position of a node at a place [m] relative to the level from which the seabed pushes it.
+    /// Position of a node at a place [m] relative to the level at which contact begins.
     pub fn touch(&self, node: usize, place: Vector3<f64>) -> Touch {
         match &self.seabed {
             Some(seabed) => seabed.touch(place, self.lift(node)),
@@ -83,7 +83,7 @@ impl Contact {
         }
     }
 
-    /// Penetration of a node at a place [m] and the normal of the seabed there.
+    /// Penetration of a node at a place [m] and the normal of the seabed there [-].
     pub fn stand(&self, node: usize, place: Vector3<f64>) -> (f64, Vector3<f64>) {
         match &self.seabed {
             Some(seabed) => {
@@ -94,7 +94,7 @@ impl Contact {
         }
     }
 
-    /// Force of springs and dampers [N] on a node among nodes at places [m] with velocities [m/s], without friction.
+    /// Force of springs and dampers [N] on a node, without friction, of a line with nodes at places [m] with velocities [m/s].
     pub fn push(
         &self,
         node: usize,
@@ -145,13 +145,13 @@ impl PointContact {
 }
 
 impl Line {
-    /// The seabed under the line, where it is more than a level plane without friction.
+    /// Contact and seabed of the line, if the seabed is more than a level plane without friction.
     pub fn seabed(&self) -> Option<(&Contact, &Seabed)> {
         let contact = self.nodes.contact.as_ref()?;
         Some((contact, contact.seabed.as_deref()?))
     }
 
-    /// The friction under the line.
+    /// Friction of the seabed under the line, if there is any.
     pub fn friction(&self) -> Option<&Friction> {
         self.seabed()?.1.friction.as_ref()
     }
@@ -163,7 +163,7 @@ impl Model {
         self.seabed.as_ref().is_none_or(|seabed| seabed.level)
     }
 
-    /// The friction of the seabed.
+    /// Friction of the seabed, if there is any.
     pub fn friction(&self) -> Option<&Friction> {
         self.seabed.as_ref()?.friction.as_ref()
     }

@@ -14,7 +14,7 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Lines, in the order of the model.
     pub lines: Vec<LineState>,
-    /// Wave kinematics at the nodes around this time, where there are waves.
+    /// Motion of the water at the nodes around this time, if there are waves or a host gives the flow.
     pub waves: Option<WaveSpans>,
 }
 
@@ -33,7 +33,7 @@ pub struct PointState {
     pub spin: Vector3<f64>,
     /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
     pub half_step: [Vector3<f64>; 2],
-    /// Place at which friction on the point would vanish [m], where there is friction.
+    /// Position at which friction on the point would vanish [m], if there is friction.
     pub anchor: Option<Vector3<f64>>,
 }
 
@@ -46,9 +46,9 @@ pub struct LineState {
     pub velocity: Vec<Vector3<f64>>,
     /// Accelerations [m/s²]; kept by the implicit integrators only.
     pub acceleration: Vec<Vector3<f64>>,
-    /// Memory of the leapfrogs from the steps before.
+    /// Memory of the leapfrogs from previous steps.
     pub half_step: HalfStep,
-    /// Remaining data of the closed-form catenary of the nodes; kept by quasi-static networks only.
+    /// Data of the closed-form catenary in addition to its nodes; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
     /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
     pub viscoelastic: Vec<f64>,
@@ -56,16 +56,16 @@ pub struct LineState {
     pub released: [bool; 2],
     /// Frames and rates of the nodes of a beam.
     pub beam: Option<BeamState>,
-    /// Places of the nodes at which the friction of the seabed would vanish [m]; empty without friction.
+    /// Positions of the nodes at which the friction of the seabed would vanish [m]; empty without friction.
     pub anchor: Vec<Vector3<f64>>,
-    /// Position of the line's winch, where it is on one.
+    /// State of the line's winch, if it is on one.
     pub winch_state: Option<WinchState>,
 }
 
-/// Position of the winch of a line.
+/// State of the winch of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WinchState {
-    /// Length paid out beyond that at no change [m].
+    /// Length change [m], positive for line paid out.
     pub change: f64,
     /// Rate of the length change [m/s].
     pub rate: f64,
@@ -87,13 +87,13 @@ impl WinchState {
     }
 }
 
-/// Tensions of a closed-form catenary, which do not follow from its nodes: their chords are shorter than the arcs
-/// between them, which on a stiff line hides all of the strain.
+/// Data of a closed-form catenary that do not follow from its nodes: the chords between nodes are shorter than the arcs, which can hide
+/// the whole strain of a stiff line.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClosedForm {
     /// Effective tension at every node [N].
     pub tension: Vec<f64>,
-    /// Horizontal part of the tension [N]: grows towards end B on a seabed with friction, and nowhere else.
+    /// Horizontal part of the tension [N], which grows towards end B on a seabed with friction and is constant elsewhere.
     pub horizontal: Vec<f64>,
     /// Forces of the line on the points at ends A and B [N].
     pub end_force: [Vector3<f64>; 2],
@@ -101,27 +101,27 @@ pub struct ClosedForm {
     pub laid_length: f64,
     /// Stretched length [m].
     pub stretched_length: f64,
-    /// Greatest vertical distance below the chord between the ends [m].
+    /// Maximum vertical distance below the chord between the ends [m].
     pub sag: f64,
-    /// Strain energy of the whole line, held ends included [J].
+    /// Strain energy of the whole line, prescribed ends included [J].
     pub axial_energy: f64,
-    /// Potential energy of its weight above z = 0, held ends included [J].
+    /// Potential energy of its weight above z = 0, prescribed ends included [J].
     pub gravitational_energy: f64,
 }
 
-/// Memory of the leapfrogs. Empty where another integrator runs.
+/// Memory of the leapfrogs. Empty with other integrators.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HalfStep {
     /// Velocities at t − Δt/2 [m/s].
     pub velocity: Vec<Vector3<f64>>,
     /// Velocities one step before those [m/s].
     pub velocity_before: Vec<Vector3<f64>>,
-    /// The last step and the one before [s]; 0 before the first step, where `velocity` is at t.
+    /// Lengths of the last step and the one before [s]; 0 before the first step, when `velocity` is at t.
     pub steps: [f64; 2],
     /// Tensions of the segments' springs at t − Δt and t − 2Δt, negative in compression [N]; kept by the
     /// axial-implicit leapfrog only.
     pub tension: [Vec<f64>; 2],
-    /// Slow strains of viscoelastic segments at t − Δt/2 [-]; none before the first step.
+    /// Slow strains of viscoelastic segments at t − Δt/2 [-]; empty before the first step.
     pub viscoelastic: Vec<f64>,
 }
 
@@ -160,7 +160,7 @@ impl PointState {
         }
     }
 
-    /// The point in its present position and motion, as if it were not accelerated.
+    /// The point in its present position and motion, with zero acceleration.
     pub fn without_acceleration(self) -> PointState {
         PointState {
             acceleration: Vector3::zeros(),
@@ -170,7 +170,7 @@ impl PointState {
 }
 
 impl PointState {
-    /// Point at rest at the place of a held point.
+    /// Point at rest at a prescribed position and orientation.
     pub fn held(kinematics: &Kinematics) -> PointState {
         PointState {
             orientation: kinematics.orientation,
@@ -180,7 +180,7 @@ impl PointState {
 }
 
 impl LineState {
-    /// Velocities from which a leapfrog continues [m/s], and the time from then to the positions [s].
+    /// Velocities from which a leapfrog continues [m/s], and the time from these to the positions [s].
     pub fn velocities_before(&self) -> (&[Vector3<f64>], f64) {
         let memory = &self.half_step;
         match memory.is_unset() {
@@ -196,8 +196,8 @@ impl LineState {
         nodes.map(move |(r, v)| r[1] - r[0] - lag * (v[1] - v[0]))
     }
 
-    /// Adds the state of a beam, at rest at its positions, to a line that is a beam; its points have turned by
-    /// `attitude` [-].
+    /// Adds the state of a beam, at rest at its positions, if the line is a beam; `attitude` [-] is the rotation of
+    /// its points.
     pub fn become_beam(&mut self, line: &Line, attitude: [Matrix3<f64>; 2]) {
         self.beam = line
             .beam

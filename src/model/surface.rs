@@ -1,4 +1,4 @@
-//! The water's surface over a line: the buoyancy that its nodes lose where they are out of the water.
+//! The water's surface over a line: the buoyancy that its nodes lose as they come out of the water.
 
 use nalgebra::Vector3;
 
@@ -24,9 +24,9 @@ pub struct Surface {
 /// Effect of the surface on a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Dry {
-    /// Dry part of the node's tributary length [-].
+    /// Part of the node's tributary length that is out of the water [-].
     pub part: f64,
-    /// Slope of the dry weight with the node's height [1/m], not negative.
+    /// Derivative of that part with respect to the node's height [1/m], not negative.
     pub slope: f64,
     /// Buoyancy that the node loses [N].
     pub weight: f64,
@@ -53,36 +53,36 @@ impl Surface {
         }
     }
 
-    /// Height of a node at `position` [m] over the water at rest [m].
+    /// Height of a node at `position` [m] above the water at rest [m].
     #[inline]
     pub fn height(&self, position: &Vector3<f64>) -> f64 {
         position.z
     }
 
-    /// Heights of the nodes of segment `i` over the water [m].
+    /// Heights of the nodes of segment `i` above the water [m].
     #[inline]
     pub fn heights(&self, i: usize, position: &[Vector3<f64>], water: WaterAlong) -> [f64; 2] {
         [i, i + 1].map(|node| self.height(&position[node]) - water.elevation(node))
     }
 
-    /// Dry part of segment `i`, taken as having a radius of at least `breadth` [m], between ends at `heights` [m]
-    /// over the water; `None` where all of it is under water.
+    /// Part of segment `i` that is out of the water, with a radius of at least `breadth` [m], between ends at `heights` [m]
+    /// above the water; `None` if the segment is fully submerged.
     #[inline]
     pub fn segment(&self, i: usize, heights: [f64; 2], breadth: f64) -> Option<Emerged> {
         surface::emerged(self.radius[i].max(breadth), heights)
     }
 
-    /// Energy [J] of the buoyancy that segment `i` loses between ends at `heights` [m].
+    /// Energy [J] of the buoyancy that segment `i` loses between ends at `heights` [m] above the water.
     pub fn energy(&self, i: usize, heights: [f64; 2]) -> f64 {
         2.0 * self.buoyancy[i] * surface::energy(self.radius[i], heights)
     }
 
-    /// Dry part of node `i` of a line at `position` [m] in calm water.
+    /// Effect of the surface on node `i` of a line with nodes at `position` [m] in calm water.
     pub fn node(&self, i: usize, position: &[Vector3<f64>]) -> Dry {
         self.node_in(WaterAlong::default(), i, position)
     }
 
-    /// Dry part of node `i` of a line at `position` [m] in the `water`.
+    /// Effect of the surface on node `i` of a line with nodes at `position` [m] in the `water`.
     pub fn node_in(&self, water: WaterAlong, i: usize, position: &[Vector3<f64>]) -> Dry {
         let mut dry = Dry::default();
         let mut add = |segment: usize, end: usize| {
@@ -103,13 +103,13 @@ impl Surface {
         dry
     }
 
-    /// Returns whether any part of a line at `position` [m] is out of the water.
+    /// Returns whether any part of a line with nodes at `position` [m] is out of the water at rest.
     pub fn is_pierced(&self, position: &[Vector3<f64>]) -> bool {
         let mut segments = position.windows(2).zip(&self.radius);
         segments.any(|(pair, radius)| self.height(&pair[0]).max(self.height(&pair[1])) > -radius)
     }
 
-    /// Greatest stiffness of a node in heave due to the surface [N/m].
+    /// Maximum heave stiffness of a node due to the surface [N/m].
     pub fn stiffness_max(&self, node: usize) -> f64 {
         let of = |segment: usize| self.buoyancy[segment] * slope_max(self.radius[segment]);
         let below = node.checked_sub(1).map_or(0.0, of);
@@ -119,7 +119,7 @@ impl Surface {
 }
 
 impl Nodes {
-    /// Mass across and along the line [kg] of node `i` with a `dry` part of it [-] out of the water.
+    /// Mass across and along the line [kg] of node `i`, of which the part `dry` [-] is out of the water.
     #[inline]
     pub fn masses(&self, i: usize, dry: f64) -> [f64; 2] {
         let air = self.mass[i];

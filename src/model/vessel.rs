@@ -16,9 +16,9 @@ pub struct Vessel {
     pub attitude: Vector3<f64>,
     /// Points that it carries.
     pub points: Vec<usize>,
-    /// Networks with a line that ends at one of these.
+    /// Networks with a line that ends at one of these points.
     pub networks: Vec<usize>,
-    /// Motion of the scene for it.
+    /// Motion given by the scene.
     motion: Option<Motion>,
     /// Order of the angles of that motion.
     order: Order,
@@ -56,7 +56,7 @@ impl Vessel {
         }
     }
 
-    /// The scene's motion for it.
+    /// Motion given by the scene, if any.
     pub fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
     }
@@ -67,8 +67,8 @@ impl Vessel {
         self.turned(Order::Zyx, self.attitude, pose)
     }
 
-    /// Frame displaced by a pose of the scene's motion, whose angles may be of the order X-Y-Z, as the reference
-    /// angles then are.
+    /// Frame displaced by a pose of the scene's motion. The angles of the pose, and the reference angles to which they are added, have the order
+    /// of that motion, Z-Y-X or X-Y-Z.
     pub fn frame_of_motion(&self, pose: &Pose) -> Frame {
         let reference = match self.order {
             Order::Zyx => self.attitude,
@@ -105,7 +105,7 @@ impl Vessel {
         }
     }
 
-    /// Place of a point of the body at `arm` [m] in the reference position [m].
+    /// Position [m] of a point of the body at `arm` [m] in body axes, with the vessel at its reference position and attitude.
     pub fn reference_place(&self, arm: Vector3<f64>) -> Vector3<f64> {
         self.position + self.reference_rotation * arm
     }

@@ -1,13 +1,13 @@
 //! Lines whose end B is on a winch: their elements at any length paid out.
 //!
-//! The longest line is the one with all that can be paid out, in segments of nominal lengths l_i. With n segments out, the last one has the length
+//! The longest line is the line at its maximum length, with segments of nominal lengths l_i. With n segments paid out, the last one has the length
 //!
 //!   e = S + ΔL − Σ_{i<n−1} l_i,
 //!
-//! S being the length of the line at no change ΔL, and all others have their nominal lengths. Paid out beyond
-//! [`LONGEST`]·l it splits in two, of which the first has its nominal length; hauled in below [`SHORTEST`]·l it
-//! merges with its neighbour. The range exceeds l, so that a winch that oscillates does not split and merge all the
-//! time.
+//! where S is the length of the line at zero length change ΔL; all other segments have their nominal lengths. If the last segment grows
+//! beyond [`LONGEST`]·l, it splits in two, of which the first has its nominal length; if it shrinks below [`SHORTEST`]·l, it
+//! merges with its neighbour. The range exceeds l, so that an oscillating winch does not split and merge segments all
+//! the time.
 //!
 //! The masses and coefficients of the nodes are linear in the adjacent lengths. Contact keeps the penetration of a
 //! segment of nominal length.
@@ -15,31 +15,31 @@
 use super::{Contact, Line, Nodes};
 use crate::scene::TimeFunction;
 
-/// Length of the end segment above which it splits, over its nominal one [-].
+/// Length of the end segment above which it splits, relative to its nominal length [-].
 pub const LONGEST: f64 = 1.5;
-/// Length of the end segment below which it merges with its neighbour, over its nominal one [-].
+/// Length of the end segment below which it merges with its neighbour, relative to its nominal length [-].
 pub const SHORTEST: f64 = 0.4;
-/// Least length of the end segment without a neighbour to merge with, over its nominal one [-].
+/// Minimum length of an end segment without a neighbour to merge with, relative to its nominal length [-].
 const LAST: f64 = 0.1;
-/// Least number of segments of a line.
+/// Minimum number of segments of a line.
 const SEGMENTS_MIN: usize = 2;
 
 /// The winch at end B of a line.
 #[derive(Debug, Clone)]
 pub struct Winch {
-    /// The line with all that can be paid out.
+    /// The line at its maximum length.
     longest: Box<Line>,
-    /// Unstretched length at no change [m].
+    /// Unstretched length at zero length change [m].
     length: f64,
-    /// Segments at no change.
+    /// Number of segments at zero length change.
     nominal: usize,
-    /// Segments that cannot be hauled in.
+    /// Number of segments that cannot be hauled in.
     least: usize,
-    /// Greatest length that is paid out [m].
+    /// Maximum length that is paid out [m].
     pub length_max: f64,
-    /// Greatest speed [m/s].
+    /// Maximum speed [m/s].
     pub speed_max: Option<f64>,
-    /// Length paid out in time [m] where the scene's motion is followed.
+    /// Length paid out in time [m] if the scene's motion is followed.
     pub path: Option<TimeFunction>,
 }
 
@@ -53,7 +53,7 @@ pub enum Passage {
 }
 
 impl Winch {
-    /// Winch on the line `longest`, with all that can be paid out, of whose segments `nominal` are out at no change;
+    /// Winch on the line `longest`, at its maximum length, of which `nominal` segments are paid out at zero length change;
     /// the last section begins at segment `first`.
     pub(super) fn new(longest: Line, [first, nominal]: [usize; 2], winch: &crate::scene::Winch) -> Winch {
         Winch {
@@ -67,12 +67,12 @@ impl Winch {
         }
     }
 
-    /// The line with all that can be paid out.
+    /// The line at its maximum length.
     pub fn longest(&self) -> &Line {
         &self.longest
     }
 
-    /// The same, for modification.
+    /// The line at its maximum length, for modification.
     pub(super) fn longest_mut(&mut self) -> &mut Line {
         &mut self.longest
     }
@@ -89,7 +89,7 @@ impl Winch {
         left.max(LAST * self.longest.segments.length[count - 1])
     }
 
-    /// Change of the last of `count` segments at a length change [m].
+    /// Split or merge that is due for the last of `count` segments at a length change [m].
     pub fn passage(&self, count: usize, change: f64) -> Option<Passage> {
         let part = self.end_length(count, change) / self.longest.segments.length[count - 1];
         if part > LONGEST && count < self.longest.segment_count() {
@@ -115,7 +115,7 @@ impl Winch {
 }
 
 impl Line {
-    /// Greatest number of nodes of the line.
+    /// Maximum number of nodes of the line.
     pub fn nodes_max(&self) -> usize {
         let winch = self.winch.as_ref();
         winch.map_or(self.nodes.arc.len(), |winch| winch.longest.nodes.arc.len())
@@ -153,7 +153,7 @@ impl Line {
         self.set_length_change(change);
     }
 
-    /// Sets the length of the last segment by the length change of a winch [m].
+    /// Sets the length of the last segment from the length change of a winch [m].
     pub fn set_length_change(&mut self, change: f64) {
         let Some(winch) = self.winch.take() else {
             return;
@@ -164,7 +164,7 @@ impl Line {
         self.segments.length[count - 1] = end;
         self.nodes.arc[count] = self.nodes.arc[count - 1] + end;
         for (values, of) in extensive(&mut self.nodes, &longest.nodes) {
-            let density = of[last] / longest.nodes.length[last]; // the end of the longest line is half a segment of the section at the winch
+            let density = of[last] / longest.nodes.length[last]; // the end node of the longest line has half a segment of the section at the winch
             values[count - 1] = of[count - 1] + 0.5 * (end - nominal) * density;
             values[count] = 0.5 * end * density;
         }

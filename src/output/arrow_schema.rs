@@ -30,7 +30,7 @@ const fn slot(number: VOffsetT) -> VOffsetT {
     4 + 2 * number
 }
 
-/// The schema of columns as an encapsulated message in base64.
+/// Returns the schema of columns as an encapsulated message in base64.
 pub(super) fn encoded(columns: &[Column], is_single: bool) -> String {
     let mut builder = FlatBufferBuilder::new();
     let fields: Vec<Table> = columns
@@ -79,7 +79,7 @@ fn field(builder: &mut FlatBufferBuilder<'_>, column: &Column, is_single: bool) 
     builder.end_table(start)
 }
 
-/// Type of a column: the member of the union, and its table.
+/// Type of a column: the union member and its table.
 fn kind(builder: &mut FlatBufferBuilder<'_>, form: &Form, is_single: bool) -> (u8, Table) {
     let start = builder.start_table();
     let member = match form {
@@ -98,7 +98,7 @@ fn kind(builder: &mut FlatBufferBuilder<'_>, form: &Form, is_single: bool) -> (u
     (member, builder.end_table(start))
 }
 
-/// Source: RFC 4648, section 4.
+/// Encodes bytes in base64. Source: RFC 4648, section 4.
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

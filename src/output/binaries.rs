@@ -24,7 +24,7 @@ const MAGIC: &[u8] = b"PK\x03\x04";
 pub struct Binaries(Vec<(Platform, Vec<u8>)>);
 
 impl Binaries {
-    /// Libraries in the folder of the running program.
+    /// Returns the libraries in the folder of the running program.
     ///
     /// # Errors
     /// As for [`Binaries::of_folder`].
@@ -32,10 +32,10 @@ impl Binaries {
         Binaries::of_folder(&folder_of_the_program()?)
     }
 
-    /// Libraries in a folder: its archive, or else the library for this platform.
+    /// Returns the libraries in a folder: those of its archive, or else the library for this platform.
     ///
     /// # Errors
-    /// A file that is missing or cannot be read.
+    /// A file is missing or cannot be read.
     pub fn of_folder(folder: &Path) -> Result<Binaries, PackageError> {
         let archive = folder.join(ARCHIVE);
         match archive.is_file() {
@@ -44,10 +44,10 @@ impl Binaries {
         }
     }
 
-    /// Libraries in a file, as for [`Binaries::of_bytes`].
+    /// Returns the libraries in a file, as [`Binaries::of_bytes`] does.
     ///
     /// # Errors
-    /// A file that cannot be read.
+    /// The file cannot be read.
     pub fn read(path: &Path) -> Result<Binaries, PackageError> {
         let bytes = fs::read(path).map_err(|problem| PackageError::File {
             path: path.to_path_buf(),
@@ -56,10 +56,10 @@ impl Binaries {
         Binaries::of_bytes(&bytes)
     }
 
-    /// Libraries of an archive, or a library for this platform.
+    /// Returns the libraries of an archive, or a library for this platform.
     ///
     /// # Errors
-    /// An archive that is damaged or holds something else, or a platform without a name in FMI.
+    /// The archive is damaged or has other content, or FMI has no name for the platform.
     pub fn of_bytes(bytes: &[u8]) -> Result<Binaries, PackageError> {
         if !bytes.starts_with(MAGIC) {
             let this = Platform::this().ok_or(PackageError::Platform)?;
@@ -106,7 +106,7 @@ fn folder_of_the_program() -> Result<PathBuf, PackageError> {
     Ok(program.parent().unwrap_or(Path::new(".")).to_path_buf())
 }
 
-/// FMU library for this platform in a folder, or one folder up, the place for test programs.
+/// FMU library for this platform in a folder or, for test programs, one folder up.
 fn library_in(folder: &Path) -> Result<PathBuf, PackageError> {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
     let name = format!("{DLL_PREFIX}moorline_fmu{DLL_SUFFIX}");

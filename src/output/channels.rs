@@ -1,7 +1,7 @@
-//! Output channels by MoorDyn's names, as columns next to moorline's.
+//! Output channels with MoorDyn's names, in columns next to those of moorline.
 //!
-//! As in MoorDyn 2.7, the tension of an inner node is the mean of the two adjacent segments, that of an end node the magnitude of its force on the point,
-//! and the force on a point includes the point's own weight, buoyancy and drag. None of them includes inertia. Positions are global.
+//! Tensions of nodes are those of segments, as in MoorDyn-C: at an end, the tension of the last segment; at an inner node, the magnitude of the mean
+//! of the two adjacent tension vectors. Positions are global. Forces at a point are those of [`Simulation::end_force`].
 //!
 //! Source: MoorDyn 2.7.2, files and functions compared on one deck (`python_tests/test_libmoordyn.py`).
 
@@ -39,7 +39,7 @@ impl Channels {
     /// Finds the sources of a scene's channels in its model.
     ///
     /// # Errors
-    /// The first channel whose name is unknown or refers to something that the model does not have.
+    /// Names the first channel whose name is unknown or refers to a part that the model does not have.
     pub fn new(scene: &Scene, model: &Model) -> Result<Channels, SceneError> {
         let found = scene.output.channels.iter().enumerate().map(|(index, name)| {
             let source = Channel::parse(name).and_then(|channel| source(&channel, model));
@@ -52,7 +52,7 @@ impl Channels {
         })
     }
 
-    /// A column for every channel.
+    /// Columns of the channels.
     pub fn columns(&self) -> impl Iterator<Item = Column> {
         self.list.iter().map(|(column, _)| column.clone())
     }
@@ -189,8 +189,8 @@ mod tests {
         );
     }
 
-    /// A taut rope hanging straight down: T(z) is the weight below, so that the node next to the end has the weight of a segment less than the point
-    /// above it.
+    /// A taut rope hanging straight down: T(z) is the weight below, so that the tension of the last segment is less than the force on the point above
+    /// it by half a segment's weight.
     #[test]
     fn a_tension_at_an_end_is_the_force_on_the_point_and_one_between_that_of_the_segments() {
         let (mut scene, _) = simulation(&["FairTen1", "AnchTen1", "L1N1T", "L1N9T", "L1N10T"]);

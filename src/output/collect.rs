@@ -9,11 +9,11 @@ use crate::scene::Scene;
 use crate::scene::table::Choice;
 use crate::simulation::{NodeBending, Simulation};
 
-/// Points of a catenary's drawn shape [-].
+/// Number of points of a catenary's drawn shape [-].
 const CATENARY_POINTS: usize = 201;
 
-/// Record of a simulation: lines, points and surroundings, with columns for a planned number of rows and no rows yet. `still` is the same in static
-/// equilibrium, if there is one: see [`Simulation::in_equilibrium`].
+/// Returns the record of a simulation: lines, points and surroundings, with columns for a planned number of rows and no rows yet. `still` is the
+/// simulation in static equilibrium, if there is one: see [`Simulation::in_equilibrium`].
 pub fn record(
     scene: &Scene,
     simulation: &Simulation,
@@ -67,7 +67,7 @@ fn line_at_rest(simulation: &Simulation, line: usize) -> StaticLine {
     }
 }
 
-/// Greatest curvature and moment of a line, where it has bending stiffness.
+/// Greatest curvature and moment of a line, if it has bending stiffness.
 fn greatest_bending(simulation: &Simulation, line: usize) -> Option<NodeBending> {
     let nodes = simulation.bending(line)?;
     let greatest = |value: fn(&NodeBending) -> f64| nodes.iter().map(value).fold(0.0, f64::max);
@@ -113,7 +113,7 @@ pub fn frame(simulation: &Simulation, time: f64) -> Frame {
     }
 }
 
-/// Energy and momenta of beams in free flight at the present time, `time` [s]; `None` where a line has a support.
+/// Energy and momenta of beams in free flight at the present time, `time` [s]; `None` if any line has a support or is not a beam.
 pub fn flight(simulation: &Simulation, time: f64) -> Option<Flight> {
     let model = simulation.model();
     let free = |line: &Line| {

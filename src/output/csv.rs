@@ -1,9 +1,8 @@
 //! Tables as comma-separated values.
 //!
-//! `results.csv` has one plain header row (`time,fairlead.x,…`) and one row for every output time, as `pandas.read_csv` and
-//! spreadsheets expect; `results.units.csv` has a row `name,unit,description` for every column. `profile.csv` holds
-//! the shape of the lines in long form, a row for every time, line and node. Numbers have the fewest digits that read back to
-//! the same bits, or those that the scene asks for.
+//! `results.csv` has one plain header row (`time,fairlead.x,…`) and one row for every output time, as expected by `pandas.read_csv` and spreadsheets;
+//! `results.units.csv` has a row `name,unit,description` for every column. `profile.csv` holds the shape of the lines in long form, with a row for
+//! every time, line and node. Numbers have the fewest digits that read back to the same bits, or as many as the scene specifies.
 
 use std::io::{self, Write};
 use std::time::{Duration, Instant};
@@ -14,10 +13,11 @@ use super::record::{Column, Form};
 
 /// Size of the text buffer [bytes].
 const BUFFER: usize = 1 << 16;
-/// Longest time that a row stays in the buffer.
+/// Time since the last write after which a new row is written at once.
 const DELAY: Duration = Duration::from_secs(1);
 
-/// A table that is written row by row. Only whole rows are written, at the latest a second after they were added.
+/// Table that is written row by row. Only whole rows are written: when the buffer is full, or with the first row that is added a second or more after
+/// the last write.
 #[derive(Debug)]
 pub(super) struct CsvTable {
     file: Growing,
@@ -27,7 +27,7 @@ pub(super) struct CsvTable {
 }
 
 impl CsvTable {
-    /// A table in a new file, with its header row, or in one that continues after its last row.
+    /// Opens a table in a new file, with its header row, or in a file that continues after its last row.
     pub(super) fn open(
         mut file: Growing,
         columns: &[Column],
@@ -44,7 +44,7 @@ impl CsvTable {
         })
     }
 
-    /// Adds a row: a value for every column.
+    /// Adds a row with a value for every column.
     pub(super) fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
         self.text.push(values, &mut self.buffer);
         match self.buffer.len() >= BUFFER || self.written.elapsed() >= DELAY {
@@ -61,19 +61,19 @@ impl CsvTable {
         Ok(())
     }
 
-    /// The file of the rows written so far.
+    /// File with the rows written so far.
     pub(super) fn file(&mut self) -> &mut Growing {
         &mut self.file
     }
 }
 
-/// Row of the names of columns.
+/// Header row with the names of columns.
 fn header(columns: &[Column]) -> Vec<u8> {
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     quoted(&names)
 }
 
-/// A row of texts, quoted where they need it, with its line end.
+/// Row of texts, quoted if necessary, with its line end.
 fn quoted(texts: &[&str]) -> Vec<u8> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let row = table.write_record(texts).and_then(|()| Ok(table.flush()?));
@@ -141,12 +141,12 @@ pub fn write_units(columns: &[Column], out: impl Write) -> io::Result<()> {
     table.flush()
 }
 
-/// The fewest digits that read back to the same bits, in scientific notation for values far from 1.
+/// Shortest text that reads back to the same bits, in scientific notation for values far from 1.
 pub(super) fn shortest(value: f64) -> String {
     zmij::Buffer::new().format(value).to_string()
 }
 
-/// Value rounded to a number of significant digits.
+/// Rounds a value to a number of significant digits.
 pub(super) fn rounded(value: f64, digits: usize, scratch: &mut String) -> f64 {
     use std::fmt::Write;
     scratch.clear();

@@ -15,7 +15,7 @@ use crate::interface::{Causality, Interface, Kind, Layout, Unit, Variability, Va
 use crate::model::Model;
 use crate::scene::{Profile, Scene, SceneError};
 
-/// Beginning of the name of every library.
+/// Prefix of the name of every library.
 const IDENTIFIER: &str = "moorline";
 /// Greatest length of the title in the name of the library [-].
 const TITLE_MAX: usize = 40;
@@ -53,10 +53,10 @@ pub struct Description {
 }
 
 impl Description {
-    /// Describes a scene, given as the text in the FMU and as read from it.
+    /// Describes a scene, given as the text in the FMU and as read from this text.
     ///
     /// # Errors
-    /// A scene from which no model can be made, or names that clash.
+    /// No model can be built from the scene, or names clash.
     pub fn new(text: &str, scene: &Scene, version: FmiVersion) -> Result<Description, SceneError> {
         Description::stamped(text, scene, version, &Stamp::default())
     }
@@ -171,7 +171,7 @@ fn model_name(scene: &Scene) -> String {
     }
 }
 
-/// Name of the library: the title of the scene as a C identifier, so that the FMUs of different scenes have different ones.
+/// Name of the library: the title of the scene as a C identifier, so that FMUs of scenes with different titles have different library names.
 fn model_identifier(scene: &Scene) -> String {
     let mut identifier = IDENTIFIER.to_string();
     let title = scene.title.to_lowercase();
@@ -249,7 +249,7 @@ fn write_co_simulation(xml: &mut Xml, scene: &Scene, version: FmiVersion) -> io:
     empty(xml, "CoSimulation", &[attributes, adjoint].concat())
 }
 
-/// Units of variables with a number that has one, each once.
+/// Units of the variables that have one, without repetition.
 pub(super) fn units<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Unit> {
     let mut units = Vec::new();
     for variable in variables.into_iter().filter(|variable| has_unit(variable)) {
@@ -264,7 +264,7 @@ fn write_units(xml: &mut Xml, interface: &Interface, version: FmiVersion) -> io:
     let mut units = units(interface.variables());
     if version == FmiVersion::Three {
         units.retain(|unit| *unit != Unit::SECOND);
-        units.insert(0, Unit::SECOND); // that of the independent variable
+        units.insert(0, Unit::SECOND); // unit of the independent variable
     }
     within(xml, "UnitDefinitions", &[], |xml| {
         units.iter().try_for_each(|unit| write_unit(xml, unit))
@@ -304,12 +304,12 @@ fn write_variables(xml: &mut Xml, interface: &Interface, version: FmiVersion) ->
     empty(xml, "Float64", &time)
 }
 
-/// Value reference of the independent variable of FMI 3.0, after all others.
+/// Value reference of the independent variable in FMI 3.0, after those of all other variables.
 pub fn time_reference(interface: &Interface) -> u32 {
     Interface::reference(interface.variables().len())
 }
 
-/// Attributes that both versions put on the variable itself.
+/// Attributes of the variable element itself in both versions.
 fn common_attributes(variable: &Variable, index: usize) -> Vec<(&'static str, String)> {
     let causality = match variable.causality {
         Causality::Input => "input",
@@ -446,7 +446,7 @@ fn write_structure(
     }
 }
 
-/// Writes rows of the table, by their index, with the value references that they depend on.
+/// Writes variables, by their index in the table, with the value references on which they depend.
 fn write_unknowns(
     xml: &mut Xml,
     [element, key]: [&str; 2],

@@ -1,7 +1,7 @@
-//! Tables and shapes of a run, written as it goes.
+//! Tables and shapes of a run, written during the run.
 //!
-//! The files of an interrupted run hold all that was computed, whole to the last row and shape. A run that is continued from its
-//! [`Marks`] writes the rows that it would have written without the interruption.
+//! The files of an interrupted run hold everything that was computed, up to the last complete row and shape. A run that continues from its [`Marks`]
+//! writes the same rows as without the interruption.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,10 +17,10 @@ use super::{OutputError, figures, make_folder, vtk, write_file};
 use crate::scene::table::Choice;
 use crate::scene::{Format, Frames, Output};
 
-/// Shapes of a run whose scene does not give their interval, about [-].
+/// Approximate number of shapes of a run whose scene does not give their interval [-].
 const FRAMES_MAX: usize = 240;
 
-/// Opens the table with this file stem, in the format of the scene: a new one, or one that continues after a mark.
+/// Opens the table with this file stem in the format of the scene: a new table, or one that continues after a mark.
 fn open_table(
     stem: &Path,
     mark: Option<&Mark>,
@@ -48,20 +48,20 @@ struct Shapes {
 pub struct Marks {
     results: Mark,
     profile: Option<Mark>,
-    /// The collection of shapes, and their number.
+    /// Position in the collection of shapes, and number of shapes.
     shapes: Option<(Mark, usize)>,
 }
 
 /// Rows from one shape to the next [-].
 #[derive(Debug, Clone, Copy)]
 struct Strides {
-    /// Of the figures.
+    /// Stride of the shapes in figures.
     figures: usize,
-    /// Of the files for ParaView; `None` where there are none.
+    /// Stride of the files for ParaView; `None` if there are none.
     files: Option<usize>,
 }
 
-/// The files of a run.
+/// Files of a run.
 #[derive(Debug)]
 pub struct RunFiles {
     folder: PathBuf,
@@ -77,7 +77,7 @@ impl RunFiles {
     /// Begins the files of a run in a folder, and removes those of an earlier one. `bends` is true if any line has bending stiffness.
     ///
     /// # Errors
-    /// The first file or folder that the operating system refuses.
+    /// Names the first file or folder that the operating system refuses.
     pub fn create(
         folder: &Path,
         record: &Record,
@@ -102,7 +102,7 @@ impl RunFiles {
     /// Continues the files of an interrupted run.
     ///
     /// # Errors
-    /// A file that is not as it was left, or that the operating system refuses.
+    /// A file differs from its mark, or the operating system refuses it.
     pub fn reopen(
         folder: &Path,
         record: &Record,
@@ -145,7 +145,7 @@ impl RunFiles {
     /// Adds row `index` of the run, counted from 0, to the record and the table, and the shape of the lines if one is due.
     ///
     /// # Errors
-    /// A file that the operating system refuses.
+    /// The operating system refuses a file.
     pub fn add(
         &mut self,
         record: &mut Record,
@@ -177,7 +177,7 @@ impl RunFiles {
     /// Writes all buffered rows and returns the marks of the files.
     ///
     /// # Errors
-    /// A file that the operating system refuses.
+    /// The operating system refuses a file.
     pub fn mark(&mut self) -> Result<Marks, OutputError> {
         let profile = self.profile.as_mut().map(Table::mark);
         let shapes = self.shapes.as_mut().map(|shapes| {
@@ -194,14 +194,14 @@ impl RunFiles {
     /// Writes all buffered rows.
     ///
     /// # Errors
-    /// A file that the operating system refuses.
+    /// The operating system refuses a file.
     pub fn flush(&mut self) -> Result<(), OutputError> {
         self.results.flush()?;
         self.profile.as_mut().map_or(Ok(()), Table::flush)
     }
 }
 
-/// File that names the shapes for ParaView.
+/// File that lists the shapes for ParaView.
 const COLLECTION_FILE: &str = "lines.pvd";
 
 impl Shapes {
@@ -240,7 +240,7 @@ fn strides(output: &Output, times: &Times) -> Strides {
     }
 }
 
-/// Columns of the profile: unstretched arc length, position and effective tension of every node, and curvature and moment where any line bends.
+/// Columns of the profile: unstretched arc length, position and effective tension of every node, and curvature and moment if any line bends.
 fn profile_columns(record: &Record, bends: bool) -> Vec<Column> {
     let names = record.lines.iter().map(|line| line.name.clone()).collect();
     let real = |name: &str, unit: &str, text: &str| Column::new(name, unit, text, Form::Real);
@@ -285,8 +285,8 @@ fn add_nodes(profile: &mut Table, frame: &Frame, row: &mut Vec<f64>) -> Result<(
     Ok(())
 }
 
-/// Removes the results of an earlier run, so that none of them remains among those of this one. A name that belongs to something other than a
-/// file is left: the file that takes its place is refused.
+/// Removes the results of an earlier run, so that they are not mixed with those of this one. Anything other than a file is left, and writing a file
+/// of its name then fails.
 fn remove_old(folder: &Path) {
     let tables =
         ["results", "profile"].map(|stem| ["csv", "parquet"].map(|ending| format!("{stem}.{ending}")));

@@ -1,4 +1,4 @@
-//! Names that FMI gives to its versions, to platforms and to the libraries in an FMU.
+//! Names in FMI of its versions, of platforms and of the libraries in an FMU.
 
 use std::fmt;
 
@@ -20,7 +20,7 @@ impl fmt::Display for FmiVersion {
     }
 }
 
-/// Platform that an FMU may have a library for.
+/// Platform for which an FMU may have a library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Platform {
     /// Folders below `binaries/` in FMI 2.0 and 3.0.
@@ -43,12 +43,12 @@ impl Platform {
         Platform { folders, extension }
     }
 
-    /// Platform of a name of FMI 3.0, such as `x86_64-linux`.
+    /// Returns the platform with a name of FMI 3.0, such as `x86_64-linux`.
     pub fn of_name(name: &str) -> Option<Platform> {
         PLATFORMS.into_iter().find(|platform| platform.name() == name)
     }
 
-    /// Platform of this program; `None` where the standard names none.
+    /// Returns the platform of this program; `None` if the standard has no name for it.
     pub fn this() -> Option<Platform> {
         let system = if cfg!(target_os = "macos") {
             "darwin"

@@ -1,4 +1,4 @@
-//! A file that grows at its end and is whole after every write.
+//! File that grows at its end and is complete after every write.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{OutputError, create, target_of};
 
-/// Bytes before the end that a continued file is compared with [-].
+/// Number of bytes before the mark that are compared when a file is continued [-].
 const TAIL: usize = 4096;
 
-/// A file that grows. Each write appends data and then an ending, such as the footer of a format; the next write replaces the ending.
+/// File that grows. Each write appends data and then an ending, such as the footer of a format; the next write replaces the ending.
 #[derive(Debug)]
 pub(super) struct Growing {
     path: PathBuf,
@@ -22,16 +22,16 @@ pub(super) struct Growing {
 /// Position in a file up to which it is kept when the run continues.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Mark {
-    /// Bytes of the data.
+    /// Number of data bytes.
     end: u64,
-    /// The last of them.
+    /// Last data bytes.
     tail: Vec<u8>,
     /// Ending after the data.
     ending: Vec<u8>,
 }
 
 impl Growing {
-    /// A new file in place of an old one of the same name; the target of a link is replaced.
+    /// Creates a file, replacing an old one of the same name; if this is a link, its target is replaced.
     pub(super) fn create(path: &Path) -> Result<Growing, OutputError> {
         let file = target_of(path).and_then(|target| create(&target));
         Ok(Growing {
@@ -41,10 +41,10 @@ impl Growing {
         })
     }
 
-    /// Continues a file after a mark; the data after it are removed.
+    /// Continues a file after a mark; data after the mark are removed.
     ///
     /// # Errors
-    /// A file that is not there, or has other data at the mark.
+    /// The file is missing or has other data at the mark.
     pub(super) fn reopen(path: &Path, mark: Mark) -> Result<Growing, OutputError> {
         let mut file = OpenOptions::new()
             .read(true)
@@ -101,14 +101,14 @@ impl Growing {
         self.file.write_all(ending)
     }
 
-    /// Mark up to which the file is written, once that is on the disk.
+    /// Returns the mark up to which the file is written, after the data are stored on the disk.
     pub(super) fn mark(&mut self) -> Result<Mark, OutputError> {
         let stored = self.file.sync_data();
         stored.map_err(|source| OutputError::of_file(&self.path, source))?;
         Ok(self.mark.clone())
     }
 
-    /// Bytes of the data [-]; 0 for a new file.
+    /// Number of data bytes [-]; 0 for a new file.
     pub(super) fn end(&self) -> u64 {
         self.mark.end
     }
@@ -118,7 +118,7 @@ impl Growing {
         &self.mark.ending
     }
 
-    /// An error of the encoder, as an error of this file.
+    /// Converts an error of the encoder to an error of this file.
     pub(super) fn failure(&self, source: io::Error) -> OutputError {
         OutputError::of_file(&self.path, source)
     }

@@ -30,15 +30,15 @@ pub struct Line {
     pub end_b: End,
     /// Horizontal part of the force at end B [N].
     pub horizontal: f64,
-    /// Pull on end B downwards [N].
+    /// Vertical part of the force at end B, positive downwards [N].
     pub vertical: f64,
     /// Unstretched length on the seabed [m].
     pub laid_length: f64,
-    /// Length under tension [m].
+    /// Stretched length [m].
     pub stretched_length: f64,
     /// Greatest vertical distance below the chord [m].
     pub sag: f64,
-    /// Closed form of the line, where it has one.
+    /// Closed form of the line, if it has one.
     pub catenary: Option<Catenary>,
     /// Nodes from end A to end B.
     pub profile: Vec<ProfileNode>,
@@ -53,7 +53,7 @@ pub struct Catenary {
     pub tension_b: f64,
     /// Horizontal part of the force at end B [N].
     pub horizontal: f64,
-    /// Pull on end B downwards [N].
+    /// Vertical part of the force at end B, positive downwards [N].
     pub vertical: f64,
     /// Unstretched length on the seabed [m].
     pub laid_length: f64,
@@ -66,7 +66,7 @@ pub struct Catenary {
 pub struct End {
     /// Force of the line on the support of this end [N].
     pub force: [f64; 3],
-    /// Size of that force [N].
+    /// Magnitude of this force [N].
     pub tension: f64,
 }
 
@@ -75,11 +75,11 @@ pub struct End {
 pub struct Point {
     /// Name of the point.
     pub name: String,
-    /// Origin of its motion, by the scene's word.
+    /// Kind of the point, as spelled in the scene.
     pub kind: &'static str,
     /// Position [m].
     pub position: [f64; 3],
-    /// Force on the point [N], of all lines and, where forces do not move it, of its mass and load.
+    /// Force on the point [N] from all lines and, unless forces move the point, from its mass and load.
     pub force: [f64; 3],
 }
 
@@ -88,7 +88,7 @@ pub struct Point {
 pub struct Vessel {
     /// Name of the vessel.
     pub name: String,
-    /// Stiffness from closed-form catenaries, where the lines have them.
+    /// Stiffness from closed-form catenaries, if the lines have them.
     #[serde(flatten)]
     pub hold: Hold,
     /// Stiffness from the lines' elements.

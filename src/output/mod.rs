@@ -1,8 +1,7 @@
 //! Results written by the program: tables, ParaView files, figures, the report and `--json`.
 //!
-//! All of it is written from plain numbers: a [`record::Record`] of a run, a [`json::Statics`] of an equilibrium. Nothing here
-//! prints. Tables and shapes of a run are written as it goes ([`files`]); every other file appears under its name only when it is
-//! whole ([`write_file`]).
+//! All outputs are written from plain numbers: a [`record::Record`] of a run, a [`json::Statics`] of an equilibrium. Nothing here prints. Tables and
+//! shapes of a run are written during the run ([`files`]); every other file receives its name only when it is complete ([`write_file`]).
 
 mod arrow_schema;
 pub mod binaries;
@@ -38,7 +37,7 @@ use std::path::{Path, PathBuf};
 
 use crate::scene::Scene;
 
-/// Reason for which something could not be written.
+/// Reason why an output could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// A folder could not be made.
@@ -49,13 +48,13 @@ pub enum OutputError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// Something that is not a folder has the folder's name.
+    /// A path that is not a folder has the folder's name.
     #[error("{} is no folder: give the name of one", .path.display())]
     NotAFolder {
-        /// Path that has the name.
+        /// The path with this name.
         path: PathBuf,
     },
-    /// A folder takes no files.
+    /// No file can be written into a folder.
     #[error("cannot write into the folder {}: {source}", .path.display())]
     Closed {
         /// The folder.
@@ -88,10 +87,10 @@ impl OutputError {
     }
 }
 
-/// Makes a folder and those above it, where they are missing.
+/// Creates a folder and its parents, if they are missing.
 ///
 /// # Errors
-/// A file has its name, or the operating system refuses.
+/// A file has this name, or the operating system refuses the folder.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     if path.exists() && !path.is_dir() {
         return Err(OutputError::NotAFolder {
@@ -104,7 +103,7 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Makes a folder like [`make_folder`], and checks that files can be written there.
+/// Creates a folder as [`make_folder`] does, and checks that files can be written into it.
 ///
 /// # Errors
 /// As for [`make_folder`], and if no file can be written there.
@@ -118,13 +117,13 @@ pub fn open_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Removes incomplete files of this process from a folder of a run, and next to the targets of links in it.
+/// Removes incomplete files of this process from the folder of a run, and next to the targets of links in it.
 pub fn remove_partial(folder: &Path) {
     let ending = partial_ending();
     for folder in [folder.to_path_buf(), folder.join(vtk::FRAME_FOLDER)] {
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
             let path = entry.path();
-            // A remainder that cannot be removed does not look complete.
+            // An incomplete file that cannot be removed is recognisable by its name.
             let _ = if path.is_symlink() {
                 target_of(&path).and_then(|target| fs::remove_file(partial_name(&target)))
             } else if entry.file_name().to_string_lossy().ends_with(&ending) {
@@ -136,9 +135,8 @@ pub fn remove_partial(folder: &Path) {
     }
 }
 
-/// Writes a file under a temporary name in the same folder and renames it when it is complete: an interrupted run
-/// leaves the old file or none, never half of one. A link stays, and its target is written; only regular files are
-/// replaced.
+/// Writes a file under a temporary name in the same folder and renames it when it is complete: an interrupted run leaves the old file or none, but no
+/// incomplete one. A link is kept and its target is written; only regular files are replaced.
 ///
 /// # Errors
 /// The name belongs to something other than a regular file, or the operating system refuses; the temporary file is
@@ -155,11 +153,10 @@ pub fn write_file(
     made.map_err(|source| OutputError::of_file(path, source))
 }
 
-/// Checks that a file could be written under a name: the name belongs to a regular file, a link to one, or nothing,
-/// and the folder exists.
+/// Checks that a file could be written under a name: the name belongs to a regular file, a link to one, or nothing, and the folder exists.
 ///
 /// # Errors
-/// The obstacle.
+/// States why no file can be written.
 pub fn check_file(path: &Path) -> Result<(), OutputError> {
     let target = target_of(path).and_then(|target| {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -174,7 +171,7 @@ pub fn check_file(path: &Path) -> Result<(), OutputError> {
     target.map_err(|source| OutputError::of_file(path, source))
 }
 
-/// The regular file, or the free name, that a path leads to; links are followed.
+/// Returns the regular file or the unused name to which a path leads; links are followed.
 fn target_of(path: &Path) -> io::Result<PathBuf> {
     let refuse = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
     // /dev/stdout is a link that leads to no name if standard output is a pipe
@@ -196,7 +193,7 @@ fn target_of(path: &Path) -> io::Result<PathBuf> {
     refuse(format!("more than {LINKS_MAX} links lead from it"))
 }
 
-/// New file for writing, in place of a temporary file that an ended process may have left.
+/// Creates a file for writing, replacing a temporary file that an ended process may have left.
 fn create(partial: &Path) -> io::Result<File> {
     // there may be nothing to remove
     let _ = fs::remove_file(partial);
@@ -210,7 +207,7 @@ fn replace_file(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> io:
     let partial = partial_name(path);
     let made = write(&partial).and_then(|()| fs::rename(&partial, path));
     if made.is_err() {
-        // The first failure is reported; a remainder that cannot be removed does not look complete.
+        // The first failure is reported; an incomplete file that cannot be removed is recognisable by its name.
         let _ = fs::remove_file(&partial);
     }
     made
@@ -222,7 +219,7 @@ const LINKS_MAX: usize = 40;
 /// Writes the figures of a run as SVG, and `report.html`, into its folder.
 ///
 /// # Errors
-/// The first file that the operating system refuses.
+/// Names the first file that the operating system refuses.
 pub fn write_report(record: &record::Record, scene: &Scene, folder: &Path) -> Result<(), OutputError> {
     let figures = figures::all(record);
     for (stem, svg) in &figures {
@@ -233,7 +230,7 @@ pub fn write_report(record: &record::Record, scene: &Scene, folder: &Path) -> Re
     write_file(&folder.join("report.html"), |w| w.write_all(html.as_bytes()))
 }
 
-/// `results.csv` -> `results.csv.1234.partial`, with the number of the process: two runs do not write into one another.
+/// `results.csv` -> `results.csv.1234.partial`, with the process number, so that two runs do not write to the same file.
 fn partial_name(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(partial_ending());

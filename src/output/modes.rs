@@ -10,7 +10,7 @@ use crate::model::Line;
 use crate::simulation::Simulation;
 use crate::statics::modes::{Modes, ModesError};
 
-/// Chords shorter than this part of the line, seen from above, belong to vertical lines, whose plane is y = 0 [-].
+/// Ratio of the horizontal length of a chord to the length of the line below which the line is vertical, with the plane y = 0 [-].
 const VERTICAL: f64 = 1e-6;
 
 /// The lowest natural modes of all lines.
@@ -29,15 +29,15 @@ pub struct Mode {
     pub period: Option<f64>,
     /// Natural frequency [Hz].
     pub frequency: f64,
-    /// Modal mass [kg] where the greatest displacement is 1.
+    /// Modal mass for a greatest displacement of 1 [kg].
     pub modal_mass: f64,
-    /// The place that moves most.
+    /// Position of the greatest displacement.
     pub greatest: Place,
-    /// The direction that the line there mostly moves in.
+    /// Main direction of motion of the line there.
     pub direction: Direction,
-    /// Parts of the directions in the motion of that line; their sum is 1.
+    /// Shares of the directions in the motion of that line; their sum is 1.
     pub shares: Shares,
-    /// Shapes of the lines that move, the greatest displacement being 1.
+    /// Shapes of the lines that move, scaled to a greatest displacement of 1.
     pub shapes: Vec<LineShape>,
 }
 
@@ -54,7 +54,7 @@ pub struct Place {
     pub point: Option<String>,
 }
 
-/// A direction of motion, seen from the line.
+/// Direction of motion relative to the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
@@ -62,18 +62,18 @@ pub enum Direction {
     Axial,
     /// Across the line, in the vertical plane through its ends.
     Transverse,
-    /// Across that plane.
+    /// Normal to that plane.
     OutOfPlane,
 }
 
-/// Parts of the directions in the motion of a line: squares of displacements, summed over its length.
+/// Shares of the directions in the motion of a line, from squares of displacements summed over its length.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
     /// Along the line [-].
     pub axial: f64,
     /// Across the line in its plane [-].
     pub transverse: f64,
-    /// Across its plane [-].
+    /// Normal to this plane [-].
     pub out_of_plane: f64,
 }
 
@@ -101,12 +101,12 @@ pub struct NodeShape {
     pub axial: f64,
     /// Across the line in its vertical plane, upwards [-].
     pub transverse: f64,
-    /// Across that plane [-].
+    /// Normal to this plane [-].
     pub out_of_plane: f64,
 }
 
 impl Direction {
-    /// In words.
+    /// Returns the direction in words.
     pub fn words(self) -> &'static str {
         match self {
             Direction::Axial => "axial",
@@ -117,7 +117,7 @@ impl Direction {
 }
 
 impl Shares {
-    /// The greatest one and its direction.
+    /// Returns the direction with the greatest share, and this share.
     pub fn greatest(&self) -> (Direction, f64) {
         let all = [
             (Direction::Transverse, self.transverse),
@@ -141,7 +141,7 @@ impl NodeShape {
     }
 }
 
-/// The `count` lowest modes of all networks of a simulation that is in equilibrium.
+/// Returns the `count` lowest modes of all networks of a simulation in equilibrium.
 ///
 /// # Errors
 /// As [`Modes::lowest`].
@@ -172,7 +172,7 @@ pub fn natural_modes(title: &str, simulation: &Simulation, count: usize) -> Resu
 }
 
 impl Mode {
-    /// From mass-normalised shapes [1/√kg] of lines of a network.
+    /// Returns the mode with the mass-normalised shapes [1/√kg] of the lines of a network.
     fn new(simulation: &Simulation, frequency: f64, shapes: Vec<(usize, Vec<Vector3<f64>>)>) -> Mode {
         let model = simulation.model();
         let sizes = shapes.iter().flat_map(|(line, nodes)| {

@@ -1,7 +1,8 @@
-//! The .fmu container: description, scene, libraries, documentation, terminals and reference results in one zip file; and the .ssp container
-//! around it.
+//! The .fmu container: description, scene, libraries, documentation, terminals and reference results in one zip file; and the .ssp container that
+//! holds it.
 //!
-//! Deterministic: the same scene, libraries, version and stamp give the same bytes. Names have forward slashes; libraries have the executable bit.
+//! The output is deterministic: the same scene, libraries, version and stamp give the same bytes. Names have forward slashes; libraries have the
+//! executable bit.
 
 mod documentation;
 mod icon;
@@ -75,20 +76,20 @@ pub enum PackageError {
     Zip(#[from] zip::result::ZipError),
 }
 
-/// Container to be written.
+/// Kind of container to be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Container {
     /// An FMU.
     Fmu,
-    /// A system of SSP 1.0 that holds the FMU, with connectors for the body.
+    /// A system of SSP 1.0 that contains the FMU, with connectors for the body.
     Ssp,
 }
 
-/// Packages a scene with FMU libraries into `target`, which appears under its name when it is complete. `text` is the text of the file that the scene was
-/// read from. The mesh is the present one of the scene, regardless of later inputs of a host.
+/// Packages a scene with FMU libraries into `target`, which receives its name when it is complete. `text` is the text of the file from which the
+/// scene was read. The mesh is the present one of the scene, regardless of later inputs of a host.
 ///
 /// # Errors
-/// A scene that cannot be described or has no equilibrium, a target that cannot be written.
+/// The scene cannot be described or has no equilibrium, or the target cannot be written.
 pub fn write_fmu(
     scene: &Scene,
     text: &str,
@@ -180,8 +181,7 @@ fn fmu_entries(
     Ok(entries)
 }
 
-/// Returns the user's text where it alone defines the whole scene; else, with motion files or in another format, the
-/// scene written out.
+/// Returns the user's text if it alone defines the whole scene; otherwise, as with motion files or another format, returns the scene written as TOML.
 fn packaged_text(scene: &Scene, text: &str) -> String {
     match Scene::from_toml(text) {
         Ok(read) if read == *scene => text.to_string(),

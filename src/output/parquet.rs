@@ -1,7 +1,7 @@
 //! Tables in Apache Parquet: plain columns without compression, in groups of rows of a bounded size.
 //!
-//! The footer is written after every group, and replaced by the next one: the file can be read at any time. Units and descriptions are metadata of the
-//! fields, in the schema of Apache Arrow that the file carries. With 6 digits or fewer, numbers are 32-bit ones.
+//! The footer is written after every group and replaced by the next one, so that the file can be read at any time. Units and descriptions are
+//! metadata of the fields, in the Apache Arrow schema in the file. With 6 digits or fewer, numbers have 32 bits.
 //! Sources: Apache Parquet format 2.11; Apache Arrow format 1.5, `Schema.fbs` and `Message.fbs`.
 
 use std::io;
@@ -25,15 +25,15 @@ use super::csv::rounded;
 use super::growing::Growing;
 use super::record::{Column, Form};
 
-/// Beginning and end of a file.
+/// Bytes at the beginning and the end of a file.
 const MAGIC: &[u8; 4] = b"PAR1";
-/// Bytes after the metadata: their length, and the end.
+/// Number of bytes after the metadata: their length and the end bytes.
 const FOOTER_END: usize = 8;
 /// Values of a group of rows [-]: 2 MiB.
 const GROUP_VALUES: usize = 1 << 18;
-/// Least rows of a full group [-].
+/// Least number of rows of a full group [-].
 const GROUP_ROWS_MIN: usize = 512;
-/// Most digits that 32-bit numbers keep [-].
+/// Greatest number of digits that 32-bit numbers keep [-].
 pub(super) const SINGLE_DIGITS: usize = 6;
 
 /// A table that is written in groups of rows.
@@ -49,7 +49,7 @@ pub(super) struct ParquetTable {
     groups: Vec<RowGroupMetaData>,
 }
 
-/// Values of a column that are not written yet.
+/// Values of a column that are not yet written.
 #[derive(Debug)]
 struct Buffer {
     form: Form,
@@ -57,7 +57,7 @@ struct Buffer {
 }
 
 impl ParquetTable {
-    /// A table in a new file, without rows, or in one that continues after its last group.
+    /// Opens a table in a new file, without rows, or in a file that continues after its last group.
     pub(super) fn open(
         file: Growing,
         columns: &[Column],
@@ -107,7 +107,7 @@ impl ParquetTable {
         })
     }
 
-    /// Adds a row: a value for every column.
+    /// Adds a row with a value for every column.
     pub(super) fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
         for (column, value) in self.columns.iter_mut().zip(values) {
             column.values.push(*value);
@@ -132,7 +132,7 @@ impl ParquetTable {
         self.file.append(&bytes, footer)
     }
 
-    /// The file of the groups written so far.
+    /// File with the groups written so far.
     pub(super) fn file(&mut self) -> &mut Growing {
         &mut self.file
     }
@@ -141,7 +141,7 @@ impl ParquetTable {
         self.file.failure(io::Error::other(error))
     }
 
-    /// Bytes of the pending rows as a group, and their metadata at the end of the file.
+    /// Encodes the pending rows as a group; returns the bytes and the group's metadata for the end of the file.
     fn encode_group(&mut self) -> Result<(Vec<u8>, RowGroupMetaData), ParquetError> {
         let mut bytes = TrackedWrite::new(Vec::new());
         let mut group = SerializedRowGroupWriter::new(
@@ -169,7 +169,7 @@ impl ParquetTable {
         Ok((bytes.into_inner()?, metadata))
     }
 
-    /// The end of the file: metadata of all groups.
+    /// End of the file, with the metadata of all groups.
     fn footer(&self) -> Result<Vec<u8>, ParquetError> {
         let rows = self.groups.iter().map(RowGroupMetaData::num_rows).sum();
         let by = format!("moorline {}", env!("CARGO_PKG_VERSION"));
@@ -240,7 +240,7 @@ fn write_column(column: &Buffer, writer: &mut ColumnWriter<'_>) -> Result<(), Pa
     .map(|_| ())
 }
 
-/// Metadata of a group that is shifted by a number of bytes.
+/// Metadata of a group shifted by a number of bytes.
 fn shifted(group: &RowGroupMetaData, by: i64) -> Result<RowGroupMetaData, ParquetError> {
     let chunk = |chunk: &ColumnChunkMetaData| {
         let (data, dictionary) = (chunk.data_page_offset(), chunk.dictionary_page_offset());
@@ -339,7 +339,7 @@ mod tests {
         assert!(found.iter().enumerate().all(|(i, row)| *row == expected(i)));
     }
 
-    /// Values that are kept until they are written, for any number of rows.
+    /// The number of values held until they are written is bounded for any number of rows.
     #[test]
     fn a_table_keeps_a_bounded_number_of_values() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,8 @@
-//! Record of a run: plain numbers, gathered step by step, that figures, report and summary read.
+//! Record of a run: plain numbers, gathered step by step, for figures, report and summary.
 //!
-//! A [`Record`] does not depend on a solver, and its size does not depend on the duration: rows go to the tables of
-//! [`super::files`] and leave ranges and thinned histories here. The driver of a simulation names the columns once, adds a row at every
-//! output time and a frame where the shape of the lines is required.
+//! A [`Record`] does not depend on a solver, and its size does not depend on the duration: rows are written to the tables of [`super::files`], and
+//! ranges and thinned histories are kept here. The driver of a simulation names the columns once, adds a row at every output time, and a frame
+//! whenever the shape of the lines is required.
 
 use std::time::Duration;
 
@@ -29,13 +29,13 @@ const DRAWN: [&str; 7] = [
 pub enum Form {
     /// A number.
     Real,
-    /// A number, with all of its digits: times.
+    /// A number with all of its digits, such as a time.
     Exact,
-    /// A whole number: counts and truth values.
+    /// A whole number, such as a count or a truth value.
     Whole,
-    /// A number, or nothing where the value is not a number.
+    /// A number, or an empty cell if the value is NaN.
     Sparse,
-    /// A name: the value is its place in the list.
+    /// A name; the value is its index in the list.
     Name(Vec<String>),
 }
 
@@ -44,7 +44,7 @@ pub enum Form {
 pub struct Column {
     /// Name of the variable, such as `line1.tension_b`.
     pub name: String,
-    /// Unit symbol, such as `N`; `1` where the number has none.
+    /// Unit symbol, such as `N`; `1` if the number has none.
     pub unit: String,
     /// Description in a sentence.
     pub description: String,
@@ -53,7 +53,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column of numbers.
+    /// Creates a column.
     pub fn new(name: &str, unit: &str, description: impl Into<String>, form: Form) -> Column {
         Column {
             name: name.to_string(),
@@ -63,7 +63,7 @@ impl Column {
         }
     }
 
-    /// The first column of every table.
+    /// Time, the first column of every table.
     pub fn time() -> Column {
         Column::new("time", "s", "simulated time", Form::Exact)
     }
@@ -78,7 +78,7 @@ pub struct Node {
     pub position: [f64; 3],
     /// Effective tension [N].
     pub tension: f64,
-    /// Curvature and moment, where the line has bending stiffness.
+    /// Curvature and moment, if the line has bending stiffness.
     pub bending: Option<NodeBending>,
 }
 
@@ -106,7 +106,7 @@ pub struct Flight {
     pub angular_momentum: [f64; 3],
 }
 
-/// Static figures of a line in its reference configuration.
+/// Static results of a line in its reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticLine {
     /// Tension at end B [N].
@@ -117,14 +117,14 @@ pub struct StaticLine {
     pub sag: f64,
     /// Unstretched length that lies on the seabed [m].
     pub laid_length: f64,
-    /// Greatest curvature and moment, where the line has bending stiffness.
+    /// Greatest curvature and moment, if the line has bending stiffness.
     pub bending: Option<NodeBending>,
 }
 
-/// The closed-form elastic catenary of a line in its reference configuration.
+/// Closed-form elastic catenary of a line in its reference configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Catenary {
-    /// Figures of the line.
+    /// Static results of the line.
     pub figures: StaticLine,
     /// Points of its shape from end A to end B [m].
     pub profile: Vec<[f64; 3]>,
@@ -135,9 +135,9 @@ pub struct Catenary {
 pub struct LineRecord {
     /// Name, the stem of its variables.
     pub name: String,
-    /// The discretised line in static equilibrium; `None` where the lines have none, such as beams in free flight.
+    /// Static equilibrium of the discretised line; `None` if there is none, as for beams in free flight.
     pub equilibrium: Option<StaticLine>,
-    /// Closed form for comparison; `None` where the line has none.
+    /// Closed form for comparison; `None` if the line has none.
     pub catenary: Option<Catenary>,
 }
 
@@ -162,14 +162,14 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// Simulated seconds per second of wall-clock time [-]; `None` where no time was measured.
+    /// Simulated seconds per second of wall-clock time [-]; `None` if no time was measured.
     pub fn real_time_factor(&self) -> Option<f64> {
         let wall = self.wall.as_secs_f64();
         (wall > 0.0).then(|| self.simulated / wall)
     }
 }
 
-/// Everything that is retained of the rows and shapes of a run. Saved with the state of a run that is to be continued.
+/// Data kept of the rows and shapes of a run. Saved with the state of a run that is to be continued.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Course {
     /// Number of rows [-].
@@ -182,7 +182,7 @@ pub struct Course {
     traces: Vec<Option<Trace>>,
     /// Shapes in time, ascending.
     pub frames: Vec<Frame>,
-    /// Energy and momenta in time, where all lines are beams without supports.
+    /// Energy and momenta in time, if all lines are beams without supports.
     flight: Option<[Trace; 6]>,
     /// Cost of the run.
     pub counters: Counters,
@@ -191,7 +191,7 @@ pub struct Course {
 /// Quantity of a flight that is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FlightQuantity {
-    /// All energy [J].
+    /// Total energy [J].
     Total,
     /// Kinetic energy [J].
     Kinetic,
@@ -221,12 +221,12 @@ impl Course {
         self.frames.iter().flat_map(|frame| frame.lines.iter().flatten())
     }
 
-    /// True if the run is a free flight of beams.
+    /// Returns whether the run is a free flight of beams.
     pub fn is_flight(&self) -> bool {
         self.flight.is_some()
     }
 
-    /// History of a quantity of the flight, as pairs of time [s] and value, thinned; empty where nothing flies.
+    /// Thinned history of a quantity of the flight, as pairs of time [s] and value; empty if the run is not a free flight.
     pub fn flight(&self, quantity: FlightQuantity) -> Vec<[f64; 2]> {
         let place = match quantity {
             FlightQuantity::Total => 0,
@@ -257,7 +257,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Empty record of a number of rows, whose first column is time [s], with `columns` behind it.
+    /// Creates an empty record for `planned` rows, whose first column is time [s], followed by `columns`.
     pub fn new(title: impl Into<String>, columns: Vec<Column>, planned: usize) -> Record {
         let drawn = |column: &Column| {
             let last = column.name.rsplit('.').next();
@@ -287,7 +287,7 @@ impl Record {
     /// Adds a row: the time [s] and one value for every further column, in its unit.
     ///
     /// # Panics
-    /// The number of values is not the number of columns: a mistake of the caller.
+    /// If the number of values differs from the number of columns: a mistake of the caller.
     pub fn add_row(&mut self, row: &[f64]) {
         assert!(
             row.len() == self.columns.len(),
@@ -313,14 +313,13 @@ impl Record {
         self.columns[1..].iter().position(|column| column.name == name)
     }
 
-    /// Thinned history of a column that is drawn, as pairs of time [s] and value in the column's unit; `None` where no such column has
-    /// the name.
+    /// Thinned history of a column that is drawn, as pairs of time [s] and value in the column's unit; `None` if no such column has this name.
     pub fn history(&self, name: &str) -> Option<Vec<[f64; 2]>> {
         let trace = self.course.traces[self.place(name)?].as_ref()?;
         Some(trace.points())
     }
 
-    /// Range of a column's values; `None` where no column has the name, or without rows.
+    /// Range of a column's values; `None` if no column has this name or there are no rows.
     pub fn range(&self, name: &str) -> Option<Range> {
         let sum = self.course.ranges.get(self.place(name)?)?;
         Some(sum.range())
@@ -346,7 +345,7 @@ mod tests {
         assert_eq!((record.range("c"), record.range("time")), (None, None));
     }
 
-    /// Counts of numbers kept, not of bytes in use: they bound each other.
+    /// Counts the numbers kept, which bound the memory in use.
     #[test]
     fn a_record_of_ten_times_the_rows_keeps_no_more() {
         let kept = |rows: u32| {

@@ -1,4 +1,4 @@
-//! Rows of the results of a run: inputs by the scene's motion, outputs, elevation of the waves, channels.
+//! Rows of the results of a run: inputs from the scene's motion, outputs, wave elevation, channels.
 
 use super::channels::Channels;
 use super::record::{Column, ELEVATION, Form};
@@ -12,22 +12,22 @@ use crate::simulation::Simulation;
 pub struct Recorder {
     variables: Vec<Variable>,
     channels: Channels,
-    /// False if inputs and the elevation of the waves are left out.
+    /// False if inputs and wave elevation are omitted.
     has_inputs: bool,
     columns: Vec<Column>,
     row: Vec<f64>,
 }
 
 impl Recorder {
-    /// Columns of a scene's runs.
+    /// Creates the columns of a scene's runs.
     ///
     /// # Errors
-    /// A name or a channel that cannot be a column.
+    /// A name or a channel cannot be a column.
     pub fn new(scene: &Scene, model: &Model) -> Result<Recorder, SceneError> {
         Recorder::of(scene, model, true)
     }
 
-    /// Those columns of a scene's runs that the lines determine: outputs and channels, without inputs and the elevation of the waves.
+    /// Creates only the columns determined by the lines: outputs and channels, without inputs and wave elevation.
     ///
     /// # Errors
     /// As [`Recorder::new`].
@@ -94,7 +94,7 @@ impl Recorder {
     }
 }
 
-/// Inputs and outputs, without values at nodes: profiles have a file of their own, and a run has no host that gives a flow.
+/// Inputs and outputs, without values at nodes: profiles have a separate file, and no host gives a flow in a run.
 pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
     interface.variables().iter().filter(|variable| {
         matches!(variable.causality, Causality::Input | Causality::Output)
@@ -122,12 +122,12 @@ pub fn columns<'v>(variables: impl IntoIterator<Item = &'v Variable>) -> Vec<Col
 /// Present value of an output, in its unit.
 fn output_of(variable: &Variable, simulation: &Simulation) -> f64 {
     let mut value = [f64::NAN];
-    // an output without a value is not a number, and its cell is empty
+    // an output without a value remains non-finite in the row, and the table marks it
     let _ = Interface::read(variable, simulation, &mut value);
     value[0]
 }
 
-/// An input by the scene's motion at `time` [s], where it has `moving` bodies, in its unit; `None` for an output.
+/// Value of an input at `time` [s] of the scene's motion, in its unit, given the `moving` bodies at this time; `None` for an output.
 pub fn input_of(variable: &Variable, model: &Model, moving: &[Moving], time: f64) -> Option<f64> {
     let of = |body: Body, part: fn(&Moving) -> [f64; 6], axis: usize| {
         let found = moving.iter().find(|moving| moving.body == body);

@@ -7,7 +7,7 @@ use quick_xml::escape::escape;
 
 use super::record::{LineRecord, Record, StaticLine};
 
-/// Style of pages.
+/// CSS style of pages.
 pub(super) const STYLE: &str = "
 body { font: 16px/1.5 sans-serif; color: #222; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
@@ -18,10 +18,10 @@ th:first-child, td:first-child { text-align: left; } td { font-variant-numeric: 
 pre { white-space: pre-wrap; background: #f6f6f6; padding: .8rem; font-size: .85rem; }
 ";
 
-/// Digits of a number in a table [-].
+/// Significant digits of a number in a table [-].
 const DIGITS: usize = 6;
 
-/// Page of a run with its figures. `words` is the description of the scene's model, as `moorline check` prints it.
+/// Page of a run with its figures. `words` is the description of the scene's model as printed by `moorline check`.
 pub fn html(record: &Record, figures: &[(&str, String)], words: &str) -> String {
     let title = match record.title.as_str() {
         "" => "moorline run",
@@ -127,7 +127,7 @@ fn history(record: &Record) -> String {
     )
 }
 
-/// Table with a row of headings; without a caption where that is empty.
+/// Table with a row of headings; an empty caption is omitted.
 pub(super) fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
     let row = |tag: &str, cells: &mut dyn Iterator<Item = &str>| {
         let cells: String = cells
@@ -147,12 +147,12 @@ pub(super) fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> Strin
     format!("<div class=\"wide\"><table>\n{caption}{head}{rows}</table></div>\n")
 }
 
-/// Figures as parts of a page.
+/// Figures as HTML elements of a page.
 pub(super) fn shown<'s>(figures: impl Iterator<Item = &'s String>) -> String {
     figures.map(|svg| format!("<figure>\n{svg}</figure>\n")).collect()
 }
 
-/// Difference in per cent of the reference; in its own unit where the reference is 0.
+/// Difference in per cent of the reference, or in the value's unit if the reference is 0.
 pub fn difference(value: f64, reference: f64) -> String {
     if value == reference {
         "0".to_string()
@@ -163,7 +163,7 @@ pub fn difference(value: f64, reference: f64) -> String {
     }
 }
 
-/// Number with `digits` significant digits.
+/// Text of a number with `digits` significant digits.
 pub fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}").replace("-0", "0");

@@ -1,4 +1,4 @@
-//! A made-up record for the tests of the writers: two lines of a parabola's shape on a swaying fairlead.
+//! Synthetic record for tests of the writers: two parabolic lines on a swaying fairlead.
 
 use std::f64::consts::TAU;
 use std::time::Duration;
@@ -26,7 +26,7 @@ fn columns() -> Vec<Column> {
     ]
 }
 
-/// Shape with its end B displaced along x by `shift` [m]; `side` is 1 or -1.
+/// Shape with end B displaced along x by `shift` [m]; `side` is 1 or -1.
 fn shape(side: f64, shift: f64) -> Vec<Node> {
     (0..=ELEMENTS)
         .map(|i| {
@@ -90,7 +90,7 @@ pub(super) fn rows() -> Vec<Vec<f64>> {
     (0..=600).map(row).collect()
 }
 
-/// The record.
+/// Returns the record.
 pub(super) fn record() -> Record {
     let rows = rows();
     let mut record = Record::new("two lines on a seabed, swaying", columns(), rows.len());

@@ -1,30 +1,31 @@
-//! Values as bytes that are read back to the last bit, or refused.
+//! Values as bytes, which are read back to the last bit or refused.
 //!
-//! Bytes: a mark, the SHA-256 of what follows, then the value in postcard. Bytes with another mark, truncated and changed ones are refused.
+//! The bytes are a mark, the SHA-256 digest of the value's bytes, and the value in the postcard format. Bytes with another mark and truncated or
+//! changed bytes are refused.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
-/// Bytes of the check sum.
+/// Length of the digest [bytes].
 const SUM: usize = 32;
 
 /// Reason why bytes cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unreadable {
-    /// They begin with another mark.
+    /// The bytes begin with another mark.
     Mark,
-    /// They are truncated or changed.
+    /// The bytes are truncated or changed.
     Damaged,
 }
 
-/// A value as bytes that begin with a mark.
+/// Returns a value as bytes that begin with a mark.
 pub fn seal(mark: &[u8], value: &impl Serialize) -> Vec<u8> {
     let body = postcard::to_stdvec(value).expect("a value in memory can be written");
     [mark, Sha256::digest(&body).as_slice(), &body].concat()
 }
 
-/// Reads the value of [`seal`].
+/// Reads a value written by [`seal`].
 ///
 /// # Errors
 /// The bytes are not those of a value with this mark.

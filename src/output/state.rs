@@ -1,4 +1,4 @@
-//! The saved state of a run that is to be continued.
+//! Saved state of a run that is to be continued.
 
 use std::fs;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub struct RunState {
     pub scene: String,
     /// Coupling of the motion, in words.
     pub coupling: String,
-    /// The scene that is simulated: with elements, integrator and step.
+    /// The simulated scene, with elements, integrator and step.
     pub discretised: String,
     /// The simulation.
     pub snapshot: Snapshot,
@@ -34,7 +34,7 @@ pub struct RunState {
 }
 
 impl RunState {
-    /// Writes the state into the folder of the run, in place of an older one once it is complete.
+    /// Writes the state into the folder of the run; it replaces an older one when it is complete.
     ///
     /// # Errors
     /// The operating system refuses.
@@ -46,7 +46,7 @@ impl RunState {
     /// Reads the state from the folder of a run.
     ///
     /// # Errors
-    /// No state, or one that this version did not write.
+    /// There is no state, it is damaged, or another version wrote it.
     pub fn read(folder: &Path) -> Result<RunState, OutputError> {
         let path = folder.join(FILE);
         let refuse = |problem: &str| OutputError::State {
@@ -67,9 +67,9 @@ impl RunState {
         })
     }
 
-    /// Removes the state from the folder of a run that is complete.
+    /// Removes the state from the folder of a completed run.
     pub fn remove(folder: &Path) {
-        // one that cannot be removed is refused when it is read: the files have changed
+        // a state that cannot be removed is refused when it is read: the files have changed
         let _ = fs::remove_file(folder.join(FILE));
     }
 }

@@ -1,4 +1,4 @@
-//! Tables in the formats that a scene may choose; and tables that appear under their name when they are whole.
+//! Tables in the formats that a scene may choose, and tables that receive their name when they are complete.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub(super) enum Table {
 }
 
 impl Table {
-    /// A table in a new file, without rows, or in one that continues after its last row.
+    /// Opens a table in a new file, without rows, or in a file that continues after its last row.
     pub(super) fn open(
         file: Growing,
         format: Format,
@@ -31,7 +31,7 @@ impl Table {
         })
     }
 
-    /// Adds a row: a value for every column.
+    /// Adds a row with a value for every column.
     pub(super) fn row(&mut self, values: &[f64]) -> Result<(), OutputError> {
         match self {
             Table::Csv(table) => table.row(values),
@@ -60,14 +60,14 @@ impl Table {
 /// A table that is written row by row under a temporary name.
 #[derive(Debug)]
 pub struct WholeTable {
-    /// File that the name leads to.
+    /// File to which the name leads.
     target: PathBuf,
     partial: PathBuf,
     table: Table,
 }
 
 impl WholeTable {
-    /// Begins a table; the file of the name stays as it is until [`WholeTable::finish`].
+    /// Begins a table; an existing file of this name does not change until [`WholeTable::finish`].
     ///
     /// # Errors
     /// The name belongs to something other than a regular file, or the operating system refuses.
@@ -87,7 +87,7 @@ impl WholeTable {
         })
     }
 
-    /// Adds a row: a value for every column.
+    /// Adds a row with a value for every column.
     ///
     /// # Errors
     /// The operating system refuses.
@@ -95,7 +95,7 @@ impl WholeTable {
         self.table.row(values)
     }
 
-    /// Gives the table its name, in place of an older file.
+    /// Gives the table its name, replacing an older file.
     ///
     /// # Errors
     /// The operating system refuses.
@@ -108,7 +108,7 @@ impl WholeTable {
 
 impl Drop for WholeTable {
     fn drop(&mut self) {
-        // after `finish` there is none; one that cannot be removed does not look complete
+        // after `finish` there is no such file; one that cannot be removed is recognisable by its name
         let _ = fs::remove_file(&self.partial);
     }
 }

@@ -12,16 +12,16 @@ pub struct Times {
 }
 
 impl Times {
-    /// Times from 0 to `end` [s] every `interval` [s]; the last step is shorter where the interval does not divide the end.
+    /// Times from 0 to `end` [s] every `interval` [s]; the last step is shorter if the end is not a multiple of the interval.
     pub fn new(end: f64, interval: f64) -> Times {
-        // A remainder of a millionth of a step is rounding of the quotient, not a step.
+        // A remainder of a millionth of a step is due to rounding of the quotient and not counted.
         let count = (end / interval - 1e-6).ceil().max(0.0) as usize;
         Times { interval, end, count }
     }
 
-    /// Time at the beginning of a step, or the end [s].
+    /// Time at the beginning of a step, or at the end [s].
     pub fn at(&self, index: usize) -> f64 {
-        // Six times 0.05 is 0.30000000000000004, six twentieths are 0.3.
+        // 6 × 0.05 is 0.30000000000000004, but 6/20 is 0.3.
         let a_second = (1.0 / self.interval).round();
         if index == self.count {
             self.end
@@ -32,7 +32,7 @@ impl Times {
         }
     }
 
-    /// Length of a step [s]: the interval to the last bit, save for a shorter last one.
+    /// Length of a step [s]: exactly the interval, except for a shorter last step.
     pub fn step(&self, index: usize) -> f64 {
         let rest = self.end - index as f64 * self.interval;
         if index + 1 == self.count && rest < self.interval * (1.0 - 1e-6) {

@@ -2,24 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Most points kept of a history [-].
+/// Greatest number of points kept of a history [-].
 pub const POINTS_MAX: usize = 2400;
 
-/// A history whose length does not grow with the run: of every group of neighbours the first, the least, the greatest and the last
-/// are kept, in their order. Values that are not finite are left out.
+/// History whose length does not grow with the run: the first, the least, the greatest and the last point of every group of neighbours are kept, in
+/// order. Non-finite values are omitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trace {
-    /// Points in a group [-]; 1 where all are kept.
+    /// Number of points in a group [-]; 1 if all are kept.
     group: usize,
     kept: Vec<[f64; 2]>,
     open: Option<Group>,
 }
 
-/// A group that is not complete.
+/// Incomplete group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Group {
     count: usize,
-    /// The first, the least, the greatest and the last point, each with its place in the group.
+    /// The first, the least, the greatest and the last point, each with its index in the group.
     marks: [(usize, [f64; 2]); 4],
 }
 
@@ -45,7 +45,7 @@ impl Group {
 }
 
 impl Trace {
-    /// An empty history for a number of points.
+    /// Creates an empty history for a number of points.
     pub fn new(planned: usize) -> Trace {
         let group = match planned {
             ..=POINTS_MAX => 1,
@@ -58,7 +58,7 @@ impl Trace {
         }
     }
 
-    /// The history of these points.
+    /// Returns the history of these points.
     pub fn of(points: &[[f64; 2]]) -> Trace {
         let finite = || points.iter().filter(|point| is_finite(point));
         let mut trace = Trace::new(finite().count());
@@ -89,7 +89,7 @@ impl Trace {
         }
     }
 
-    /// The points that are kept, in their order.
+    /// Returns the points that are kept, in order.
     pub fn points(&self) -> Vec<[f64; 2]> {
         let open = self.open.iter().flat_map(Group::points);
         self.kept.iter().copied().chain(open).collect()
@@ -119,16 +119,16 @@ pub struct Range {
 pub struct RangeSum {
     start: f64,
     last: [f64; 2],
-    /// First value, which the integrals are relative to, so that little is cancelled.
+    /// First value, relative to which the values are integrated to reduce cancellation.
     origin: f64,
-    /// Integral over time of the value, and of its square.
+    /// Integrals over time of the value and of its square, relative to the first value.
     areas: [f64; 2],
     least: f64,
     greatest: f64,
 }
 
 impl RangeSum {
-    /// The sums of one pair of time [s] and value.
+    /// Returns the sums of one pair of time [s] and value.
     pub fn new([time, value]: [f64; 2]) -> RangeSum {
         RangeSum {
             start: time,
@@ -158,7 +158,7 @@ impl RangeSum {
         self.greatest = self.greatest.max(value);
     }
 
-    /// The range of all pairs. That of one pair is its value.
+    /// Returns the range of all pairs; for a single pair, this is its value.
     pub fn range(&self) -> Range {
         let span = self.last[0] - self.start;
         let [mean, square] = match span {

@@ -1,4 +1,4 @@
-//! ParaView files: one `.vtp` (VTK poly data) for every frame and one `.pvd` that places them in time.
+//! ParaView files: one `.vtp` (VTK poly data) for every frame and one `.pvd` that assigns times to them.
 //!
 //! Every line is a poly-line. Point data: `tension` [N] and `s`, the unstretched arc length [m]. Cell data: `line`, the
 //! line's number in the order of the scene. Numbers are inline text, so that the files can be read without ParaView.
@@ -21,7 +21,7 @@ pub fn frame_name(index: usize) -> String {
     format!("{FRAME_FOLDER}/lines_{index:05}.vtp")
 }
 
-/// Returns true for the name of a frame's file in its folder.
+/// Returns whether a name is that of a frame's file in its folder.
 pub(super) fn is_frame(name: &str) -> bool {
     let number = name
         .strip_prefix("lines_")
@@ -76,7 +76,7 @@ fn write_piece<W: Write>(xml: &mut Writer<W>, frame: &Frame, nodes: &[Node]) -> 
         write_array(xml, ["Float64", "position", "3"], &positions)
     })?;
     within(xml, "Lines", &[], |xml| {
-        // Every line owns a run of the points; `offsets` holds where each run ends.
+        // The points of every line are contiguous; `offsets` holds the end of each line.
         let mut ends = frame.lines.iter().scan(0, |end, line| {
             *end += line.len();
             Some(*end)
@@ -87,7 +87,7 @@ fn write_piece<W: Write>(xml: &mut Writer<W>, frame: &Frame, nodes: &[Node]) -> 
     })
 }
 
-/// Text of values, a tuple of `components` numbers a line.
+/// Text of values with `components` numbers in a row.
 fn tuples<T>(
     values: &mut dyn Iterator<Item = T>,
     components: usize,

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesDecl, Event};
 /// Writer of a document in memory.
 pub(super) type Xml = Writer<Vec<u8>>;
 
-/// Text of a document whose root `write` writes.
+/// Returns the text of a document whose root is written by `write`.
 pub(super) fn document(write: impl FnOnce(&mut Xml) -> io::Result<()>) -> String {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     let written = writer
@@ -33,7 +33,7 @@ pub(super) fn empty<W: Write>(
     Ok(())
 }
 
-/// Writes an element with the content that `write` writes.
+/// Writes an element with the content written by `write`.
 pub(super) fn within<W: Write>(
     xml: &mut Writer<W>,
     name: &str,

@@ -5,30 +5,27 @@
 //!   η = a cos ψ,   ψ = k (x cos θ + y sin θ) − ωt + φ,   ω² = g k tanh kh,
 //!   u = a ω C(z) cos ψ,   w = a ω S(z) sin ψ,   C = cosh k(z + h)/sinh kh,   S = sinh k(z + h)/sinh kh,
 //!
-//! u along θ, w upwards; the accelerations are ∂/∂t of these, as the theory is linear. The argument is stretched
-//! after Wheeler, above and below z = 0: z' = h (z − η)/(h + η) with the elevation η of all components (deep water: z
-//! − η). The water at the surface therefore moves as the linear theory predicts at z = 0. A point above η moves as
-//! the water at η does. The ramp ½(1 − cos πt/t_r) multiplies the amplitudes up to the time t_r; its rate is a part
-//! of the accelerations.
+//! u along θ, w upwards; the accelerations are ∂/∂t of these, as the theory is linear. The argument is stretched after Wheeler, above and below z =
+//! 0: z' = h (z − η)/(h + η) with the elevation η of all components (deep water: z − η). The water at the surface therefore moves as the linear
+//! theory predicts at z = 0. A point above η moves as the water at η does. The ramp ½(1 − cos πt/t_r) multiplies the amplitudes up to the time t_r;
+//! its rate contributes to the accelerations.
 //!
-//! A place is moved only by components that reach it. With A = a ω² e^{kz}, the acceleration that a component would
-//! have there in deep water, and R = √Σ(aω²)², the components of highest frequency that all have A < 10⁻⁴ R/√N are
-//! left out. They add up to less than 10⁻⁴ of the acceleration at the surface. For this test z is taken three
-//! standard deviations of the elevation too high, to allow for the troughs. The elevation that stretches z excludes
-//! the components of highest frequency whose √Σa² times √Σ(k aω² e^{kz})² is below 10⁻⁴ R; near the surface that
-//! excludes none.
+//! The motion at a position is the sum over the components that reach it. With A = a ω² e^{kz}, the acceleration of a component there in deep water,
+//! and R = √Σ(aω²)², the components of highest frequency that all have A < 10⁻⁴ R/√N are left out. Together they contribute less than 10⁻⁴ of the
+//! acceleration at the surface. This test takes z three standard deviations of the elevation too high, to allow for the troughs. The elevation that
+//! stretches z excludes the components of highest frequency whose √Σa² times √Σ(k aω² e^{kz})² is below 10⁻⁴ R; near the surface it includes all
+//! components.
 //!
-//! Between two instants not further apart than [`Waves::interval_below`] velocity, acceleration and elevation follow
-//! cubics with the slopes that they have there, [`Orbit::between`]. From the error h⁴f⁗/384 of that cubic, the
-//! interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves an error of at most 10⁻³ of the acceleration. The stretching
-//! adds an error of the slopes, of the order of (ka)². h is also at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the
-//! period of a single wave, since places are extrapolated over that time by their velocities, and at most 2 s. a is
-//! the amplitude at the highest place, a e^{kz} with z again three standard deviations too high: short waves, which
-//! change soonest, do not reach down to lines that hang from a deep fairlead.
+//! Between two instants no further apart than [`Waves::interval_below`], velocity, acceleration and elevation are cubics in time with the slopes at
+//! both instants, [`Orbit::between`]. The error of such a cubic is h⁴f⁗/384. The interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ keeps it below 10⁻³ of
+//! the acceleration. The stretching adds an error of the slopes, of the order of (ka)². Positions are extrapolated over an interval by their
+//! velocities. h is therefore also at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, and at most 2 s. Here a is the
+//! amplitude at the highest position, a e^{kz} with z again three standard deviations too high: short waves, which change fastest, do not reach lines
+//! that hang from a deep fairlead.
 //!
-//! Source: Airy (1845) as in Dean & Dalrymple (1991), Water Wave Mechanics for Engineers and Scientists, chapter 3; Wheeler (1970), J.
-//! Petroleum Technology 22(3), 359-367. Valid for ka ≪ 1. The dispersion relation is solved by Newton's method from the
-//! guess k = ω²/g · (1 − exp(−(ω²h/g)^(5/4)))^(−2/5) (Guo, 2002, Coastal Engineering 45, 71-74), which is right to 0.75 %.
+//! Source: Airy (1845) as in Dean & Dalrymple (1991), Water Wave Mechanics for Engineers and Scientists, chapter 3; Wheeler (1970), J. Petroleum
+//! Technology 22(3), 359-367. Valid for ka ≪ 1. The dispersion relation is solved by Newton's method from the guess k = ω²/g · (1 −
+//! exp(−(ω²h/g)^(5/4)))^(−2/5) (Guo, 2002, Coastal Engineering 45, 71-74), which is accurate to 0.75 %.
 
 use std::f64::consts::{PI, TAU};
 
@@ -39,17 +36,17 @@ use crate::math::elementary::{exp, sin_cos};
 use crate::math::hermite::Hermite;
 use crate::math::lanes::{LANES, Lanes, Vectors};
 
-/// Newton steps of the dispersion relation, at most [-]; from a guess right to 1 % three are enough.
+/// Maximum number of Newton steps for the dispersion relation [-]; three suffice from a guess accurate to 1 %.
 const NEWTON_STEPS_MAX: usize = 20;
-/// Part of the surface's acceleration that components left out may have together [-].
+/// Maximum acceleration of all omitted components together, relative to that at the surface [-].
 const REACH: f64 = 1e-4;
-/// Standard deviations of the elevation that the surface may be lowered by where components are left out [-].
+/// Depth of the troughs that the omission of components allows for, in standard deviations of the elevation [-].
 const TROUGH: f64 = 3.0;
-/// Error of the cubics between two instants, over the acceleration [-].
+/// Maximum error of the cubics between two instants, relative to the acceleration [-].
 const BETWEEN: f64 = 1e-3;
-/// Longest time between two instants [s].
+/// Maximum time between two instants [s].
 const INTERVAL_MAX: f64 = 2.0;
-/// Deepest trough, over the depth [-]: the seabed does not fall dry.
+/// Maximum depth of a trough relative to the water depth [-]: the seabed does not fall dry.
 const TROUGH_MAX: f64 = 0.9;
 
 /// One wave train.
@@ -59,13 +56,13 @@ pub struct Component {
     pub amplitude: f64,
     /// Circular frequency ω [rad/s].
     pub frequency: f64,
-    /// Direction it travels to, from x towards y [rad].
+    /// Direction of travel, from x towards y [rad].
     pub direction: f64,
     /// Phase φ [rad].
     pub phase: f64,
 }
 
-/// Motion of the water at a place by the waves.
+/// Motion of the water at a position due to the waves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Orbit {
     /// Velocity [m/s].
@@ -74,15 +71,14 @@ pub struct Orbit {
     pub acceleration: Vector3<f64>,
     /// Rate of the acceleration ∂²u/∂t² [m/s³].
     pub jerk: Vector3<f64>,
-    /// Elevation of the surface above or below the place, by the components that stretch the place, all of them near the surface [m].
+    /// Elevation of the surface at x and y of the position [m], by the components that stretch its height; near the surface these are all.
     pub elevation: f64,
-    /// Rate of the elevation by the components that reach the place, all of them near the surface [m/s].
+    /// Rate of the elevation [m/s], by the components that reach the position; near the surface these are all.
     pub rise: f64,
 }
 
 impl Orbit {
-    /// Motion at time `t` [s] between two instants `t0` and `t1` [s], by cubics with the slopes at both; `before`
-    /// where the instants coincide.
+    /// Motion at time `t` [s] between two instants `t0` and `t1` [s], by cubics with the slopes at both; `before` if the instants coincide.
     pub fn between(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2], t: f64) -> Orbit {
         if t1 <= t0 {
             return *before;
@@ -119,23 +115,23 @@ pub fn cubics(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2]) -> [[Vector3<f6
     ]
 }
 
-/// A sum of wave trains.
+/// Sum of wave trains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waves {
-    /// Components by frequency, the lowest first.
+    /// Components in ascending order of frequency.
     components: Vec<Component>,
-    /// The same with what follows from the depth.
+    /// Constants of the components at the water depth.
     trains: Vec<Train>,
     depth: Option<f64>,
     ramp: Option<f64>,
-    /// Heights [m], downwards from 0, and the longest time between two instants for places below each [s].
+    /// Heights [m], from 0 downwards, and the maximum time between two instants for positions below each [s].
     intervals: Vec<[f64; 2]>,
 }
 
-/// Constants of a component over the depth of the water.
+/// Constants of a component at the water depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Train {
-    /// [m]
+    /// Amplitude a [m].
     amplitude: f64,
     /// ω [rad/s].
     frequency: f64,
@@ -147,9 +143,9 @@ struct Train {
     seabed: f64,
     /// 1/(1 − q) [-].
     whole: f64,
-    /// Height below which no place is moved by this component or by those after it [m].
+    /// Height below which this component and those after it are left out of the motion [m].
     reach: f64,
-    /// Height below which the elevation of this component, and of those after it, stretches no place [m].
+    /// Height below which this component and those after it are left out of the elevation that stretches z [m].
     stretch: f64,
 }
 
@@ -186,20 +182,20 @@ impl Train {
     }
 }
 
-/// State of some waves at one time, shared by every place, with scratch arrays for the places.
+/// State of the waves at one time, common to all positions, with workspace for four positions.
 #[derive(Debug, Clone, Default)]
 pub struct Instant {
-    /// Time, once one is set [s].
+    /// Time [s]; `None` until it is set.
     time: Option<f64>,
-    /// −ωt + φ of the components, within a turn [rad].
+    /// −ωt + φ of the components, between 0 and 2π [rad].
     turn: Vec<f64>,
-    /// Growth of the ramp [-], with its rate [1/s] and the rate of that [1/s²].
+    /// Factor of the ramp [-], with its first [1/s] and second derivative [1/s²].
     growth: [f64; 3],
-    /// sin ψ and cos ψ of the components at four places.
+    /// sin ψ and cos ψ of the components at four positions.
     phase: Vec<[Lanes; 2]>,
 }
 
-/// Wave number k [1/m] of a circular frequency ω > 0 [rad/s] over a depth [m], deep water where none, under gravity [m/s²].
+/// Wave number k [1/m] at a circular frequency ω > 0 [rad/s] in water of a depth [m], deep water if `None`, under gravity [m/s²].
 pub fn wave_number(frequency: f64, depth: Option<f64>, gravity: f64) -> f64 {
     let deep = frequency * frequency / gravity;
     let Some(depth) = depth else { return deep };
@@ -217,7 +213,7 @@ pub fn wave_number(frequency: f64, depth: Option<f64>, gravity: f64) -> f64 {
 }
 
 impl Waves {
-    /// Wave trains over a depth [m], deep water where none, under gravity [m/s²], that grow over a ramp [s].
+    /// Wave trains in water of a depth [m], deep water if `None`, under gravity [m/s²], whose amplitudes grow over a ramp [s].
     pub fn new(components: &[Component], depth: Option<f64>, ramp: Option<f64>, gravity: f64) -> Waves {
         let mut components = components.to_vec();
         components.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
@@ -239,12 +235,12 @@ impl Waves {
         }
     }
 
-    /// Components, the lowest frequency first.
+    /// Components in ascending order of frequency.
     pub fn components(&self) -> &[Component] {
         &self.components
     }
 
-    /// Longest time between two instants that cubics may bridge [s], for places at a height [m] and below.
+    /// Maximum time between two instants that cubics may bridge [s], for positions at a height [m] and below.
     pub fn interval_below(&self, z: f64) -> f64 {
         let above = self.intervals.partition_point(|[height, _]| *height >= z);
         self.intervals[above.saturating_sub(1)][1]
@@ -255,12 +251,12 @@ impl Waves {
         deviation(&self.components)
     }
 
-    /// Number of components, of the lowest frequencies, that move the water at a height [m].
+    /// Number of components [-], from the lowest frequency, that move the water at a height [m].
     pub fn reaching(&self, z: f64) -> usize {
         self.trains.partition_point(|train| train.reach <= z)
     }
 
-    /// Turns the instant to a time [s].
+    /// Moves the instant to a time [s].
     pub fn turn_to(&self, t: f64, instant: &mut Instant) {
         if instant.time.replace(t) == Some(t) {
             return;
@@ -271,7 +267,7 @@ impl Waves {
         instant.growth = self.growth(t);
     }
 
-    /// Elevation of the surface at x, y [m] and time t [s], in [m].
+    /// Elevation of the surface [m] at x, y [m] and time t [s].
     pub fn elevation(&self, x: f64, y: f64, t: f64) -> f64 {
         let train = |(train, c): (&Train, &Component)| {
             let [along, across] = train.vector();
@@ -281,7 +277,7 @@ impl Waves {
         self.growth(t)[0] * trains.map(train).sum::<f64>()
     }
 
-    /// Motion of the water at a place [m] and time t [s]; above the surface that of the surface.
+    /// Motion of the water at a position [m] and time t [s]; above the surface, that of the surface.
     pub fn orbit(&self, place: Vector3<f64>, t: f64) -> Orbit {
         let mut instant = Instant::default();
         self.turn_to(t, &mut instant);
@@ -289,7 +285,7 @@ impl Waves {
         orbit
     }
 
-    /// Motion of the water at four places [m] and an instant; above the surface that of the surface. No place depends on the others.
+    /// Motion of the water at four positions [m] and an instant; above the surface, that of the surface. No result depends on the other positions.
     #[inline(always)]
     pub fn orbits(&self, places: [Vector3<f64>; LANES], instant: &mut Instant) -> [Orbit; LANES] {
         let heights = places.iter().map(|place| place.z);
@@ -325,7 +321,7 @@ impl Waves {
         stretched.max(seabed).min(still)
     }
 
-    /// Elevation at four places by the first components without the ramp [m]; leaves their sines and cosines in the instant.
+    /// Elevation [m] at four positions by the first `stretched` components, without the ramp; stores their sines and cosines in the instant.
     #[inline(always)]
     fn raised(&self, places: &Vectors, stretched: usize, instant: &mut Instant) -> Lanes {
         instant.phase.clear();
@@ -339,7 +335,7 @@ impl Waves {
         sum
     }
 
-    /// Sums over the first `count` components at four heights [m], as they are and stretched, without the ramp.
+    /// Sums over the first `count` components at four heights [m], given unstretched and stretched, without the ramp.
     #[inline(always)]
     fn sums(&self, [height, z]: [Lanes; 2], count: usize, instant: &Instant) -> Sums {
         let mut sums = Sums {
@@ -350,7 +346,7 @@ impl Waves {
             let speed = above(height, train.reach, train.amplitude * train.frequency);
             let [level, upward] = train.decay(z).map(|decay| speed * decay);
             let [east, north] = train.heading.map(|part| level * Lanes::splat(part));
-            // u ~ cos ψ and w ~ sin ψ, with their first two rates
+            // u ~ cos ψ and w ~ sin ψ, with their first two derivatives
             let [omega, back] = [train.frequency, -train.frequency].map(Lanes::splat);
             let once = [omega * *sine, back * *cosine];
             let twice = [omega * once[1], back * once[0]];
@@ -364,7 +360,7 @@ impl Waves {
         sums
     }
 
-    /// ½(1 − cos πt/t_r), with its first two rates.
+    /// ½(1 − cos πt/t_r), with its first two derivatives.
     fn growth(&self, t: f64) -> [f64; 3] {
         match self.ramp {
             Some(ramp) if t < ramp => {
@@ -377,13 +373,14 @@ impl Waves {
     }
 }
 
-/// A value where a height z is at least a limit [m], else 0.
+/// `value` where a height z is at least a limit [m], else 0.
 #[inline(always)]
 fn above(z: Lanes, limit: f64, value: f64) -> Lanes {
     (Lanes::splat(limit) - z).choose(Lanes::splat(0.0), Lanes::splat(value))
 }
 
-/// Motion at each of four places. Out of line: the compiler would lay out the loops before by how the lanes are taken apart, in halves of the width.
+/// Motion at each of four positions. Not inlined: the compiler would otherwise vectorise the loops before it at half the width, to suit the unpacking
+/// of the lanes.
 #[inline(never)]
 fn apart(rates: &[Vectors; 3], [elevation, rise]: &[Lanes; 2]) -> [Orbit; LANES] {
     std::array::from_fn(|lane| {
@@ -398,9 +395,9 @@ fn apart(rates: &[Vectors; 3], [elevation, rise]: &[Lanes; 2]) -> [Orbit; LANES]
     })
 }
 
-/// Sums over components at four places, without the ramp.
+/// Sums over components at four positions, without the ramp.
 struct Sums {
-    /// Velocity [m/s] with its first two rates.
+    /// Velocity [m/s] with its first two derivatives.
     rates: [Vectors; 3],
     /// Rate of the elevation [m/s].
     rise: Lanes,
@@ -427,13 +424,12 @@ fn interval(components: &[Component]) -> f64 {
     smooth.min(near).min(INTERVAL_MAX)
 }
 
-/// Factor between successive heights at which intervals are evaluated [-]; the first is of the shortest scale of any
-/// wave.
+/// Ratio of successive depths at which intervals are evaluated [-]; the first follows from the shortest wave.
 const INTERVAL_DEEPER: f64 = 1.5;
 /// Number of heights [-].
 const INTERVAL_HEIGHTS: i32 = 24;
 
-/// Heights, and the longest times between two instants for places below each.
+/// Heights [m], and the maximum times between two instants for positions below each [s].
 fn intervals(components: &[Component], numbers: &[f64]) -> Vec<[f64; 2]> {
     let margin = TROUGH * deviation(components);
     let shortest = numbers.last().copied().unwrap_or(1.0);
@@ -450,7 +446,7 @@ fn intervals(components: &[Component], numbers: &[f64]) -> Vec<[f64; 2]> {
     .collect()
 }
 
-/// For every component, the height below which it and those after it move nothing [m].
+/// For every component, the height below which it and those after it are left out of the motion [m].
 fn reach(components: &[Component], numbers: &[f64]) -> Vec<f64> {
     let least = REACH * root(components, 2) / (components.len() as f64).sqrt();
     let margin = TROUGH * deviation(components);
@@ -468,12 +464,12 @@ fn reach(components: &[Component], numbers: &[f64]) -> Vec<f64> {
     heights
 }
 
-/// Factor between successive heights tried for the elevation that stretches [-].
+/// Ratio of successive depths tried for the elevation that stretches z [-].
 const DEEPER: f64 = 1.15;
 /// Number of heights [-]; the deepest is 2e5 times as deep as the first.
 const HEIGHTS: usize = 88;
 
-/// For every component, the height below which the elevation of it and of those after it is left out [m].
+/// For every component, the height below which it and those after it are left out of the elevation that stretches z [m].
 fn stretch(components: &[Component], numbers: &[f64]) -> Vec<f64> {
     let least = REACH * root(components, 2);
     let margin = TROUGH * deviation(components);

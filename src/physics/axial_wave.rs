@@ -1,12 +1,12 @@
-//! Tensions along a line at rest, one of whose ends moves fast along the line.
+//! Tensions along a line at rest, one end of which moves rapidly along the line.
 //!
-//! At frequencies far above those of transverse waves the tensions T_i of the segments are the only forces that move the nodes, a_i = M_i⁻¹(T_i t_i − T_{i−1}
-//! t_{i−1}), with the unit vectors t_i of the segments. A segment with stiffness k and damping b is stretched by T_i/(k + iωb), so that
+//! At frequencies far above those of transverse waves, the tensions T_i of the segments are the only forces that move the nodes, a_i = M_i⁻¹(T_i t_i
+//! − T_{i−1} t_{i−1}), with the unit vectors t_i of the segments. A segment with stiffness k and damping b is stretched by T_i/(k + iωb), so that
 //!
 //! −ω² T_i/(k + iωb) = t_i·(a_{i+1} − a_i),
 //!
-//! one equation per segment in three neighbouring tensions. Where the line bends, its transverse mass resists too: a node at which neighbouring segments
-//! enclose an angle transmits less. The axial modes of hanging lines are therefore much higher than those of straight ones: 2.4 Hz instead of 1.3 Hz on
+//! one equation per segment in three neighbouring tensions. Where the line bends, its transverse mass resists too: a node between segments at an
+//! angle transmits less. The axial modes of hanging lines are therefore much higher than those of straight ones: 2.4 Hz instead of 1.3 Hz on
 //! `lazy_wave`.
 //!
 //! Source: derived here; the limit of vanishing angles is the wave equation of a rod.
@@ -18,7 +18,7 @@ use nalgebra::Complex;
 pub struct TensionRow {
     /// Inverse masses of both nodes along the segment, t_iᵀ(M_i⁻¹ + M_{i+1}⁻¹)t_i; that of a node with prescribed motion is zero [1/kg].
     pub inverse_masses: f64,
-    /// Inverse mass t_{i−1}ᵀ M_i⁻¹ t_i, which couples it to the segment before it [1/kg].
+    /// Inverse mass t_{i−1}ᵀ M_i⁻¹ t_i, which couples the segment to the previous one [1/kg].
     pub coupling: f64,
     /// Stiffness EA/l [N/m].
     pub stiffness: f64,
@@ -27,8 +27,8 @@ pub struct TensionRow {
 }
 
 impl TensionRow {
-    /// Diagonal element [1/kg] after elimination of all segments before this one, from that of the last of them, at a circular frequency [rad/s]. `loss` is
-    /// the loss factor of the stiffness [-].
+    /// Diagonal element [1/kg] after elimination of all previous segments, at a circular frequency [rad/s]. `before` is the diagonal element of the
+    /// previous segment [1/kg], `loss` the loss factor of the stiffness [-].
     pub fn eliminated(&self, before: Option<Complex<f64>>, frequency: f64, loss: f64) -> Complex<f64> {
         let modulus = Complex::new(self.stiffness, loss * self.stiffness + frequency * self.damping);
         let own = self.inverse_masses - frequency * frequency * modulus.inv();
@@ -39,7 +39,7 @@ impl TensionRow {
     }
 }
 
-/// Impedance of the end of a line whose last segment has a diagonal element [1/kg] and whose half node has a mass [kg] [N s/m].
+/// Impedance [N s/m] of the end of a line, from the diagonal element of its last segment [1/kg] and the mass of its half node [kg].
 pub fn impedance(last: Complex<f64>, mass: f64, frequency: f64) -> f64 {
     frequency * (last.inv() + mass).norm()
 }
@@ -53,7 +53,7 @@ mod tests {
     /// Masses per length across and along the line [kg/m].
     const MASSES: [f64; 2] = [180.0, 115.0];
 
-    /// Impedance over √(EA m_t) at the end of an arc in `count` segments whose other end is fixed, at a frequency [rad/s].
+    /// Impedance relative to √(EA m_t) at the end of an arc of `count` segments whose other end is fixed, at a frequency [rad/s].
     fn relative(curvature: f64, frequency: f64, count: usize) -> f64 {
         let l = LENGTH / count as f64;
         let half_angle = 0.5 * curvature * l;

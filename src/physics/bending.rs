@@ -1,27 +1,27 @@
-//! Bending of a line between two directions that follow each other: no rotations, no torsion.
+//! Bending of a line between two successive directions, without rotations or torsion.
 //!
 //! Between unit vectors q₁ and q₂ with c = q₁·q₂, over the material length l̄ that the turn belongs to, the curvature vector is
 //! κb/l̄ with κb = 2 q₁×q₂/(1 + c), |κb| = 2 tan(φ/2) at the angle φ, and the energy
 //!
 //! W = ½ B (|κb| − k₀)²,   B = EI/l̄ [N m];   without rest curvature W = 2B f,   f = |κb|²/4 = (1 − c)/(1 + c).
 //!
-//! 1 − c is taken as ½|q₂ − q₁|², which does not cancel. The slopes are f' = −2/(1 + c)² and f'' = 4/(1 + c)³ with c, and with the
-//! end-to-end vectors e₁ and e₂ of the two segments of lengths l₁ and l₂, P = I − q qᵀ,
+//! 1 − c is computed as ½|q₂ − q₁|², without cancellation. The slopes with respect to c are f' = −2/(1 + c)² and f'' = 4/(1 + c)³. With the
+//! end-to-end vectors e₁ and e₂ of the two segments of lengths l₁ and l₂, and P = I − q qᵀ,
 //!
 //! ∂c/∂e₁ = P₁q₂/l₁ = u₁,   ∂²c/∂e₁² = −(q₁u₁ᵀ + u₁q₁ᵀ + c P₁/l₁)/l₁,   ∂²c/∂e₁∂e₂ = P₁P₂/(l₁l₂).
 //!
-//! Two directions that meet where stiffness changes bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂); B = 0 where one of
-//! them is a hinge. A clamp is a fixed direction.
+//! Where the stiffness changes between two segments, their halves bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂); B = 0 if either is a hinge. A clamp is
+//! a fixed direction.
 //!
 //! Under a tension T a line leaves a clamp in a bend of length λ = √(EI/T), with the moment M = EI Θ/λ at the angle Θ between the clamp and the line
-//! beyond. In a chain of equal segments of length l, the deviation of each direction from that of the line beyond is r times that of the one before,
-//! r + 1/r = 2 + l²/λ²; that is r = e^(−2x) with sinh x = l/2λ = u. The chain acts on the clamp as a stiffness (EI/l)(1/r − 1) in series with B,
-//! and M is that of the line on every mesh if
+//! beyond. In a chain of equal segments of length l, the deviation of each direction from that of the line beyond is r times the previous one, r +
+//! 1/r = 2 + l²/λ²; that is r = e^(−2x) with sinh x = l/2λ = u. The chain acts on the clamp as a stiffness (EI/l)(1/r − 1) in series with B, and M is
+//! that of the continuous line on every mesh if
 //!
 //! B = (2EI/l)/(1 − tanh ½x),   tanh ½x = u/(1 + √(1 + u²)):
 //!
-//! 2EI/l, that of half a segment, for short segments, and √(EI T) for long ones. T is the tension at rest. At another tension T', M has a relative
-//! error of 0.05 (l/λ)² ln(T'/T) where l < λ, and of 0.15 ln(T'/T) at l = 2λ.
+//! B tends to 2EI/l, the stiffness of half a segment, for short segments, and to √(EI T) for long ones. T is the tension at rest. At another tension
+//! T', M has a relative error of 0.05 (l/λ)² ln(T'/T) where l < λ, and of 0.15 ln(T'/T) at l = 2λ.
 //!
 //! A moment M on an end of a line turns its last segment, of the end-to-end vector e and direction q. A turn δθ = q ×
 //! δq across the line does the work M·δθ = (M × q)·δe/l. M is therefore a couple of forces ± f on the segment's two
@@ -29,22 +29,20 @@
 //!
 //! f = M × e/|e|²,   ∂f/∂e = ([M]ₓ − 2 (M × q) qᵀ)/l²,
 //!
-//! which bends a line by M/EI there, with an error in (κl)². The part of M along the line does no work, since no
-//! torsional stiffness is modelled. ∂f/∂e is unsymmetric, as for a load without a potential.
+//! which bends a line by M/EI there, with an error of the order of (κl)². The part of M along the line does no work, since no torsional stiffness is
+//! modelled. ∂f/∂e is unsymmetric, as for a load without a potential.
 //!
-//! The module also holds EI of a solid round section and of a bundle of loose fibres, and the compression a segment
-//! can carry. A bundle of N equal loose strands of area A/N, d' = d/√N each, that slide on each other has
-//! N·(A/N)²E/4π = EI/N. The alternative definition, EI/N², is the stiffness of a single strand. A chain of segments
-//! of length l buckles in its shortest wave, a zigzag, at 4EI/l²: the bending energy of a zigzag of amplitude a is
-//! ½(EI/l)(4a/l)² per node, and a push P gives ½P(2a)²/l. The mesh cannot resolve the shape under a greater push, so a
-//! segment carries no more. Without EI it carries no compression.
+//! The module also holds EI of a solid round section and of a bundle of loose fibres, and the compression a segment can carry. A bundle of N equal
+//! loose strands of area A/N, d' = d/√N each, that slide on each other has N·(A/N)²E/4π = EI/N. The alternative definition, EI/N², is the stiffness
+//! of a single strand. A chain of segments of length l buckles in its shortest wave, a zigzag, at 4EI/l²: the bending energy of a zigzag of amplitude
+//! a is ½(EI/l)(4a/l)² per node, and a compression P gives ½P(2a)²/l. The mesh cannot resolve the shape under a larger compression, so a segment
+//! carries no more. Without EI it carries no compression.
 //!
-//! Source: Bergou, Wardetzky, Robinson, Audoly & Grinspun (2008), Discrete Elastic Rods, ACM Trans. Graph. 27(3), eq. 1 and
-//! section 4.2 (κb and the bending energy); second derivatives, series stiffness, couple, fibres and zigzag derived
-//! here, as is B of a clamp. The limit of compression corresponds to "segment Euler load" of OrcaFlex, there π²EI/l².
-//! Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the energy is infinite. A
-//! rest curvature has a magnitude but no direction, as in a line that is free to twist: its force is not smooth where
-//! the line is straight.
+//! Source: Bergou, Wardetzky, Robinson, Audoly & Grinspun (2008), Discrete Elastic Rods, ACM Trans. Graph. 27(3), eq. 1 and section 4.2 (κb and the
+//! bending energy); second derivatives, series stiffness, couple, fibres, zigzag and B of a clamp are derived here. The compression limit corresponds
+//! to OrcaFlex's "segment Euler load", π²EI/l² there. Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the
+//! energy is infinite. A rest curvature has a magnitude but no direction, as in a line that is free to twist: its force is not smooth where the line
+//! is straight.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -63,11 +61,11 @@ pub struct Direction<V: RealVector = Vector3<f64>> {
     pub per_length: V::Real,
 }
 
-/// Keeps coincident nodes from dividing by zero [m].
+/// Minimum length of a segment [m], against division by zero where nodes coincide.
 const LENGTH_MIN: f64 = 1e-9;
 
 impl Direction {
-    /// Direction of a segment of the end-to-end vector `chord` and its length [m]; zero where both nodes coincide.
+    /// Direction of a segment, from its end-to-end vector `chord` and its length [m]; zero where both nodes coincide.
     #[inline(always)]
     pub fn new(chord: Vector3<f64>, length: f64) -> Direction {
         let per_length = 1.0 / length.max(LENGTH_MIN);
@@ -78,7 +76,7 @@ impl Direction {
     }
 }
 
-/// Energy and its slopes with the end-to-end vectors e₁ and e₂ of the two segments.
+/// Energy and its slopes with respect to the end-to-end vectors e₁ and e₂ of the two segments.
 #[derive(Debug, Clone, Copy)]
 pub struct Bend {
     /// W [J].
@@ -109,7 +107,7 @@ impl Hessian {
         }
     }
 
-    /// Returns the sum of two.
+    /// Returns the sum of two Hessians.
     #[inline(always)]
     pub fn plus(&self, other: &Hessian) -> Hessian {
         Hessian {
@@ -119,7 +117,7 @@ impl Hessian {
         }
     }
 
-    /// Product with changes of e₁ and e₂ [m]: changes of the slopes [N].
+    /// Changes of the slopes [N] due to changes of e₁ and e₂ [m].
     #[inline(always)]
     pub fn product(&self, [v1, v2]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
         [
@@ -136,7 +134,7 @@ pub struct Turn<V: RealVector = Vector3<f64>> {
     second: Direction<V>,
     /// q₁·q₂.
     cosine: V::Real,
-    /// 1/(1 + c), that sum kept off zero.
+    /// 1/(1 + c), with the sum kept away from zero.
     per_sum: V::Real,
     /// f = |κb|²/4.
     square: V::Real,
@@ -166,7 +164,7 @@ impl<V: RealVector> Turn<V> {
         }
     }
 
-    /// Slopes of the energy with e₁ and e₂ [N] for a stiffness B [N m] and a rest bend k₀ [-].
+    /// Slopes of the energy with respect to e₁ and e₂ [N] for a stiffness B [N m] and a rest bend k₀ [-].
     #[inline(always)]
     pub fn slope(&self, stiffness: V::Real, rest: V::Real) -> [V; 2] {
         let [slope, _] = self.slopes(stiffness, rest);
@@ -207,8 +205,7 @@ impl Turn {
         }
     }
 
-    /// Moment [N m] on the support of the first direction, where that is prescribed, in the sense that turns it
-    /// towards the second.
+    /// Moment [N m] on the support of the first direction, if that is prescribed; it turns the first direction towards the second.
     pub fn moment_on_first(&self, stiffness: f64, rest: f64) -> Vector3<f64> {
         let [slope, _] = self.slopes(stiffness, rest);
         -slope * self.first.along.cross(&self.second.along)
@@ -245,7 +242,7 @@ impl Turn {
         }
     }
 
-    /// B JᵀJ with the slopes J of k = (q₂ − q₁)√(2/(1 + c)), |k| = |κb|: never indefinite, and exact where the line is straight.
+    /// B JᵀJ with the slopes J of k = (q₂ − q₁)√(2/(1 + c)), |k| = |κb|: positive semi-definite, and exact where the line is straight.
     #[inline(always)]
     pub fn convex_hessian(&self, stiffness: f64) -> Hessian {
         let [j1, j2] = self.bend_slopes();
@@ -256,7 +253,7 @@ impl Turn {
         }
     }
 
-    /// Slopes of k with e₁ and e₂ [1/m].
+    /// Slopes of k with respect to e₁ and e₂ [1/m].
     #[inline(always)]
     fn bend_slopes(&self) -> [Matrix3<f64>; 2] {
         let scale = (2.0 * self.per_sum).sqrt();
@@ -268,8 +265,8 @@ impl Turn {
         ]
     }
 
-    /// Stiffness of a damper of `damping` [N m s] on the rate of k across the line, for a section that does not spin about
-    /// its axis: [N s/m]. Rotation of the line as a whole is not damped.
+    /// Damping matrix [N s/m] of a damper of `damping` [N m s] on the rate of k across the line, for a section that does not spin about its axis.
+    /// Rotation of the line as a whole is not damped.
     #[inline(always)]
     pub fn damper(&self, damping: f64) -> Hessian {
         let mean = (self.first.along + self.second.along).normalize();
@@ -292,7 +289,7 @@ pub struct Couple {
 }
 
 impl Couple {
-    /// Couple of a moment M [N m] on a segment of the end-to-end vector e [m].
+    /// Couple of a moment M [N m] on a segment with the end-to-end vector e [m].
     pub fn new(moment: Vector3<f64>, chord: Vector3<f64>) -> Couple {
         let per_square = 1.0 / chord.norm_squared().max(f64::MIN_POSITIVE);
         let turned = per_square * moment.cross(&chord);
@@ -314,18 +311,18 @@ fn across(direction: &Direction) -> Matrix3<f64> {
     Matrix3::identity() - direction.along * direction.along.transpose()
 }
 
-/// EI [N m²] of a solid round section of a diameter [m] and Young's modulus [Pa].
+/// EI [N m²] of a solid round section with this diameter [m] and Young's modulus [Pa].
 pub fn solid_round(diameter: f64, youngs_modulus: f64) -> f64 {
     youngs_modulus * circle::second_moment(diameter)
 }
 
-/// EI [N m²] of a section of loose strands, from that of one solid section: divided by their number to the power of 1
-/// or, in the alternative definition, 2.
+/// EI [N m²] of a section of loose strands: that of the solid section, divided by the number of strands to the power of 1 or, in the alternative
+/// definition, 2.
 pub fn of_strands(solid: f64, strands: usize, power: i32) -> f64 {
     solid / (strands as f64).powi(power)
 }
 
-/// B [N m] of two halves of segments in series, each with its length [m] and EI [N m²].
+/// B [N m] of two half segments in series, from length [m] and EI [N m²] of each segment.
 pub fn in_series(halves: [(f64, f64); 2]) -> f64 {
     let [(l1, ei1), (l2, ei2)] = halves;
     if ei1 > 0.0 && ei2 > 0.0 {
@@ -335,14 +332,14 @@ pub fn in_series(halves: [(f64, f64); 2]) -> f64 {
     }
 }
 
-/// B [N m] of a clamp at the end of a chain of equal segments of a length [m] and EI [N m²] under a tension [N].
+/// B [N m] of a clamp at the end of a chain of equal segments, from their EI [N m²], length [m] and tension [N].
 pub fn of_clamp(stiffness: f64, length: f64, tension: f64) -> f64 {
     let u = 0.5 * length * (tension / stiffness).sqrt();
     let cosh = (1.0 + u * u).sqrt();
     2.0 * stiffness / length * (1.0 + cosh) / (1.0 + 1.0 / (cosh + u)) // without the cancellation of 1 − tanh ½x
 }
 
-/// Greatest push [N] that a segment of a length [m] and EI [N m²] carries.
+/// Maximum compression [N] that a segment of this EI [N m²] and length [m] carries.
 pub fn compression_max(stiffness: f64, length: f64) -> f64 {
     4.0 * stiffness / (length * length)
 }
@@ -360,7 +357,7 @@ mod tests {
         }
     }
 
-    /// A clamp at an angle from x [rad].
+    /// Clamp at an angle from x [rad].
     fn clamp(angle: f64) -> Direction {
         Direction {
             along: Vector3::new(angle.cos(), angle.sin(), 0.0),

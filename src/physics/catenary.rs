@@ -1,4 +1,4 @@
-//! The elastic catenary in closed form: a line held at two ends, with or without a seabed under it.
+//! The elastic catenary in closed form: a line held at two ends, with or without a seabed.
 //!
 //! ```text
 //!  z ↑          ● B (span, rise)        H    horizontal tension, constant in flight
@@ -23,30 +23,28 @@
 //! No differences of large numbers remain, and w = 0 (α = 1, σ = T) needs no special case.
 //!
 //! # One equation
-//! From the same identities H² = (σ² − Vₘ²)(1 − ε²). A line held at ends X, Z apart has H = X/(L(α/σ + 1/EA)) and
-//! Vₘ = Z/(L(1/σ + 1/EA)), both functions of σ = W/(2 tanh λ) alone; put into that identity they leave one equation in λ,
+//! From the same identities H² = (σ² − Vₘ²)(1 − ε²). A line held at ends X, Z apart has H = X/(L(α/σ + 1/EA)) and Vₘ = Z/(L(1/σ + 1/EA)), both
+//! functions of σ = W/(2 tanh λ) alone. Inserted into that identity, they give one equation in λ,
 //!
 //! X²/(λ/sinh λ + (σ/EA)/cosh λ)² + Z²/(1 + σ/EA)² = L²,
 //!
-//! whose left side increases with λ, so there is exactly one root. Without stretch it is the classical X sinh λ/λ = √(L² − Z²).
-//! `uniform` balances it so that no digit is lost.
+//! whose left side increases with λ, so there is exactly one root. Without stretch it is the classical X sinh λ/λ = √(L² − Z²). The module `uniform`
+//! balances it so that no digits are lost.
 //!
 //! # The seabed
-//! A flight from the seabed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and the part between
-//! them must reach X. The excess of a flight's length over its span, (H/w)(sinh β − β) with sinh β = V/H, makes this
-//! one balance in H (`touchdown`). Without tension the flights hang and the rest of the line is slack: H = 0, the
-//! layout is one of many, and the returned one spreads the slack evenly. Friction acts towards A, as on a line laid
-//! from A and hauled at B; towards B where B lies on the seabed and A does not ([`is_laid_from_b`]).
+//! A flight from the seabed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and the part between them must span X. With the
+//! excess of a flight's length over its span, (H/w)(sinh β − β) with sinh β = V/H, this is one balance in H (`touchdown`). Without tension the
+//! flights hang vertically and the rest of the line is slack: H = 0, the layout is not unique, and the returned one spreads the slack evenly.
+//! Friction acts towards A, as on a line laid from A and hauled at B; it acts towards B if B lies on the seabed and A does not ([`is_laid_from_b`]).
 //!
 //! # Several sections
-//! The line is laid out from A under a trial tension, which is searched (`sections`). Buoyant sections rise off the
-//! seabed without an upper limit.
+//! The line is laid out from A under a trial tension, which is searched so that the line ends at B (`sections`). Buoyant sections rise off the seabed
+//! without an upper limit.
 //!
 //! # Source and validity
-//! The elastic catenary: H. M. Irvine, Cable Structures, MIT Press, 1981. Touchdown with friction as a model: J. M. Jonkman,
-//! Dynamics Modeling and Loads Analysis of an Offshore Floating Wind Turbine, NREL/TP-500-41958, 2007. The forms solved
-//! here are derived above. Linear stretch (tension EA times engineering strain), weight per unstretched length, no bending
-//! stiffness, a flat seabed that does not yield.
+//! The elastic catenary: H. M. Irvine, Cable Structures, MIT Press, 1981. Touchdown with friction as a model: J. M. Jonkman, Dynamics Modeling and
+//! Loads Analysis of an Offshore Floating Wind Turbine, NREL/TP-500-41958, 2007. The forms solved here are derived above. Linear stretch (tension EA
+//! times engineering strain), weight per unstretched length, no bending stiffness, a flat rigid seabed.
 //!
 //! ```
 //! use moorline::physics::catenary::{FlatSeabed, Section, solve};
@@ -75,17 +73,17 @@ pub use stiffness::in_flight;
 use touchdown::Touchdown;
 use uniform::{EndForces, Uniform};
 
-/// Height above the seabed, over the length of the line, up to which an end lies on it as far as friction is concerned [-].
+/// Height above the seabed, relative to the line length, up to which an end counts as lying on it for friction [-].
 const ON_SEABED: f64 = 0.02;
-/// An end this far under the seabed, over the length of the line, is taken to lie on it: rounding of positions [-].
+/// Depth below the seabed, relative to the line length, up to which an end counts as lying on it, for rounding of positions [-].
 const SEABED_TOLERANCE: f64 = 1e-12;
 
-/// A stretch of line of one kind.
+/// Uniform part of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section {
     /// Unstretched length [m].
     pub length: f64,
-    /// Weight in its fluid per unstretched length [N/m]: negative floats, 0 is weightless.
+    /// Weight in the surrounding fluid per unstretched length [N/m]; negative if buoyant.
     pub weight: f64,
     /// Axial stiffness EA [N].
     pub axial_stiffness: f64,
@@ -101,17 +99,17 @@ fn section(length: f64, weight: f64, axial_stiffness: f64) -> Section {
     }
 }
 
-/// A flat seabed that the line may lie on.
+/// Flat seabed on which the line may lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlatSeabed {
     /// z of the seabed relative to end A [m]: 0 where A lies on it, negative below.
     pub height: f64,
-    /// Coulomb friction along the line [-]: tension falls towards A by friction × weight per metre on the seabed, not below 0; towards B of a line
-    /// that is laid from there.
+    /// Coulomb friction coefficient along the line [-]: on the seabed, tension falls towards A by friction × weight per metre, not below 0; towards B
+    /// if the line is laid from B.
     pub friction: f64,
 }
 
-/// Reasons for which the input describes no solvable line.
+/// Reason why the input does not describe a line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CatenaryError {
     /// The list of sections is empty.
@@ -172,7 +170,7 @@ pub struct Point {
     pub tension: f64,
 }
 
-/// A solved line.
+/// Solved line.
 #[derive(Debug, Clone)]
 pub struct Catenary {
     shape: Shape,
@@ -181,10 +179,11 @@ pub struct Catenary {
     rise: f64,
 }
 
-/// Solves the line of `sections`, from end A to end B, whose ends are `span` apart horizontally and B `rise` above A [m].
+/// Solves the line of `sections`, from end A to end B, whose ends are `span` apart horizontally, with B `rise` above A [m].
 ///
-/// Every valid line has a solution, so the only errors are inputs that are not finite, not positive where they must
-/// be, or an end below the seabed.
+/// # Errors
+/// Fails if a value is not finite, or not positive where it must be, if there is no section, or if an end lies below the seabed. Every valid line has
+/// a solution.
 pub fn solve(
     sections: &[Section],
     span: f64,
@@ -219,13 +218,13 @@ pub fn solve(
     })
 }
 
-/// Returns whether friction acts as on a line that was laid from end B and hauled at end A: of ends at these heights
-/// above the seabed [m], B lies on it and A does not. `length` is the length of the line [m].
+/// Returns whether friction acts as on a line laid from end B and hauled at end A: B lies on the seabed and A does not. The heights of both ends
+/// above the seabed and the line `length` are in [m].
 pub fn is_laid_from_b([a, b]: [f64; 2], length: f64) -> bool {
     b <= ON_SEABED * length && a > ON_SEABED * length
 }
 
-/// [`solve`] of a line that is laid from end A.
+/// Solves a line that is laid from end A.
 fn solve_from_a(
     sections: &[Section],
     span: f64,
@@ -238,7 +237,7 @@ fn solve_from_a(
     }
 }
 
-/// Single section equivalent to `sections`, if they are all of one kind.
+/// Single section equivalent to `sections`, if they all have the same properties.
 fn uniform(sections: &[Section]) -> Option<Section> {
     let first = sections[0];
     let alike = |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
@@ -265,7 +264,7 @@ fn solve_uniform(section: &Section, span: f64, rise: f64, seabed: Option<FlatSea
                 };
                 let guess = line.touch_down(&frictionless);
                 let laid = section.length - (guess.vertical_b - guess.vertical_a) / section.weight;
-                // without friction H is about the mean along the seabed
+                // the frictionless H is about the mean along the seabed
                 let horizontal_a = guess.horizontal_a - 0.5 * seabed.friction * section.weight * laid;
                 let mut line = Sections::new(std::slice::from_ref(section), span, rise, Some(seabed));
                 let held = line.solve((horizontal_a, guess.vertical_a), &mut shape);
@@ -285,7 +284,7 @@ fn solve_uniform(section: &Section, span: f64, rise: f64, seabed: Option<FlatSea
     }
 }
 
-/// Lowest point between the ends of a suspended uniform line, relative to A [m].
+/// Height of the lowest point between the ends of a suspended uniform line, relative to A [m].
 fn lowest(section: &Section, held: &EndForces) -> f64 {
     let (h, v) = (held.horizontal_a, held.vertical_a);
     if section.weight <= 0.0 || v >= 0.0 || held.vertical_b <= 0.0 {
@@ -402,7 +401,7 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
     held
 }
 
-/// Refuses input that is not a line; returns the seabed, lowered to ends that are below it only by rounding.
+/// Checks the input; returns the seabed, lowered to any end that is below it only by rounding.
 fn check(
     sections: &[Section],
     span: f64,
@@ -505,8 +504,8 @@ impl Catenary {
         self.held.horizontal_b.hypot(self.held.vertical_b)
     }
 
-    /// Coulomb friction in use along the tight part on the seabed [-]: the coefficient of the seabed. It is less only where
-    /// sections float and no state uses all of it; 0 where nothing lies on the seabed.
+    /// Mobilised Coulomb friction coefficient of the tensioned part on the seabed [-]: that of the seabed, or less if sections float and no state
+    /// mobilises all of it; 0 if nothing lies on the seabed.
     pub fn friction(&self) -> f64 {
         if self.laid().next().is_some() {
             self.held.friction
@@ -520,7 +519,7 @@ impl Catenary {
         self.laid().map(|(from, to)| to - from).sum()
     }
 
-    /// The stretches on the seabed, as arc lengths (from, to) [m], unstretched from end A.
+    /// Parts on the seabed, as unstretched arc lengths (from, to) from end A [m].
     pub fn laid(&self) -> impl Iterator<Item = (f64, f64)> {
         let on_seabed = self.shape.pieces.iter().filter(|piece| piece.on_seabed());
         on_seabed.map(|piece| (piece.s, piece.s + piece.length))
@@ -535,12 +534,12 @@ impl Catenary {
             .sum()
     }
 
-    /// Greatest vertical distance below the chord between the ends [m]; below the lower end where the span is 0.
+    /// Maximum vertical distance below the chord between the ends [m]; below the lower end where the span is 0.
     pub fn sag(&self) -> f64 {
         self.shape.sag(self.span, self.rise)
     }
 
-    /// The material point at `s` metres of unstretched length from end A [m]; beyond an end, that end.
+    /// Material point at the unstretched arc length `s` from end A [m]; beyond an end, that end.
     pub fn at(&self, s: f64) -> Point {
         self.shape.at(s)
     }
@@ -550,7 +549,7 @@ impl Catenary {
         self.shape.pieces.iter().map(Piece::energy).sum()
     }
 
-    /// Evaluations of the equation that was solved [-].
+    /// Number of evaluations of the solved equation [-].
     pub fn iterations(&self) -> usize {
         self.held.steps
     }

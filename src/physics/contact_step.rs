@@ -1,10 +1,10 @@
-//! Contact with the seabed over a time step, whose spring conserves energy.
+//! Seabed contact over a time step, with a spring that conserves energy.
 //!
 //! With the penetrations p₀ before and p₁ after a step Δt, the spring's force is the discrete gradient of its energy,
 //!
 //!   F = (V(p₁) − V(p₀))/(p₁ − p₀),   V(p) = ½ k max(p, 0)²,
 //!
-//! and the damper's c s(p̄) (p₁ − p₀)/Δt, with p̄ the mean and s as in `fading_damper`. Their sum can only push.
+//! and the damper's force is c s(p̄) (p₁ − p₀)/Δt, with the mean p̄ and s as in `fading_damper`. Their sum can only push.
 //!
 //! Source: discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid where `seabed` is.
 
@@ -16,7 +16,7 @@ use super::seabed::ContactCoefficients;
 pub struct ContactStep {
     /// Upward force [N].
     pub force: f64,
-    /// Slope of the force with p₁ [N/m].
+    /// Slope of the force with respect to p₁ [N/m].
     pub slope: f64,
     /// Part of the force from the spring [N].
     pub spring: f64,
@@ -39,7 +39,7 @@ pub fn contact_step(k: ContactCoefficients, [before, after]: [f64; 2], reach: f6
     }
 }
 
-/// Discrete gradient of the spring's energy and its slope with the penetration afterwards.
+/// Discrete gradient of the spring's energy and its slope with respect to the final penetration.
 fn spring(stiffness: f64, before: f64, after: f64) -> (f64, f64) {
     match (before > 0.0, after > 0.0) {
         (false, false) => (0.0, 0.0),

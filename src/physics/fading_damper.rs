@@ -2,16 +2,15 @@
 //!
 //! f = max(0, k max(p, 0) − c s(p) ż),   s = 3u² − 2u³,   u = ½ (1 + p/r) between 0 and 1,
 //!
-//! so that the damper is off at p = −r, fully active from p = r on, and smooth between. A damper that switches defeats
-//! Newton's method: an iterate that lifts a node releases it, and the next falls back. r is the greatest of
-//! [`damper_reach`], two penetrations of the node at rest, and its displacement in a step. At rest the force is that
-//! of `seabed`.
+//! so that the damper is off at p = −r, fully active from p = r on, and smooth in between. A damper that switches makes Newton's method fail: an
+//! iterate that lifts a node releases it, and the next falls back. r is the larger of [`damper_reach`] (two static penetrations of the node) and the
+//! displacement of the node in a step. At rest the force is that of `seabed`.
 //!
-//! Source: the cubic step as a C¹ switch; contact as in `seabed`, and valid where that is, for r well below the length of a segment.
+//! Source: the cubic step as a C¹ switch; contact as in `seabed`. Valid where `seabed` is, for r well below the length of a segment.
 
 use super::seabed::ContactCoefficients;
 
-/// Half the range of penetrations over which the damper fades in, in static penetrations of the node [-].
+/// Half the range of penetrations over which the damper fades in, relative to the static penetration of the node [-].
 const DAMPER_FADE: f64 = 2.0;
 
 /// Half the range of penetrations over which the damper of a resting node fades in [m].
@@ -33,14 +32,14 @@ pub fn fade(penetration: f64, reach: f64) -> (f64, f64) {
     (u * u * (3.0 - 2.0 * u), 3.0 * u * (1.0 - u) / reach)
 }
 
-/// Action of a seabed whose damper fades on a node.
+/// Action on a node of a seabed with a fading damper.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FadingContact {
     /// Upward force [N].
     pub force: f64,
-    /// Slope of the force with penetration [N/m].
+    /// Slope of the force with respect to penetration [N/m].
     pub stiffness: f64,
-    /// Negative slope of the force with ż [N s/m].
+    /// Negative slope of the force with respect to ż [N s/m].
     pub damping: f64,
 }
 

@@ -2,9 +2,8 @@
 //!
 //! u(z) = u₀ + Σ_j Δu_j · min(max((z − z_j)/h_j, 0), 1),   du/dz = Σ_j Δu_j/h_j over the layers j that z lies in
 //!
-//! linear between the given heights and constant below the lowest and above the highest, like the profiles that
-//! current meters and metocean reports give. The same expression serves one height and four at once; results are the
-//! same bit for bit.
+//! linear between the given heights and constant below the lowest and above the highest, like the profiles that current meters and metocean reports
+//! give. The same expression evaluates one height or four at once; results are identical bit for bit.
 //!
 //! Source: piecewise linear interpolation; relative velocity in Morison's formula as in Hall & Goupee (2015), Ocean Engineering 104,
 //! 590-603, section 2. Valid for currents that change slowly: the force on a line due to the acceleration of the water, ρA(1 + C_a) ∂u/∂t,
@@ -14,7 +13,7 @@ use nalgebra::Vector3;
 
 use crate::math::lanes::{Lanes, Vectors};
 
-/// Velocity of the water over height, at one time or as a shape that a factor multiplies.
+/// Velocity of the water as a function of height, at one time or as a shape multiplied by a factor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Velocity at and below the lowest height [m/s].
@@ -25,16 +24,16 @@ pub struct Profile {
 /// Water between two neighbouring heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Layer {
-    /// z of its lower border [m].
+    /// z of its lower boundary [m].
     bottom: f64,
     /// 1/h [1/m].
     inverse_height: f64,
-    /// Velocity at its upper border less that at its lower [m/s].
+    /// Velocity at its upper boundary less that at its lower [m/s].
     change: Vector3<f64>,
 }
 
 impl Profile {
-    /// The same velocity [m/s] at every height.
+    /// Profile with the same velocity [m/s] at every height.
     pub fn uniform(velocity: Vector3<f64>) -> Profile {
         Profile {
             lowest: velocity,
@@ -42,10 +41,10 @@ impl Profile {
         }
     }
 
-    /// Profile through pairs of height [m] and velocity [m/s], no two of them at the same height, in any order.
+    /// Profile through pairs of height [m] and velocity [m/s], in any order, no two of them at the same height.
     ///
     /// # Panics
-    /// There is no pair, or two are at one height.
+    /// Panics if there is no pair, or if two have the same height.
     pub fn through(pairs: &[(f64, Vector3<f64>)]) -> Profile {
         let mut pairs = pairs.to_vec();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -105,7 +104,7 @@ impl Profile {
     }
 }
 
-/// The current at one time.
+/// Current at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stream<'a> {
     /// Shape over the height.

@@ -6,17 +6,17 @@
 //! (f_a/D_a)² + (f_b/D_b)² ≤ 1,   D_a = N √(μ_a² s² + μ_b² (1 − s²)),   D_b = μ_b N
 //! ```
 //!
-//! with s the part of the line's tangent that lies in the plane: for a line that stands on the seabed every direction is across. Inside the
-//! ellipse nothing slides. On it the line slides in the direction of greatest dissipation, v_i ∝ −f_i/D_i², so that
-//! the friction is D_a against a line dragged along its axis, D_b across.
-//! With the velocity v⁰ at which a node would slide without friction, and the compliance C_i of sliding to force along the axes,
+//! with s the part of the line's tangent that lies in the plane: for a line normal to the seabed, every direction is across. Inside the ellipse
+//! nothing slides. On it the line slides in the direction of maximum dissipation, v_i ∝ −f_i/D_i², so that the friction is D_a against a line dragged
+//! along its axis, D_b across. With the velocity v⁰ at which a node would slide without friction, and the compliance C_i of sliding to force along
+//! the axes,
 //!
 //! ```text
 //! f_i = −v⁰_i m_i² N/(C_i m_i² N + γ),   v_i = v⁰_i γ/(C_i m_i² N + γ),   m_i = D_i/N,   γ ≥ 0 such that f lies in the ellipse.
 //! ```
 //!
-//! A node sticks with γ = 0. Neither the force that would hold it, −v⁰_i/C_i, nor the sign of v⁰ is required: its square suffices, which
-//! axes of any length give without a root.
+//! A node sticks with γ = 0. Neither the force that would hold it, −v⁰_i/C_i, nor the sign of v⁰ is required: the square of v⁰ suffices, and axes of
+//! any length give it without a square root.
 //!
 //! Source: maximal dissipation for anisotropic friction, Michałowski & Mróz (1978), Archives of Mechanics 30, 259-276; γ by the
 //! iteration of Moré & Sorensen (1983), SIAM J. Sci. Stat. Comput. 4, 553-572. Valid for a seabed that keeps its shape: no embedment.
@@ -41,24 +41,24 @@ pub struct Axes<V: RealVector = Vector3<f64>> {
     pub along: V,
     /// Across the line.
     pub across: V,
-    /// Square of their length.
+    /// Square of the length of the axes.
     pub square: V::Real,
     /// Square of the part s of the line's tangent that lies in the plane [-].
     pub share: V::Real,
 }
 
-/// Part of the tangent below which a line stands on the seabed [-].
+/// In-plane part of the tangent below which a line is treated as normal to the seabed [-].
 const STANDING: f64 = 1e-9;
-/// Nodes closer to the ellipse than this slide: rounding of their positions must not decide [-].
+/// Relative distance from the ellipse within which nodes slide, so that rounding of their positions does not decide [-].
 const BORDER: f64 = 1e-7;
-/// Relative error of the size of the ellipse that one more correction of γ reduces to rounding [-]: each correction squares it.
+/// Relative error of the size of the ellipse that one more correction of γ, which squares it, reduces to rounding [-].
 const NEAR: f64 = 1e-8;
-/// Iterations for γ.
+/// Maximum number of iterations for γ.
 const ITERATIONS_MAX: usize = 30;
 
 impl<V: RealVector> Axes<V> {
-    /// Axes of a line along a vector of any length on a seabed with the unit normal `normal`; `inverse_square` is 1 over the square of that length.
-    /// The axes are as long as the part of the vector in the plane; those of a line that stands on the seabed have a different length.
+    /// Axes of a line along the vector `line`, of any length, on a seabed with the unit normal `normal`; `inverse_square` is 1/|line|². The axes are
+    /// as long as the in-plane part of `line`, except for a line normal to the seabed.
     #[inline(always)]
     pub fn new(normal: V, line: V, inverse_square: V::Real) -> Axes<V> {
         let [zero, one] = [0.0, 1.0].map(V::Real::splat);
@@ -81,7 +81,7 @@ impl<V: RealVector> Axes<V> {
         }
     }
 
-    /// The vector of components along the axes, over their length.
+    /// Vector from its components along the axes, each divided by the length of the axes.
     #[inline(always)]
     pub fn combine(&self, [along, across]: [V::Real; 2]) -> V {
         self.along.scaled(along) + self.across.scaled(across)
@@ -101,25 +101,25 @@ impl Axes {
         }
     }
 
-    /// Components of a vector along the axes, in its unit [-].
+    /// Components of a vector along the axes, in the unit of the vector [-].
     pub fn components(&self, vector: &Vector3<f64>) -> Vector2<f64> {
         Vector2::new(self.along.dot(vector), self.across.dot(vector))
     }
 
-    /// The vector of components along the axes, in their unit [-].
+    /// Vector with these components along the axes, in their unit [-].
     pub fn vector(&self, components: &Vector2<f64>) -> Vector3<f64> {
         components.x * self.along + components.y * self.across
     }
 }
 
 impl Friction {
-    /// Greater of the coefficients [-].
+    /// Larger of the coefficients [-].
     pub fn greatest(&self) -> f64 {
         self.axial.max(self.transverse)
     }
 
-    /// Squares of the semi-axes of the ellipse over the normal force [-], along and across a line; `share` is the square of the part of its tangent
-    /// that lies in the plane [-].
+    /// Squares of the semi-axes of the ellipse per normal force [-], along and across a line; `share` is the square of the in-plane part of its
+    /// tangent [-].
     #[inline(always)]
     pub fn squares<R: Real>(&self, share: R) -> [R; 2] {
         let one = R::splat(1.0);
@@ -137,9 +137,9 @@ impl Friction {
 /// Friction at a node along and across the line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slide<R> {
-    /// Friction against the velocity without it, over that velocity [N s/m, or kg for impulses].
+    /// Friction against the frictionless velocity, per unit of that velocity [N s/m, or kg for impulses].
     pub grip: [R; 2],
-    /// Part of that velocity which is left [-]; 0 where the node sticks.
+    /// Remaining fraction of that velocity [-]; 0 where the node sticks.
     pub left: [R; 2],
     /// Positive where the node slides.
     pub slides: R,
@@ -147,8 +147,8 @@ pub struct Slide<R> {
     pub multiplier: R,
 }
 
-/// Friction at a node that would slide without it. Along and across the line are given the squares of the velocities [m²/s²], compliances
-/// [m/(N s), or 1/kg for impulses] and squares of the semi-axes over the normal force [-].
+/// Friction at a node that would slide without it, from values along and across the line: squares of the frictionless velocities [m²/s²], compliances
+/// [m/(N s), or 1/kg for impulses] and squares of the semi-axes per normal force [-].
 #[inline(always)]
 pub fn slide<R: Real>(velocity: [R; 2], compliance: [R; 2], squares: [R; 2], normal_force: R) -> Slide<R> {
     let [zero, one] = [0.0, 1.0].map(R::splat);
@@ -164,7 +164,7 @@ pub fn slide<R: Real>(velocity: [R; 2], compliance: [R; 2], squares: [R; 2], nor
         if !open.any_positive() {
             break;
         }
-        // Newton's method on 1/|f/D|, as a function of γ nearly a straight line, with one root and one quotient that do not depend on each other
+        // Newton's method on 1/|f/D|, which is nearly linear in γ, with one square root and one quotient that do not depend on each other
         let (p, q) = (a + gamma, b + gamma);
         let (along, across) = (weights[0] * q * q, weights[1] * p * p);
         let slope = (along * q + across * p).max(R::splat(f64::MIN_POSITIVE));
@@ -181,7 +181,7 @@ pub fn slide<R: Real>(velocity: [R; 2], compliance: [R; 2], squares: [R; 2], nor
         yields[0].choose(gamma * over[0], one),
         yields[1].choose(gamma * over[1], one),
     ];
-    // without friction along an axis any force slides
+    // without friction along an axis, any force causes sliding
     let free = [
         yields[0].choose(zero, velocity[0]),
         yields[1].choose(zero, velocity[1]),
@@ -197,13 +197,13 @@ pub fn slide<R: Real>(velocity: [R; 2], compliance: [R; 2], squares: [R; 2], nor
 /// Friction at one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeFriction {
-    /// Along and across the line [N].
+    /// Friction along and across the line [N].
     pub force: Vector2<f64>,
     /// γ, in the unit of W D² [N² m/N, N² m/(N s)]; `None` where the node sticks.
     pub multiplier: Option<f64>,
 }
 
-/// Friction of one node that `holding` [N] would hold, within the ellipse of the semi-axes `limits` [N], by [`slide`].
+/// Friction of one node by [`slide`]: the force `holding` [N] that would hold it, limited to the ellipse of the semi-axes `limits` [N].
 pub fn node_friction(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64>) -> NodeFriction {
     let (speed, squares) = (holding.component_mul(&compliance), limits.component_mul(&limits));
     let velocity = speed.component_mul(&speed);
@@ -217,7 +217,7 @@ pub fn node_friction(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Ve
 }
 
 impl NodeFriction {
-    /// Slope of the friction with the holding force [-], at constant limits and unit compliances.
+    /// Slope of the friction with respect to the holding force [-], at constant limits and unit compliances.
     pub fn slope(&self, limits: Vector2<f64>) -> Matrix2<f64> {
         let Some(gamma) = self.multiplier else {
             return Matrix2::identity();

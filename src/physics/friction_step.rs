@@ -1,17 +1,17 @@
 //! Normal contact and Coulomb friction of a node over a step of the leapfrogs, both implicit.
 //!
-//! Without contact the node would leave the step with the velocity u. With M = m_n I + (m_t − m_n) t tᵀ, the seabed's
-//! normal n and its plane's axes a, b, the actual velocity v and the impulses λ obey
+//! Without contact the node would leave the step with the velocity u. With M = m_n I + (m_t − m_n) t tᵀ, the normal n of the seabed and the axes a, b
+//! of its plane, the actual velocity v and the impulses λ obey
 //!
 //! ```text
 //! M (v − u) = λ_n n + λ_a a + λ_b b,   λ_n = a − b v_n ≥ 0,   (λ_a, λ_b) in the ellipse of λ_n
 //! ```
 //!
-//! A node that sticks leaves with v_a = v_b = 0 to the last digit and does not drift. λ_n of the ellipse is that of a
-//! sticking node, which is exact where the line lies in the plane of the seabed.
+//! A sticking node leaves the step with v_a = v_b = 0 to the last digit and does not drift. λ_n of the ellipse is that of a sticking node, which is
+//! exact where the line lies in the plane of the seabed.
 //!
-//! a is along the line's part in the plane, so that t has no part along b. In these axes W = M⁻¹ has a block of n and a with the determinant 1/(m_n m_t),
-//! and 1/m_n for b. With it v follows without M:
+//! a is along the in-plane part of the line, so that t has no part along b. In these axes W = M⁻¹ has a block of n and a with the determinant 1/(m_n
+//! m_t), and 1/m_n for b. W gives v without M:
 //!
 //! ```text
 //! sticks    v_n = (W_aa u_n − W_na u_a + a/(m_n m_t))/(W_aa + b/(m_n m_t))
@@ -25,7 +25,7 @@ use super::friction::{Axes, Friction, Slide, slide};
 use super::slender::Slender;
 use crate::math::real::{Real, RealVector, choose};
 
-/// Node, or one in every lane, with its contact with the seabed.
+/// Node in contact with the seabed, or one in every lane.
 #[derive(Debug, Clone, Copy)]
 pub struct Landing<V: RealVector> {
     /// Inverse mass across the line, and its excess along the line [1/kg].
@@ -38,7 +38,7 @@ pub struct Landing<V: RealVector> {
     pub normal: V,
     /// Impulse a of the seabed's spring and damper on a node that does not leave it [N s].
     pub spring: V::Real,
-    /// Loss b of that impulse with the velocity at which the node leaves the seabed [kg].
+    /// Reduction b of that impulse per velocity at which the node leaves the seabed [kg].
     pub resistance: V::Real,
 }
 
@@ -58,18 +58,18 @@ pub struct Landed<V: RealVector> {
 pub struct Footing<V: RealVector> {
     /// Axes in the plane.
     pub axes: Axes<V>,
-    /// 1 over the square of their length.
+    /// 1 over the square of the length of the axes.
     pub inverse_square: V::Real,
     /// W_aa and W_bb along and across the line [1/kg].
     pub yields: [V::Real; 2],
-    /// W_na over the length of the axes, and times that length [1/kg].
+    /// W_na divided by the length of the axes, and multiplied by it [1/kg].
     pub coupling: [V::Real; 2],
     /// Determinant of the block of n and a [1/kg²].
     pub determinant: V::Real,
 }
 
 impl<V: RealVector> Footing<V> {
-    /// Footing of an inverse mass [1/kg] of a line along a vector of any length, with `inverse_square` 1 over the square of its length.
+    /// Footing of a node with an inverse mass [1/kg], on a line along the vector `line`, of any length; `inverse_square` is 1/|line|².
     #[inline(always)]
     pub fn new(inverse: Slender<V::Real>, normal: V, line: V, inverse_square: V::Real) -> Footing<V> {
         let Slender { across, excess } = inverse;
@@ -92,14 +92,15 @@ impl<V: RealVector> Footing<V> {
         (self.yields[0] + self.determinant * resistance).recip()
     }
 
-    /// Velocity at which a sticking node leaves the seabed [m/s], with `free` [m/s] without contact under the impulse `spring` [N s], from [`Self::stuck`].
+    /// Velocity at which a sticking node leaves the seabed [m/s], from its velocity `free` without contact [m/s], the impulse `spring` [N s] and
+    /// [`Self::stuck`].
     #[inline(always)]
     pub fn sinking(&self, free: V, normal: V, spring: V::Real, stuck: V::Real) -> V::Real {
         let [rise, along] = [normal.inner(free), self.axes.along.inner(free)];
         (self.yields[0] * rise - self.coupling[0] * along + self.determinant * spring) * stuck
     }
 
-    /// Friction of a node that would slide at the components `sliding` [m/s, times the length of the axes] without it.
+    /// Friction of a node whose frictionless velocity has the components `sliding` [m/s, times the length of the axes].
     #[inline(always)]
     pub fn slide(
         &self,
@@ -114,7 +115,7 @@ impl<V: RealVector> Footing<V> {
         slide(velocity, [along, self.yields[1]], squares, push)
     }
 
-    /// Vector of components [times the length of the axes], each times a factor.
+    /// Vector with these components [times the length of the axes], each multiplied by a factor.
     #[inline(always)]
     pub fn combine(&self, [a, b]: [V::Real; 2], factors: [V::Real; 2]) -> V {
         let scale = self.inverse_square;
@@ -124,7 +125,7 @@ impl<V: RealVector> Footing<V> {
 }
 
 impl<V: RealVector> Landing<V> {
-    /// Motion after the step of a node that would have the velocity `free` [m/s] without seabed.
+    /// Motion after the step of a node that would have the velocity `free` [m/s] without the seabed.
     #[inline(always)]
     pub fn solve(&self, free: V, friction: Option<&Friction>) -> Landed<V> {
         let (spring, resistance) = (self.spring, self.resistance);
@@ -149,7 +150,8 @@ impl<V: RealVector> Landing<V> {
         }
     }
 
-    /// The same with friction, where the seabed pushes a node that sticks; `smooth` is the motion without, `yields` W_nn and `softness` 1/(1 + b W_nn).
+    /// Motion with friction where the seabed pushes a sticking node; `smooth` is the motion without friction, `yields` W_nn and `softness` 1/(1 + b
+    /// W_nn).
     #[inline(always)]
     fn with_friction(
         &self,

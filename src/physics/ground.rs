@@ -1,18 +1,17 @@
-//! The surface of a seabed that is not level: a plane, or heights through a grid of soundings.
+//! Surface of a seabed that is not level: a plane, or heights through a grid of soundings.
 //!
 //! ```text
 //! z = h(x, y),   n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²),   p = (h − z) n_z
 //! ```
 //!
-//! n is the unit normal and p the distance below the surface along it, exact on a plane. On a grid h is the bicubic Hermite interpolant: it takes the
-//! soundings at the grid's points, with the slopes of [`crate::math::shape_preserving`] along x and along y, at the edges those of
-//! the chord, and with the mean of the slope of h_x along y and of h_y along x as its twist. At every point the two slopes, and then the twist, are
-//! reduced until the control points of all cells around it lie within the soundings of their cell, or exceed them by a twentieth of their range. A
-//! bicubic is a convex combination of its control points, so the surface lies within these bounds too. It is continuously differentiable, since cells share the
-//! reduced derivatives, and reproduces planes.
-//! A bilinear surface would need a normal that is not its gradient to be smooth, and a node that slides
-//! without friction would gain or lose energy at every crossing of a cell; here the normal is the gradient's, and the force k p n is conservative except for
-//! p times the curvature of the surface. Outside the grid the surface continues with the values at its edge.
+//! n is the unit normal and p the distance below the surface along it, exact on a plane. On a grid, h is the bicubic Hermite interpolant of the
+//! soundings. Its slopes at the grid points along x and along y are those of [`crate::math::shape_preserving`], at the edges those of the chord. Its
+//! twist is the mean of the slope of h_x along y and that of h_y along x. At every point the two slopes, and then the twist, are reduced until the
+//! control points of all cells around it lie within the soundings of their cell, or exceed them by at most a twentieth of their range. A bicubic is a
+//! convex combination of its control points, so the surface lies within these bounds too. It is continuously differentiable, since cells share the
+//! reduced derivatives, and reproduces planes. A bilinear surface would need a normal that is not its gradient to be smooth, and a node that slides
+//! without friction would gain or lose energy at every crossing of a cell. Here the normal is that of the gradient, and the force k p n is
+//! conservative except for p times the curvature of the surface. Outside the grid the surface continues with the values at its edge.
 //!
 //! Source: bicubic interpolation as in Press et al. (2007), Numerical Recipes, 3rd ed., section 3.6.3; convex hull of a Bézier net as in Farin
 //! (2002), Curves and Surfaces for CAGD, 5th ed., chapter 14. Valid where penetrations are small compared with the
@@ -24,10 +23,10 @@ use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::math::real::{Real, RealVector};
 use crate::math::shape_preserving::{End, slopes, smooth_slopes};
 
-/// Slopes at the rows of a table.
+/// Function that returns slopes at the rows of a table.
 type Law = fn(&[f64], &[f64], [End; 2]) -> Vec<f64>;
 
-/// Excursion of the surface beyond the soundings of a cell, over their range [-].
+/// Maximum excursion of the surface beyond the soundings of a cell, relative to their range [-].
 const EXCURSION_MAX: f64 = 0.05;
 
 /// Surface of a seabed.
@@ -51,33 +50,33 @@ pub struct Grid {
     x: Vec<Span<f64>>,
     /// Spans of the cells along y.
     y: Vec<Span<f64>>,
-    /// Per cell, row by row along y: coefficients of the powers of the parts of the cell along x (columns) and along y (rows) [m].
+    /// Per cell, row by row along y: coefficients of the powers of the cell fractions along x (columns) and along y (rows) [m].
     cells: Vec<[[f64; 4]; 4]>,
-    /// Bound of the heights of the surface [m].
+    /// Upper bound of the surface height [m].
     highest: f64,
 }
 
-/// Extent of a cell along x or y. The spans of a grid cover all numbers, and no number is in two.
+/// Extent of a cell along x or y. Every number is in exactly one span of a grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Span<R> {
-    /// Least and greatest coordinate in the cell [m]; infinite outside the grid.
+    /// Minimum and maximum coordinate in the cell [m]; infinite outside the grid.
     bounds: [R; 2],
-    /// Coordinate at which the part of the cell is 0 [m].
+    /// Coordinate at which the cell fraction is 0 [m].
     origin: R,
-    /// 1 over the width of the cell [1/m]; 0 outside the grid, where nothing changes.
+    /// 1 over the width of the cell [1/m]; 0 outside the grid, where the surface is constant along this axis.
     per_width: R,
 }
 
-/// Surface in a cell of a grid, or in one in every lane.
+/// Surface in a cell of a grid, or in one cell per lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell<R> {
     /// Extent along x and y.
     spans: [Span<R>; 2],
-    /// Coefficients of the powers of the parts of the cell along x (columns) and along y (rows) [m].
+    /// Coefficients of the powers of the cell fractions along x (columns) and along y (rows) [m].
     powers: [[R; 4]; 4],
 }
 
-/// Height of a surface at a place, and its derivatives.
+/// Height of a surface at a point, and its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Relief {
     /// h [m].
@@ -102,7 +101,7 @@ pub struct Touch {
 }
 
 impl Ground {
-    /// Position of a node at a place [m] relative to the surface.
+    /// Position of a node at `place` [m] relative to the surface.
     pub fn touch(&self, place: Vector3<f64>) -> Touch {
         let Relief {
             height,
@@ -122,7 +121,7 @@ impl Ground {
         }
     }
 
-    /// Penetration [m] and normal of [`Self::touch`] alone.
+    /// Penetration [m] and unit normal only, as from [`Self::touch`].
     #[inline]
     pub fn stand(&self, place: Vector3<f64>) -> (f64, Vector3<f64>) {
         match self {
@@ -131,12 +130,12 @@ impl Ground {
         }
     }
 
-    /// Height of the surface at a place [m].
+    /// Height of the surface [m] at x, y [m].
     pub fn height(&self, x: f64, y: f64) -> f64 {
         self.relief(x, y).height
     }
 
-    /// Unit normal at a place, upwards [-].
+    /// Upward unit normal [-] at x, y [m].
     pub fn normal(&self, x: f64, y: f64) -> Vector3<f64> {
         let [hx, hy] = self.relief(x, y).slope;
         Vector3::new(-hx, -hy, 1.0).normalize()
@@ -155,7 +154,7 @@ impl Ground {
 }
 
 impl Grid {
-    /// Heights [m] over lines at `x` and `y` [m]: one row per y, with one height per x. `None` unless both increase and every row is
+    /// Grid of heights [m] at the coordinates `x` and `y` [m]: one row per y, with one height per x. `None` unless both increase and every row is
     /// complete.
     pub fn new(x: &[f64], y: &[f64], heights: &[Vec<f64>]) -> Option<Grid> {
         let increasing = |line: &[f64]| line.windows(2).all(|pair| pair[0] < pair[1]);
@@ -199,12 +198,12 @@ impl Grid {
         })
     }
 
-    /// Height that no point of the surface exceeds [m].
+    /// Upper bound of the surface height [m].
     pub fn highest(&self) -> f64 {
         self.highest
     }
 
-    /// Surface in the cell around a place [m].
+    /// Surface in the cell around x, y [m].
     #[inline]
     fn cell_at(&self, x: f64, y: f64) -> Cell<f64> {
         let (i, j) = (place(&self.x, x), place(&self.y, y));
@@ -214,7 +213,7 @@ impl Grid {
         }
     }
 
-    /// Updates `cells` to those of four nodes at a place [m]. The result depends on the place alone.
+    /// Updates `cells` to those of four nodes at `place` [m]. The result depends on the positions only.
     #[inline(always)]
     pub fn find_cells(&self, place: Vectors, cells: &mut Cell<Lanes>) {
         if cells.excess(place).any_positive() {
@@ -244,7 +243,7 @@ impl Grid {
 }
 
 impl<R: Real> Cell<R> {
-    /// Penetration [m] and unit normal of a node at a place [m] in the cell.
+    /// Penetration [m] and unit normal of a node at `place` [m] in the cell.
     #[inline(always)]
     pub fn stand<V: RealVector<Real = R>>(&self, place: V) -> (R, V) {
         let ([x, y, _], [along, across]) = (place.components(), &self.spans);
@@ -258,7 +257,7 @@ impl<R: Real> Cell<R> {
 }
 
 impl Cell<Lanes> {
-    /// Cells that contain no place.
+    /// Cells that contain no point.
     pub fn nowhere() -> Cell<Lanes> {
         let [zero, least, most] = [0.0, f64::NEG_INFINITY, f64::INFINITY].map(Lanes::splat);
         let span = Span {
@@ -272,7 +271,7 @@ impl Cell<Lanes> {
         }
     }
 
-    /// Positive where a place [m] is outside the cell.
+    /// Positive where a position [m] is outside the cell.
     #[inline(always)]
     fn excess(&self, place: Vectors) -> Lanes {
         let [x, y] = &self.spans;
@@ -281,7 +280,6 @@ impl Cell<Lanes> {
         along.max(across)
     }
 
-    /// Sets the cell of a lane.
     fn set(&mut self, lane: usize, cell: &Cell<f64>) {
         for (span, of) in self.spans.iter_mut().zip(&cell.spans) {
             (span.bounds[0][lane], span.bounds[1][lane]) = (of.bounds[0], of.bounds[1]);
@@ -295,7 +293,7 @@ impl Cell<Lanes> {
 }
 
 impl<R: Real> Span<R> {
-    /// Part of the cell before a coordinate [-].
+    /// Cell fraction at a coordinate [-].
     #[inline(always)]
     fn part(&self, place: R) -> R {
         (place - self.origin) * self.per_width
@@ -303,7 +301,7 @@ impl<R: Real> Span<R> {
 }
 
 impl Span<f64> {
-    /// Powers of the part of the cell before a coordinate, and their first and second derivatives [1/m, 1/m²].
+    /// Powers of the cell fraction at a coordinate, and their first and second derivatives [1/m, 1/m²].
     fn powers(&self, place: f64) -> [[f64; 4]; 3] {
         let (t, d) = (self.part(place), self.per_width);
         [
@@ -329,7 +327,7 @@ fn ends(line: &[f64]) -> impl Iterator<Item = [usize; 2]> + Clone {
     (0..=line.len()).map(move |i| [i.saturating_sub(1), i.min(last)])
 }
 
-/// Spans of the cells along a line of places.
+/// Spans of the cells along a line of coordinates.
 fn spans(line: &[f64]) -> Vec<Span<f64>> {
     let last = line.len() - 1;
     let span = |[low, high]: [usize; 2]| Span {
@@ -362,7 +360,7 @@ fn place(spans: &[Span<f64>], coordinate: f64) -> usize {
     spans.partition_point(|span| span.bounds[1] < coordinate)
 }
 
-/// The cells around a node.
+/// Cells around a node.
 fn corners([x, y]: [&[f64]; 2], heights: &[Vec<f64>], [i, j]: [usize; 2]) -> Vec<Corner> {
     let adjacent = |line: &[f64], at: usize| -> Vec<(usize, f64)> {
         let known = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
@@ -390,7 +388,8 @@ fn corners([x, y]: [&[f64]; 2], heights: &[Vec<f64>], [i, j]: [usize; 2]) -> Vec
     corners
 }
 
-/// Coefficients of the powers of the parts of a cell between lines along x and along y [m], from h [m], h_x [-], h_y [-] and h_xy [1/m] of the points.
+/// Coefficients of the powers of the cell fractions [m], for a cell between lines along x and along y, from h [m], h_x [-], h_y [-] and h_xy [1/m] of
+/// the points.
 fn powers([x, y]: [&[f64]; 2], nodes: &[[f64; 4]], [[i, i1], [j, j1]]: [[usize; 2]; 2]) -> [[f64; 4]; 4] {
     let (width, depth) = (x[i1] - x[i], y[j1] - y[j]);
     // Hermite data along y of the values and of the slopes along x, each as a cubic
@@ -403,7 +402,7 @@ fn powers([x, y]: [&[f64]; 2], nodes: &[[f64; 4]], [[i, i1], [j, j1]]: [[usize; 
     [0, 1, 2, 3].map(|q| cubic([v0[q], width * s0[q], v1[q], width * s1[q]]))
 }
 
-/// Coefficients of the powers of the part t of a cell, from value and slope at both its ends.
+/// Coefficients of the powers of the cell fraction t, from value and slope at both ends.
 fn cubic([v0, s0, v1, s1]: [f64; 4]) -> [f64; 4] {
     let (rise, bend) = (v1 - v0, s0 + s1);
     [v0, s0, 3.0 * rise - bend - s0, bend - 2.0 * rise]
@@ -414,7 +413,7 @@ fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }
 
-/// Bound of the heights of a surface through these soundings [m].
+/// Upper bound of the height of a surface through these soundings [m].
 fn highest(heights: &[Vec<f64>]) -> f64 {
     let soundings = || heights.iter().flatten().copied();
     let [low, high] = [
@@ -424,14 +423,14 @@ fn highest(heights: &[Vec<f64>]) -> f64 {
     high + EXCURSION_MAX * (high - low)
 }
 
-/// Penetration [m] and unit normal of a node at a place [m] over or under a plane of this height above the origin [m] and slope [-].
+/// Penetration [m] and unit normal of a node at `place` [m], for a plane with this height above the origin [m] and slope [-].
 #[inline(always)]
 pub fn stand_on_plane<V: RealVector>(height: f64, slope: [f64; 2], place: V) -> (V::Real, V) {
     let ([x, y, _], slope) = (place.components(), slope.map(V::Real::splat));
     stand(V::Real::splat(height) + slope[0] * x + slope[1] * y, slope, place)
 }
 
-/// Penetration [m] and unit normal of a node at a place [m] over or under a surface of this height [m] and slope [-].
+/// Penetration [m] and unit normal of a node at `place` [m], for a surface with this height [m] and slope [-].
 #[inline(always)]
 fn stand<V: RealVector>(height: V::Real, [hx, hy]: [V::Real; 2], place: V) -> (V::Real, V) {
     let [zero, one] = [0.0, 1.0].map(V::Real::splat);
@@ -440,20 +439,19 @@ fn stand<V: RealVector>(height: V::Real, [hx, hy]: [V::Real; 2], place: V) -> (V
     ((height - place.components()[2]) * upright, normal)
 }
 
-/// Limits the slopes of a node of a grid for one cell, over the sides of the cell from that node: control points of
-/// the cell's Bézier net.
+/// Limits on the slopes of a grid node from one cell, as bounds on the control points of the cell's Bézier net.
 ///
 /// A bicubic is a convex combination of its net and stays within bounds that hold for the points z + a, z + b and z + a + b + c of
 /// each of its corners, with a = h_x Δx/3, b = h_y Δy/3 and c = h_xy Δx Δy/9, signed into the cell.
 struct Corner {
     /// Δx/3 and Δy/3, signed into the cell [m].
     reach: [f64; 2],
-    /// Bounds of height less that of the corner [m].
+    /// Bounds of the height relative to that of the corner [m].
     bounds: [f64; 2],
 }
 
 impl Corner {
-    /// Greatest part, up to 1, of a change [m] that keeps the bounds.
+    /// Largest fraction, up to 1, of a change [m] that stays within the bounds.
     fn part(&self, change: f64) -> f64 {
         let [low, high] = self.bounds;
         let bound = if change > 0.0 { high } else { low };
@@ -493,7 +491,7 @@ mod tests {
     const X: [f64; 4] = [-10.0, 0.0, 15.0, 40.0];
     const Y: [f64; 3] = [-5.0, 5.0, 30.0];
 
-    /// A grid of the heights at these places.
+    /// Grid of the heights at these coordinates.
     fn sampled(x: &[f64], y: &[f64], height: impl Fn(f64, f64) -> f64) -> Grid {
         let row = |y: &f64| x.iter().map(|x| height(*x, *y)).collect::<Vec<f64>>();
         Grid::new(x, y, &y.iter().map(row).collect::<Vec<_>>()).unwrap()

@@ -1,4 +1,4 @@
-//! One law per file, pointwise: value, exact slopes and energy. No scene, no index, no loop over nodes.
+//! Physical laws, one per file, pointwise: value, exact slopes and energy; without scenes, indices or loops over nodes.
 
 pub mod airy;
 pub mod axial_wave;

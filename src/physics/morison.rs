@@ -48,8 +48,8 @@ pub fn drag_per_length(
 }
 
 impl<R: Real> DragCoefficients<R> {
-    /// Resistance −f [N] of a node that moves with `relative` velocity [m/s] to the water. The line's direction is that of `chord` [m], with
-    /// the inverse of its square [1/m²], so that a kernel needs no unit tangent.
+    /// Resistance −f [N] of a node that moves at the velocity `relative` [m/s] to the water. `chord` [m] points along the line and `inverse_square`
+    /// [1/m²] is the inverse of its square, so that a kernel needs no unit tangent.
     #[inline(always)]
     pub fn resistance<V: RealVector<Real = R>>(self, relative: V, chord: V, inverse_square: R) -> V {
         let along = relative.inner(chord); // u·c

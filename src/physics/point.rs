@@ -12,12 +12,12 @@
 //! s is exact: it is the volume of a spherical cap. Drag and added mass are taken in proportion to it. A point with a
 //! drag area and no volume is submerged like the sphere of that cross-section.
 //!
-//! Where s changes, the equation of motion is M a = f without the impulse Ṁ v, so that a point which enters the water
-//! loses ½ Ṁ v² and regains it where it leaves. Slamming is not modelled.
+//! Where s changes, the equation of motion is M a = f without the impulse Ṁ v, so that a point that enters the water loses ½ Ṁ v² and regains it when
+//! it leaves. Slamming is not modelled.
 //!
-//! Source: the cap's volume πh²(3R − h)/3 by Archimedes; drag and added mass after Morison, O'Brien, Johnson & Schaaf (1950), J.
-//! Petroleum Technology 2(5), 149-154, without a direction. Valid for bodies small compared with the waves and speeds
-//! at which they make none. Proportion to s is exact only deep below and far above the surface.
+//! Source: the cap's volume πh²(3R − h)/3 by Archimedes; drag and added mass after Morison, O'Brien, Johnson & Schaaf (1950), J. Petroleum Technology
+//! 2(5), 149-154, without a direction. Valid for bodies that are small compared with the waves and too slow to make waves. Proportion to s is exact
+//! only deep below and far above the surface.
 
 use std::f64::consts::PI;
 
@@ -43,13 +43,13 @@ pub struct Sphere {
 pub struct Wetted {
     /// Submerged part of the volume s [-].
     pub part: f64,
-    /// Slope of the part with height ds/dz [1/m], not positive.
+    /// Slope ds/dz of the submerged part with respect to height [1/m], not positive.
     pub slope: f64,
 }
 
 impl Sphere {
-    /// A sphere of `volume` [m³], drag area CdA `drag_area` [m²] and added-mass coefficient `added_mass` [-] in water of `density`
-    /// [kg/m³] under `gravity` [m/s²]; `None` where the water exerts no force on it.
+    /// Sphere of `volume` [m³], drag area CdA `drag_area` [m²] and added-mass coefficient `added_mass` [-] in water of `density` [kg/m³] under
+    /// `gravity` [m/s²]; `None` if the water exerts no force on it.
     pub fn new([volume, drag_area, added_mass]: [f64; 3], density: f64, gravity: f64) -> Option<Sphere> {
         let radius = if volume > 0.0 {
             (0.75 * volume / PI).cbrt()
@@ -82,8 +82,8 @@ impl Sphere {
         }
     }
 
-    /// Submergence on the path from one height to another [m]: the mean of s, and its slope with the height at the
-    /// end. The mean is exact: times the path length it is the change of ∫ s dz.
+    /// Submergence on the path from one height to another [m]: the mean of s, and its slope with respect to the final height. The mean is exact:
+    /// times the path length it is the change of ∫ s dz.
     pub fn wetted_between(&self, from: f64, to: f64) -> Wetted {
         let [low, high] = [from, to].map(|height| 0.5 * (1.0 - height / self.radius));
         let [a, b] = [low, high].map(|u| u.clamp(0.0, 1.0));
@@ -116,7 +116,7 @@ impl Sphere {
         2.0 * self.radius * self.buoyancy * u.powi(3) * (1.0 - 0.5 * u)
     }
 
-    /// Greatest stiffness that the surface gives it in heave, 3ρgV/4R [N/m].
+    /// Maximum hydrostatic stiffness in heave, 3ρgV/4R [N/m].
     pub fn stiffness_max(&self) -> f64 {
         0.75 * self.buoyancy.abs() / self.radius
     }
@@ -137,7 +137,7 @@ impl Sphere {
         self.drag * wetted.part * (Matrix3::from_diagonal_element(speed) + along)
     }
 
-    /// Slope −∂f/∂z of the drag with height [N/m].
+    /// Slope −∂f/∂z of the drag with respect to height [N/m].
     pub fn drag_slope_with_height(&self, wetted: Wetted, velocity: Vector3<f64>) -> Vector3<f64> {
         self.drag * wetted.slope * velocity.norm() * velocity
     }

@@ -1,23 +1,23 @@
-//! Normal contact with a horizontal seabed: a spring and a damper that only push, integrated along the segments of a line.
+//! Normal contact with a horizontal seabed: a spring and a damper that can only push, integrated along the segments of a line.
 //!
 //! f = max(0, k·p − c·ż) per unstretched length, for a penetration p = z_seabed − z > 0, else 0.
 //!
 //! A segment is straight between its nodes: p and ż are linear in ξ from 0 to 1. The integral of f over it is the sum over four equal parts, each
-//! with f at its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A segment that
-//! is laid down therefore takes up its load gradually. With contact at nodes alone, every node that lands causes an impact. The tension of a chain with
-//! 40 elements in a storm then has noise of a quarter of its standard deviation, at the frequency at which nodes land.
+//! with f at its middle, and each node carries the work-equivalent share of it, Σ (1 − ξ) f h/4 and Σ ξ f h/4. A segment that is laid down therefore
+//! takes up its load gradually. With contact at the nodes only, every node that lands causes an impact. The tension of a chain with 40 elements in a
+//! storm then has noise of a quarter of its standard deviation, at the frequency at which nodes land.
 //!
 //! k = kbot·d and c = cbot·d. Regularised contact softens both together,
 //!
 //! k_eff = min(k, w/(δ d h)·d),    c_eff = max(c·k_eff/k, min(c, 2ζ √(k_eff m))),    m the mass across the line,
 //!
-//! so that a segment at rest penetrates by δ times its length h: with the usual kbot of 3 MPa/m the static penetration would be micrometres and
-//! every part that lands would ring. `model/build/resting.rs` sets the level of the contact so that the suspended part is correct. A damper that is
-//! softened like its spring becomes too weak: of the chains in the tank 1 % of critical damping is left. It therefore keeps the part ζ of
-//! critical damping, 2√(k m) of a mass on a spring, unless the damping of the scene is less. Both tend to the values of the scene as the mesh
-//! is refined, and reach them where the spring does.
+//! so that a segment at rest penetrates by δ times its length h. With the usual kbot of 3 MPa/m the static penetration would be micrometres and every
+//! part that lands would ring. `model/build/resting.rs` sets the level of the contact so that the suspended part is correct. A damper softened like
+//! its spring becomes too weak: for the chains in the tank, 1 % of critical damping would be left. It therefore keeps the fraction ζ of the critical
+//! damping 2√(k m) of a mass on a spring, unless the damping of the scene is lower. Both coefficients tend to the values of the scene as the mesh is
+//! refined, and reach them where the spring does.
 //!
-//! Contact at the nodes alone is the trapezoidal rule in place of the four parts: MoorDyn's law, for comparison with it.
+//! Contact at the nodes only is the trapezoidal rule instead of the four parts. It is MoorDyn's law and serves for comparison with it.
 //!
 //! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper pulls on a rising node);
 //! work-equivalent loads as in any finite element. Parts, δ and ζ were chosen on three chains in storms, `docs/hard-cases.md`: one or two parts are worse
@@ -29,7 +29,7 @@ use crate::math::real::Real;
 /// Static penetration of a resting segment under regularised contact, per segment length [-].
 pub const REGULARISED_PENETRATION: f64 = 0.03;
 
-/// Part of critical damping that a segment on a softened spring keeps, if its given damper has as much [-].
+/// Fraction of critical damping that a segment on a softened spring keeps, if its given damping is not lower [-].
 const REGULARISED_DAMPING: f64 = 0.2;
 
 /// Part of a segment, seen from one of its nodes.
@@ -37,13 +37,13 @@ const REGULARISED_DAMPING: f64 = 0.2;
 pub struct Part {
     /// Distance of its middle from the node, per segment length [-].
     pub at: f64,
-    /// Shares of the force on a segment under uniform load that this part gives to the node and to the other one [-].
+    /// Shares of the force on a uniformly loaded segment that this part adds to this node and to the other one [-].
     pub shares: [f64; 2],
 }
 
 /// Parts of a segment at which the contact is evaluated.
 pub const PARTS: [Part; 4] = [part(0.125), part(0.375), part(0.625), part(0.875)];
-/// The nodes of a segment, at which contact acts alone in other codes: each twice, as the end of two parts.
+/// Nodes of a segment, the only contact points in other codes; each occurs twice, as the end of two parts.
 pub const ENDS: [Part; 4] = [part(0.0), part(0.0), part(1.0), part(1.0)];
 
 const fn part(at: f64) -> Part {
@@ -54,8 +54,8 @@ const fn part(at: f64) -> Part {
 }
 
 impl Part {
-    /// Slopes of the forces on the two nodes (rows) with the penetrations of both (columns) where this part is pressed, over the stiffness of the
-    /// segment [-].
+    /// Slopes of the forces on the two nodes (rows) with respect to both penetrations (columns) while this part is in contact, relative to the
+    /// stiffness of the segment [-].
     #[inline(always)]
     pub fn products(self) -> [[f64; 2]; 2] {
         self.shares
@@ -69,7 +69,7 @@ impl Part {
     }
 }
 
-/// Static penetration of a point that rests with its whole weight, for which the stiffness is chosen [m].
+/// Static penetration of a point that rests with its whole weight, from which its contact stiffness follows [m].
 pub const POINT_PENETRATION: f64 = 0.02;
 
 /// Contact coefficients of a segment, or of a point.
@@ -81,8 +81,8 @@ pub struct ContactCoefficients {
     pub damping: f64,
 }
 
-/// Softens the contact of a segment of `weight` [N] in water, `mass` across the line [kg], including water, and `length` [m]; buoyant segments are
-/// left as they are.
+/// Softens the contact of a segment of `weight` [N] in water, `mass` across the line [kg], including that of the water, and `length` [m]; buoyant
+/// segments are left unchanged.
 pub fn regularised(
     contact: ContactCoefficients,
     [weight, mass]: [f64; 2],
@@ -100,8 +100,8 @@ pub fn regularised(
     }
 }
 
-/// Contact of a point of `weight` [N], which has no length or diameter for the seabed's coefficients to refer to. Its
-/// stiffness gives a penetration of [`POINT_PENETRATION`], with the seabed's ratio of damping to stiffness `lag` [s].
+/// Contact of a point of `weight` [N]. A point has no length or diameter to which the coefficients of the seabed could refer. Its stiffness gives a
+/// penetration of [`POINT_PENETRATION`], with the seabed's ratio of damping to stiffness `lag` [s].
 pub fn under_point(weight: f64, lag: f64) -> ContactCoefficients {
     let stiffness = weight.abs() / POINT_PENETRATION;
     ContactCoefficients {

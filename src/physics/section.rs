@@ -33,7 +33,7 @@ use nalgebra::{Matrix3, Vector3, Vector6};
 use crate::math::real::{Real, RealVector};
 use crate::math::triad::{Triad, componentwise, each, repeated};
 
-/// A cross-section, or the mean of one over a step.
+/// Cross-section, or its mean over a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section {
     /// Position φ [m].
@@ -42,7 +42,7 @@ pub struct Section {
     pub frame: Matrix3<f64>,
 }
 
-/// Six components of a section: Γ or N in the place of forces, K or M in the place of moments.
+/// Six components of a section: Γ or N as the first three, K or M as the last three.
 pub type Sextuple = Vector6<f64>;
 
 /// Stiffness or damping of a section along its directors.
@@ -58,7 +58,7 @@ pub struct SectionLaw {
     pub torsion: f64,
 }
 
-/// The parts of the strain energy.
+/// Strain energy by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StrainEnergy {
     /// Strain energy of stretching [J].
@@ -71,7 +71,7 @@ pub struct StrainEnergy {
     pub torsion: f64,
 }
 
-/// A cross-section, or one in every lane.
+/// Cross-section, or one in every lane.
 #[derive(Debug, Clone, Copy)]
 pub struct Station<V> {
     /// Position φ [m].
@@ -150,16 +150,16 @@ impl StrainEnergy {
     }
 }
 
-/// Weights of the strains at both ends of a step in its stress.
+/// Weights of the strains before and after a step in its stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mixture {
-    /// Part of the change of strain over the step that acts [-]: ½; in statics, where both ends are the same, 1.
+    /// Fraction of the change of strain over the step that acts [-]: ½; in statics, where both ends are the same, 1.
     pub share: f64,
     /// 1/Δt [1/s]; 0 in statics.
     pub rate: f64,
 }
 
-/// An element over a step, or at rest, or one in every lane.
+/// Element over a step or at rest, or one in every lane.
 #[derive(Debug, Clone, Copy)]
 pub struct StepStrain<V: RealVector> {
     /// Stiffness and damping of the section, each as the numbers that multiply Γ and K.
@@ -174,8 +174,8 @@ pub struct StepStrain<V: RealVector> {
     pub mixture: Mixture,
 }
 
-/// Slope of a stress with the plain strains at the end of a step:
-/// [[C, EA ẑ s₁ᵀ], [s₀ EA ẑᵀ, H + s₀ EA s₁ᵀ]], with the s of the step and of its end.
+/// Slope of a stress with respect to the plain strains at the end of a step: [[C, EA ẑ s₁ᵀ], [s₀ EA ẑᵀ, H + s₀ EA s₁ᵀ]], with the s of the step and
+/// of its end.
 pub struct Slope<V> {
     /// C, diagonal [N].
     forces: V,
@@ -197,7 +197,7 @@ pub fn starred<V: RealVector>(strain: Pair<V>, length: V::Real) -> Pair<V> {
     ]
 }
 
-/// [`starred`] of one section.
+/// Starred strains of one section, as from [`starred`].
 pub fn corrected(strain: &Sextuple, length: f64) -> Sextuple {
     let [stretch, curvature] = starred(split(strain).into(), length);
     join(stretch, curvature)
@@ -210,7 +210,7 @@ fn along_axis<V: RealVector>(a: V::Real) -> V {
     V::of([zero, zero, a])
 }
 
-/// A vector without its third component.
+/// Vector without its third component.
 #[inline(always)]
 fn across_axis<V: RealVector>(v: V) -> V {
     let [x, y, _] = v.components();
@@ -268,7 +268,7 @@ impl<V: RealVector> Correction<V> {
     }
 }
 
-/// Change of Dᵀ S with the plain strains at the end of the step, at constant S = `stress`.
+/// Slope of Dᵀ S with respect to the plain strains at the end of the step, at constant S = `stress`.
 #[inline(always)]
 fn correction_curvature<V: RealVector>(
     [before, now]: [Pair<V>; 2],
@@ -314,7 +314,7 @@ impl<V: RealVector> StepStrain<V> {
         Correction::new(before, now, self.length).tr_times(self.starred())
     }
 
-    /// Slope of the stress with the plain strains at the end of the step.
+    /// Slope of the stress with respect to the plain strains at the end of the step.
     #[inline(always)]
     pub fn slope(&self) -> Slope<V> {
         let number = V::Real::splat;
@@ -354,13 +354,13 @@ pub fn strain_between<V: RealVector>(a: &Station<V>, b: &Station<V>, length: V::
     [stretch.scaled(per_length), turn.scaled(per_length)]
 }
 
-/// [`strain_between`] two single sections.
+/// Strain (Γ, K) between two single sections, as from [`strain_between`].
 pub fn strain(a: &Section, b: &Section, length: f64) -> Sextuple {
     let [stretch, curvature] = strain_between(&a.into(), &b.into(), length);
     join(stretch, curvature)
 }
 
-/// L ∂(Γ, K)/∂(φ, spin) of sections a and b, from its rows: ā_i·(δφ_b − δφ_a) + r_i^a·s_a + r_i^b·s_b and q_k·(s_b − s_a).
+/// L ∂(Γ, K)/∂(φ, spin) of sections a and b, given by its rows: ā_i·(δφ_b − δφ_a) + r_i^a·s_a + r_i^b·s_b and q_k·(s_b − s_a).
 #[derive(Debug, Clone, Copy)]
 pub struct StrainGradient<V> {
     /// ā_i = ½ (d_i^a + d_i^b) [-].
@@ -412,7 +412,7 @@ impl<V: RealVector> StrainGradient<V> {
         ]
     }
 
-    /// The rows r_i of both sections of the starred strains: Γ₃ has in addition s·K.
+    /// Rows r_i of both sections for the starred strains, of which Γ₃ also contains s·K.
     #[inline(always)]
     fn shortened(&self, shortening: V) -> [Triad<V>; 2] {
         let change = self.turn.times(shortening);
@@ -420,8 +420,8 @@ impl<V: RealVector> StrainGradient<V> {
         [Triad([a1, a2, a3 - change]), Triad([b1, b2, b3 + change])]
     }
 
-    /// Change of [`StrainGradient::tr_times`] with positions and spins of the sections at which the strains change by the gradient `now`, with the
-    /// `slope` of the stress.
+    /// Slope of [`StrainGradient::tr_times`] with respect to positions and spins, from the `slope` of the stress and the gradient `now` of the
+    /// strains at the end of the step.
     #[inline(always)]
     pub fn stiffness(&self, slope: &Slope<V>, now: &StrainGradient<V>, length: V::Real) -> Stiffness<V> {
         let forces = slope.forces.scaled(length.recip());
@@ -460,22 +460,22 @@ fn trace<V: RealVector>(u: &Triad<V>, v: &Triad<V>) -> Triad<V> {
     Triad::diagonal(repeated(sum))
 }
 
-/// Change of force and moment on both sections of an element with their positions and spins. Forces on a and b are opposite, and positions
-/// act by their difference b − a.
+/// Slopes of the forces and moments on both sections of an element with respect to their positions and spins. Forces on a and b are opposite, and
+/// positions enter by their difference b − a.
 pub struct Stiffness<V> {
-    /// Force on b with the difference of the positions [N/m].
+    /// Slope of the force on b with respect to the difference of the positions [N/m].
     pub shift: Triad<V>,
-    /// Force on b with the spins of a and b [N].
+    /// Slopes of the force on b with respect to the spins of a and b [N].
     pub pulled: [Triad<V>; 2],
-    /// Moments on a and b with the difference of the positions [N].
+    /// Slopes of the moments on a and b with respect to the difference of the positions [N].
     pub swept: [Triad<V>; 2],
-    /// Moments on a and b (rows) with the spins of a and b (columns) [N m].
+    /// Slopes of the moments on a and b (rows) with respect to the spins of a and b (columns) [N m].
     pub turned: [[Triad<V>; 2]; 2],
 }
 
 impl<V: RealVector> Stiffness<V> {
-    /// Adds the change of [`StrainGradient::tr_times`] at the sections `mean` with positions and spins of the sections `now` after the step, at
-    /// constant `stress`; the mean sections follow by the part `share` [-] of the change.
+    /// Adds the slope of [`StrainGradient::tr_times`] at the sections `mean` with respect to positions and spins of the sections `now` after the
+    /// step, at constant stress; the mean sections follow by the fraction `share` [-] of the change.
     #[inline(always)]
     pub fn add_geometric(
         &mut self,
@@ -508,7 +508,7 @@ impl<V: RealVector> Stiffness<V> {
     }
 }
 
-/// The parts of a strain or stress that belong to forces [N] and to moments [N m].
+/// Components of a strain or stress that belong to forces [N] and to moments [N m].
 #[inline(always)]
 pub fn split(both: &Sextuple) -> (Vector3<f64>, Vector3<f64>) {
     (
@@ -517,7 +517,7 @@ pub fn split(both: &Sextuple) -> (Vector3<f64>, Vector3<f64>) {
     )
 }
 
-/// The inverse of [`split`].
+/// Inverse of [`split`].
 #[inline(always)]
 pub fn join(force: Vector3<f64>, moment: Vector3<f64>) -> Sextuple {
     Sextuple::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
@@ -553,7 +553,7 @@ mod tests {
         [before[0].mean(&now[0]), before[1].mean(&now[1])]
     }
 
-    /// One of the twelve unknowns moved: position, then spin, of section a, then b.
+    /// Sections with one of the twelve unknowns moved: position, then spin, of section a, then of b.
     fn moved(sections: [Section; 2], unknown: usize, by: f64) -> [Section; 2] {
         let mut sections = sections;
         let section = &mut sections[unknown / 6];
@@ -567,7 +567,7 @@ mod tests {
         sections
     }
 
-    /// Six by twelve blocks of an element: rows of the section `row`, a column of both sections' unknowns.
+    /// Column of the six by twelve blocks of an element: rows of the section `row`, one unknown of both sections.
     fn column_of(stiffness: &Stiffness<Vector3<f64>>, row: usize, unknown: usize) -> Sextuple {
         let (of, column, signs) = (unknown / 6, unknown % 3, [-1.0, 1.0]);
         match unknown % 6 < 3 {

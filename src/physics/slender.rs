@@ -14,9 +14,9 @@ use crate::math::real::{Real, RealVector};
 /// a I + b t tᵀ: a mass [kg] or an inverse mass [1/kg] of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slender<R> {
-    /// a: the part in all directions.
+    /// a: part in all directions.
     pub across: R,
-    /// b: the part along the line in excess of it.
+    /// b: excess of the part along the line over a.
     pub excess: R,
 }
 

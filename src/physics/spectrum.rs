@@ -1,47 +1,45 @@
-//! Seas drawn from a spectrum: JONSWAP and Pierson-Moskowitz, all waves in one direction or spread.
+//! Random seas from a spectrum: JONSWAP and Pierson-Moskowitz, with all waves in one direction or spread.
 //!
 //!   S(ω) ∝ ω⁻⁵ exp(−5/4 (ω/ω_p)⁻⁴) γ^exp(−½((ω − ω_p)/(σω_p))²),   σ = 0.07 up to ω_p, 0.09 above,   ∫S dω = m₀ = H_s²/16
 //!
-//! with γ = 1 for Pierson-Moskowitz. The leading factor is found by integration from ½ω_p to 5ω_p, which leaves out
-//! 0.2 % of the energy with γ = 1; an approximation of it, 5/16 H_s² ω_p⁴ (1 − 0.287 ln γ), is right to 2 % for 1 ≤ γ
-//! ≤ 7.
+//! with γ = 1 for Pierson-Moskowitz. The leading factor is found by integration from ½ω_p to 5ω_p, which leaves out 0.2 % of the energy with γ = 1.
+//! An approximation of it, 5/16 H_s² ω_p⁴ (1 − 0.287 ln γ), is accurate to 2 % for 1 ≤ γ ≤ 7.
 //!
-//! N components of equal amplitude √(2m₀/N) represent the spectrum: the range is cut into N bands of equal energy. The
-//! frequency of each is drawn within its band in proportion to the energy there, so that no record repeats itself.
-//! Phases are drawn uniformly from a whole turn. Directions are drawn from D(θ) ∝ cos²ˢ(½(θ − θ₀)), component by
-//! component. The same seed gives the same sea, to rounding on another machine.
+//! N components of equal amplitude √(2m₀/N) represent the spectrum: the range is cut into N bands of equal energy. The frequency of each is drawn
+//! within its band in proportion to the energy there, so that no record repeats itself. Phases are drawn uniformly from a whole turn. Directions are
+//! drawn from D(θ) ∝ cos²ˢ(½(θ − θ₀)), component by component. The same seed gives the same sea, except for rounding on another machine.
 //!
-//! Source: Hasselmann et al. (1973), Deutsche Hydrographische Zeitschrift A8(12); Pierson & Moskowitz (1964), J. Geophys. Res. 69,
-//! 5181-5190; DNV-RP-C205 (2010), Environmental Conditions and Environmental Loads, sections 3.5.5 and 3.5.8; the spread after
-//! Longuet-Higgins, Cartwright & Smith (1963), Ocean Wave Spectra, 111-136. Valid for one wind sea or swell of one peak, deep water.
+//! Source: Hasselmann et al. (1973), Deutsche Hydrographische Zeitschrift A8(12); Pierson & Moskowitz (1964), J. Geophys. Res. 69, 5181-5190;
+//! DNV-RP-C205 (2010), Environmental Conditions and Environmental Loads, sections 3.5.5 and 3.5.8; spreading after Longuet-Higgins, Cartwright &
+//! Smith (1963), Ocean Wave Spectra, 111-136. Valid for a single wind sea or swell with one peak in deep water.
 
 use std::f64::consts::{PI, TAU};
 
 use super::airy::Component;
 use crate::math::random::Random;
 
-/// Lowest and highest frequency, over that of the peak [-].
+/// Lowest and highest frequency, relative to the peak frequency [-].
 const RANGE: [f64; 2] = [0.5, 5.0];
-/// Number of pieces in which a distribution is integrated [-].
+/// Number of intervals in the integration of a distribution [-].
 const PIECES: usize = 9000;
 
-/// A sea of one spectrum.
+/// Sea with one spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
     /// Significant height H_s [m].
     pub significant_height: f64,
-    /// Period of the peak 2π/ω_p [s].
+    /// Peak period 2π/ω_p [s].
     pub peak_period: f64,
     /// Peakedness γ [-].
     pub peakedness: f64,
-    /// Mean direction θ₀ the waves travel to [rad].
+    /// Mean direction of travel θ₀ [rad].
     pub direction: f64,
-    /// Exponent s of the spread [-]; all waves in one direction where absent.
+    /// Exponent s of the spreading [-]; if absent, all waves have the same direction.
     pub spreading: Option<f64>,
 }
 
 impl Spectrum {
-    /// `count` components drawn with a seed [-].
+    /// Draws `count` components with a seed [-].
     pub fn draw(&self, count: usize, seed: u64) -> Vec<Component> {
         let peak = TAU / self.peak_period;
         let energies = Distribution::new(RANGE, |x| self.shape(x));
@@ -73,11 +71,11 @@ impl Spectrum {
     }
 }
 
-/// A distribution on an interval, integrated by Simpson's rule.
+/// Distribution on an interval, integrated by Simpson's rule.
 struct Distribution {
     start: f64,
     width: f64,
-    /// Integral from the start to the end of each piece, 0 first; 1 last.
+    /// Integral from the start to the end of each piece, from 0 to 1.
     sums: Vec<f64>,
 }
 
@@ -95,7 +93,7 @@ impl Distribution {
         Distribution { start, width, sums }
     }
 
-    /// Argument below which a part of the whole lies [-].
+    /// Argument below which the fraction `part` of the distribution lies [-].
     fn quantile(&self, part: f64) -> f64 {
         let after = self.sums.partition_point(|sum| *sum <= part);
         let piece = after.clamp(1, PIECES) - 1;

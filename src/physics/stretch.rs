@@ -1,11 +1,11 @@
-//! Axial force of a stretched cable for three families of strain measure.
+//! Axial force of a stretched cable, for three strain measures or from a table.
 //!
 //! With the stretch λ = l/L and the strain ε = λ − 1, the force N = ∂W/∂l per unstretched cross-section is
 //!
 //! * engineering: N = EA·ε
 //! * Green-Lagrange: N = EA·λ·(λ² − 1)/2 (second Piola-Kirchhoff stress proportional to the Green strain)
 //! * logarithmic: N = EA·ln λ·λ^(−2ν) (Cauchy stress proportional to ln λ, on the contracted area A·λ^(−2ν))
-//! * tabulated: N given at some ε, see [`super::tension_table`]; EA is then its steepest slope
+//! * tabulated: N given at some strains ε, see [`super::tension_table`]; EA is then its steepest slope
 //!
 //! Source: derived here from W(λ) per unstretched length, N = dW/dλ; the Green and logarithmic forms are those of
 //! Crisfield (1991), Non-linear Finite Element Analysis of Solids and Structures, vol. 1, section 3.1-3.2.
@@ -28,7 +28,7 @@ pub enum StretchLaw {
         /// Poisson's ratio ν [-].
         poisson: f64,
     },
-    /// Tension given at some ε = λ − 1.
+    /// Tension tabulated over ε = λ − 1.
     Tabulated(TensionTable),
 }
 
@@ -80,7 +80,7 @@ impl StretchLaw {
         matches!(self, StretchLaw::Green | StretchLaw::Logarithmic { .. })
     }
 
-    /// The strain [-] at which the force is greatest, if there is one: N' = 0 at ln λ = 1/(2ν).
+    /// Strain [-] at which the force is largest, if there is one: N' = 0 at ln λ = 1/(2ν).
     pub fn limit_strain(&self) -> Option<f64> {
         match *self {
             StretchLaw::Logarithmic { poisson } if poisson > 0.0 => Some((0.5 / poisson).exp_m1()),
@@ -101,9 +101,8 @@ fn logarithmic_energy(log: f64, a: f64) -> f64 {
 
 /// Tension [N] of a segment from its elastic force and its damping force.
 ///
-/// By default the total is never negative, max(0, N + C): with damping acting in compression a slack cable is
-/// ill-posed. The peers' law (MoorDyn), max(0, N) + C, is kept for comparison with them. `least` is minus the push that bending
-/// stiffness lets the segment carry, 0 without.
+/// By default the total is never negative, max(0, N + C): with damping acting in compression a slack cable is ill-posed. MoorDyn's law, max(0, N) +
+/// C, is kept for comparison. `least` is minus the compression that bending stiffness lets the segment carry, 0 without bending stiffness.
 #[inline(always)]
 pub fn total_tension<R: Real>(elastic: R, damping: R, least: R, negative_tension: bool) -> R {
     if negative_tension {

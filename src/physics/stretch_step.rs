@@ -1,12 +1,12 @@
-//! Tension of a segment over a time step, whose spring conserves energy.
+//! Tension of a segment over a time step, with a spring that conserves energy.
 //!
 //! With the strains ε before and ε' after a step, the tension is the discrete gradient of the energy per unstretched length,
 //!
 //!   T̄ = (W(ε') − W(ε))/(ε' − ε),
 //!
-//! along q̄ = (d + d')/(l + l') of both chords d of lengths l. T̄ q̄·(d' − d) = T̄ (l' − l) is then the change of
-//! the spring's energy, whether the segment turns, slackens or snaps within the step. The mean of the forces before
-//! and after conserves energy only where the law is linear and nothing turns.
+//! along q̄ = (d + d')/(l + l'), with the chords d and d' of lengths l and l'. T̄ q̄·(d' − d) = T̄ (l' − l) is then the change of the spring's
+//! energy, whether the segment turns, slackens or snaps within the step. The mean of the forces before and after conserves energy only if the law is
+//! linear and nothing turns.
 //!
 //! Source: discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467; of springs Greenspan (1984), J. Comput. Phys. 56, 28-48. Valid for any law with
 //! an energy; its slope is not negative where W is convex.
@@ -17,20 +17,20 @@ use nalgebra::{Matrix3, Vector3};
 /// then differ by less than the rounding of the energy difference.
 const SMALL: f64 = 1e-5;
 
-/// A spring at a strain.
+/// Spring at a given strain.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Spring {
     /// ε = l/L − 1 [-].
     pub strain: f64,
     /// Tension W' [N].
     pub tension: f64,
-    /// Slope of the tension with the strain [N].
+    /// Slope of the tension with respect to the strain [N].
     pub slope: f64,
     /// Energy W per unstretched length [N].
     pub energy: f64,
 }
 
-/// A segment before or after a step.
+/// Segment before or after a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Stretched {
     /// d, from one node to the next [m].
@@ -101,7 +101,7 @@ pub struct StretchStep {
 }
 
 impl StretchStep {
-    /// Step of a tension between two states.
+    /// Step between two states with the tension `mean`.
     #[inline(always)]
     pub fn new([before, after]: [&Stretched; 2], mean: Mean) -> StretchStep {
         let (chords, length) = (before.chord + after.chord, before.length + after.length);
@@ -119,8 +119,8 @@ impl StretchStep {
         self.mean.tension * self.direction
     }
 
-    /// ∂(T̄ q̄)/∂d' [N/m] of a segment of an unstretched length [m] that has a direction `after` the step [-], with
-    /// `across` [N] in place of the tension for its resistance to turning.
+    /// ∂(T̄ q̄)/∂d' [N/m], for an unstretched length [m] and a direction `after` the step [-]; `across` [N] replaces the tension in the resistance to
+    /// turning.
     #[inline(always)]
     pub fn stiffness(&self, unstretched: f64, after: Vector3<f64>, across: f64) -> Matrix3<f64> {
         let turning = across * self.per_length;
@@ -137,7 +137,7 @@ mod tests {
 
     const UNSTRETCHED: f64 = 0.5;
 
-    /// A spring that cannot push, and is half as stiff again when it is stretched far.
+    /// Spring that cannot push, and stiffens with strain.
     fn spring(strain: f64) -> Spring {
         let ea = 2.0e4;
         let e = strain.max(0.0);
@@ -188,7 +188,7 @@ mod tests {
             let [old, new] = [before, after].map(|chord| stretched(chord).spring.energy);
             let held = (new - old) * UNSTRETCHED;
             assert_relative_eq!(work, held, max_relative = 1e-6, epsilon = 1e-9);
-            // a turn of the whole by the same angle turns the force: angular momentum stays
+            // the force is along the mean chord, so that angular momentum is conserved
             assert!(step(before, after).force().cross(&(before + after)).norm() < 1e-9);
         }
     }

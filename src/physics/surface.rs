@@ -1,11 +1,11 @@
-//! A line that pierces the water's surface: its emerged part, and the energy of the buoyancy it loses.
+//! Line that pierces the water surface: its emerged part, and the energy of the buoyancy it loses.
 //!
 //! A straight piece of line of radius R has the height ζ(u) = (1 − u) ζ₀ + u ζ₁ above the water, 0 ≤ u ≤ 1. With the
 //! dry part a(ζ/R) of its cross-section, the dry parts of the halves that are lumped to its two ends are
 //!
 //!   p₀ = 2 ∫ (1 − u) a du,   p₁ = 2 ∫ u a du,   ∂p/∂ζ = 2 ∫ [(1 − u)², u(1 − u); u(1 − u), u²] a' du,
 //!
-//! and these lose B p₀ and B p₁ of the buoyancy B of either half, the gradient of the potential
+//! which reduce the buoyancy B of each half by B p₀ and B p₁, the gradient of the potential
 //!
 //!   C = 2B ∫ χ du,   χ(ζ) = ∫ a dζ from far below: 0 deep under water, ζ in the air.
 //!
@@ -14,22 +14,21 @@
 //!
 //!   a(x) = ½ + (2/π) x + (5/4 − 4/π) x³ + (2/π − 3/4) x⁵,   −1 ≤ x ≤ 1,
 //!
-//! is 0 and 1 beyond with slope 0, has the slope of a disc at half draught, so that a line afloat has the stiffness ρ g d of its
-//! waterplane, and is within 0.013 of the disc's dry part, ½ + (x √(1 − x²) + arcsin x)/π, everywhere. A steep line is wetted by the
-//! same a, which moves no buoyancy along it. All integrals are exact: the wet, crossing and dry ranges of u are integrated separately, the
-//! crossing one by Gauss's four points.
+//! is 0 and 1 beyond with slope 0, has the slope of a disc at half draught, so that a line afloat has the stiffness ρ g d of its waterplane, and is
+//! within 0.013 of the disc's dry part, ½ + (x √(1 − x²) + arcsin x)/π, everywhere. The same a applies to a steep line, which moves no buoyancy along
+//! it. All integrals are exact: the wet, crossing and dry ranges of u are integrated separately, the crossing one by the four-point Gauss rule.
 //!
 //! Where p changes, the equation of motion is M a = f without the impulse Ṁ v, as for [`super::point`]. Slamming is not modelled.
 //!
-//! Source: Archimedes' principle on the unstretched volume; lumping by the linear shape functions of a two-node element, e.g. Cook,
-//! Malkus & Plesha (1989), Concepts and Applications of Finite Element Analysis, section 2.6; the polynomial is fitted here. Valid for slopes
-//! of the water's surface that are small over a piece, and for lines thin compared with their length.
+//! Source: Archimedes' principle on the unstretched volume; lumping by the linear shape functions of a two-node element, e.g. Cook, Malkus & Plesha
+//! (1989), Concepts and Applications of Finite Element Analysis, section 2.6; the polynomial is fitted here. Valid for slopes of the water surface
+//! that are small over a piece, and for lines thin compared with their length.
 
 use std::f64::consts::FRAC_2_PI;
 
 /// Coefficients of x, x³ and x⁵ in the dry part of a cross-section [-].
 const DISC: [f64; 3] = [FRAC_2_PI, 1.25 - 2.0 * FRAC_2_PI, FRAC_2_PI - 0.75];
-/// Gauss's four points on 0 … 1 and their weights [-].
+/// Points in 0 … 1 and weights of the four-point Gauss rule [-].
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -40,14 +39,14 @@ const GAUSS: [(f64, f64); 4] = [
 /// Emerged part of a piece of line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Emerged {
-    /// Dry parts p₀, p₁ of the halves that belong to its ends [-].
+    /// Dry parts p₀, p₁ of the halves that are lumped to its ends [-].
     pub parts: [f64; 2],
     /// ∂p₀/∂ζ₀, ∂p₀/∂ζ₁ = ∂p₁/∂ζ₀ and ∂p₁/∂ζ₁ [1/m], none negative.
     pub slopes: [f64; 3],
 }
 
-/// Emerged part of a piece of line of `radius` R [m], positive, whose ends are at `heights` [m] above the water;
-/// `None` where all of it is under water.
+/// Emerged part of a piece of line of `radius` R [m], positive, whose ends are at `heights` [m] above the water; `None` if it is entirely under
+/// water.
 #[inline]
 pub fn emerged(radius: f64, heights: [f64; 2]) -> Option<Emerged> {
     let piece = Piece::new(radius, heights)?;
@@ -70,7 +69,7 @@ pub fn emerged(radius: f64, heights: [f64; 2]) -> Option<Emerged> {
     Some(Emerged { parts, slopes })
 }
 
-/// ∫ χ du [m] of the same piece: the energy of the buoyancy that it loses over its buoyancy.
+/// ∫ χ du [m] of the same piece: energy of the lost buoyancy, divided by the buoyancy.
 pub fn energy(radius: f64, heights: [f64; 2]) -> f64 {
     let Some(piece) = Piece::new(radius, heights) else {
         return 0.0;
@@ -83,7 +82,7 @@ pub fn energy(radius: f64, heights: [f64; 2]) -> f64 {
     crossing + 0.5 * (1.0 - piece.end) * (leaves + piece.low + piece.rise)
 }
 
-/// Greatest slope of p with the height of a level line, 2/πR [1/m].
+/// Maximum slope of p with respect to the height of a level line, 2/πR [1/m].
 pub fn slope_max(radius: f64) -> f64 {
     FRAC_2_PI / radius
 }

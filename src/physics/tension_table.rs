@@ -1,10 +1,9 @@
-//! Tension of a line given at some strains: a monotone curve through the rows of a table.
+//! Tension of a line tabulated over strain: a monotone curve through the rows of the table.
 //!
-//! Between two rows the tension is the cubic Hermite polynomial with the slopes of [`rising_slopes`]. The least slope
-//! at the first row gives a line at rest resistance to the first pull. The curve is continuous with its slope, rises
-//! wherever the table rises, and continues beyond the last row with the last slope (MoorDyn keeps the last tension
-//! there). Below zero strain it continues with the first slope, which does not affect a line that cannot push. Its
-//! energy is the exact integral.
+//! Between two rows the tension is the cubic Hermite polynomial with the slopes of [`rising_slopes`]. The minimum slope at the first row ensures that
+//! a line at rest resists the first pull. The curve is continuous with its slope, rises wherever the table rises, and continues beyond the last row
+//! with the last slope (MoorDyn keeps the last tension there). Below zero strain it continues with the first slope, which does not affect a line that
+//! cannot push. Its energy is the exact integral.
 //!
 //! Source: [`crate::math::shape_preserving`]. Valid for rows that begin at (0, 0) and rise in strain and in tension.
 
@@ -14,13 +13,13 @@ use super::stretch::Stretch;
 use crate::math::hermite::Hermite;
 use crate::math::shape_preserving::rising_slopes;
 
-/// Curve through a table, over its steepest slope EA.
+/// Curve through a table, divided by its steepest slope EA.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TensionTable {
     pieces: Arc<[Piece]>,
 }
 
-/// Curve from one row to the next; everything over EA.
+/// Curve from one row to the next; all values are divided by EA.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece {
     /// Strain at the start of the piece [-].
@@ -65,7 +64,7 @@ impl TensionTable {
         (TensionTable { pieces }, steepest)
     }
 
-    /// Value, slope and energy at a strain [-], over EA.
+    /// Value, slope and energy at a strain [-], divided by EA.
     #[inline]
     pub fn at(&self, strain: f64) -> Stretch {
         let (first, later) = (&self.pieces[0], &self.pieces[1..]);
@@ -106,7 +105,7 @@ impl Piece {
         }
     }
 
-    /// Greatest slope of the piece: at one of its ends, or where the slope of the slope is zero.
+    /// Maximum slope of the piece: at one of its ends, or where the second derivative is zero.
     fn steepest(&self) -> f64 {
         let [_, b, c, d] = self.powers;
         if !self.span.is_finite() {

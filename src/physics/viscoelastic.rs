@@ -9,27 +9,26 @@
 //!   T = K ε + C ε̇ + G ε₁,  K = BA_s EA_d/B,  C = BA_s BA_d/B,  G = (BA_d EA₁ − BA_s EA_d)/B,
 //!   B ε̇₁ = EA_d (ε − ε₁) − EA₁ ε₁ + BA_d ε̇.
 //!
-//! The trapezoidal rule closes a step Δt of the implicit integrators: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) +
-//! BA_d Δε]/(B + ½Δt (EA_d + EA₁)), ε̄ the mean strain. It accounts for the dissipation of the dampers exactly, but
-//! rings where Δt is many times the relaxation time τ = B/(EA_d + EA₁). The leapfrogs, whose forces do not depend on
-//! the end of the step, use the exact solution for a constant strain rate, z = Δt/τ, r = EA_d/(EA_d + EA₁), p = r +
-//! (BA_d/B − r)(1 − e⁻ᶻ)/z:
+//! The trapezoidal rule closes a step Δt of the implicit integrators: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) + BA_d Δε]/(B + ½Δt (EA_d + EA₁)),
+//! ε̄ the mean strain. It accounts for the dissipation of the dampers exactly, but rings if Δt is many times the relaxation time τ = B/(EA_d + EA₁).
+//! The leapfrogs, whose forces do not depend on the end of the step, use the exact solution for a constant strain rate. With z = Δt/τ, r = EA_d/(EA_d
+//! + EA₁) and p = r + (BA_d/B − r)(1 − e⁻ᶻ)/z it is
 //!
 //!   ε₁' = e⁻ᶻ ε₁ + (r (1 − e⁻ᶻ) − p) ε + p ε'.
 //!
-//! A rope that would push carries nothing, and its slow part contracts by itself, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear
-//! solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
+//! A rope in compression carries no tension, and its slow part contracts freely, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear solid:
+//! storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
 //!
-//! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² of e = ε − ε₁ while it is stretched; the rest of the work
-//! is dissipated. A step within which the fast one slackens or snaps creates no energy: its tension is then the
-//! discrete gradient of its energy, plus BA_d (e'₊ − e₊)/Δt of its damper.
+//! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² with e = ε − ε₁ while it is stretched; the rest of the work is dissipated. A step within
+//! which the fast spring slackens or snaps creates no energy: its tension is then the discrete gradient of its energy, plus BA_d (e'₊ − e₊)/Δt of its
+//! damper.
 //!
 //! Source: the law of MoorDyn's `EA_s|EA_d`, `BA_s|BA_d` line types, `source/Line.cpp` of MoorDyn-C, after Hall, Duong & Lozon (2023), IOWTC2023, on
 //! semi-taut moorings with polyester ropes; closed forms derived here. Valid for small strain and EA_d > EA_s > 0, BA_s > 0.
 
 use super::stretch_step::Mean;
 
-/// The law of a segment.
+/// Viscoelastic law of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscoelastic {
     /// Stiffness K of the strain at a given memory [N].
@@ -44,7 +43,7 @@ pub struct Viscoelastic {
     pub fast: f64,
     /// Fast damper BA_d [N s].
     pub fast_damping: f64,
-    /// 1/B [1/(N s)]; 0 of a segment without memory.
+    /// 1/B [1/(N s)]; 0 for a segment without memory.
     pub yielding: f64,
     /// Rate EA₁/BA_s at which the slow part contracts in a slack rope [1/s].
     pub contraction: f64,
@@ -55,37 +54,36 @@ pub struct Viscoelastic {
 pub struct ViscoelasticStep {
     /// Slow strain ε₁' at its end [-].
     pub slow: f64,
-    /// Slope of ε₁' with the strain at the end of the step [-].
+    /// Slope of ε₁' with respect to the strain at the end of the step [-].
     pub slow_slope: f64,
     /// Tension over the step, and the dissipation of the dampers.
     pub mean: Mean,
 }
 
-/// Evolution of the memory over a step in which the strain rate is constant: ε₁' = `kept` ε₁ + `first` ε + `last` ε',
-/// or `slack` ε₁ where nothing is carried.
+/// Evolution of the memory over a step at a constant strain rate: ε₁' = `kept` ε₁ + `first` ε + `last` ε', or `slack` ε₁ in a slack rope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relaxation {
     /// e⁻ᶻ [-].
     pub kept: f64,
-    /// Factor of the strain before, r (1 − e⁻ᶻ) − p [-].
+    /// Factor of the initial strain, r (1 − e⁻ᶻ) − p [-].
     pub first: f64,
-    /// Factor of the strain afterwards, p [-].
+    /// Factor of the final strain, p [-].
     pub last: f64,
     /// Factor of the memory in a slack rope [-].
     pub slack: f64,
 }
 
-/// Pull of the fast part over a step.
+/// Tension of the fast part over a step.
 struct Pull {
     /// Tension [N].
     tension: f64,
-    /// Slope of the tension with the strain afterwards [N].
+    /// Slope of the tension with respect to the final strain [N].
     slope: f64,
 }
 
-/// Both parts over a step.
+/// Slow and fast parts over a step.
 struct Series {
-    /// Strains of the slow and of the fast part before [-].
+    /// Strains of the slow and of the fast part before the step [-].
     before: [f64; 2],
     /// BA_s/Δt and BA_d/Δt [N].
     dampers: [f64; 2],
@@ -105,7 +103,7 @@ impl Series {
         }
     }
 
-    /// The step at whose end the parts have these strains [-], as the fast one pulls.
+    /// Step at whose end the parts have the strains `after` [-], with the tension `fast` of the fast part.
     fn step(&self, after: [f64; 2], fast: Pull) -> ViscoelasticStep {
         let slow_slope = fast.slope / (self.pull + fast.slope);
         let moved = [0, 1].map(|part| after[part] - self.before[part]);
@@ -122,7 +120,7 @@ impl Series {
     }
 }
 
-/// Discrete gradient of ½EA max(e, 0)² and its slope with the strain afterwards [N].
+/// Discrete gradient of ½EA max(e, 0)² and its slope with respect to the final strain [N].
 fn gradient(ea: f64, [before, after]: [f64; 2]) -> Mean {
     let moved = after - before;
     match (before > 0.0, after > 0.0) {
@@ -151,7 +149,7 @@ fn gradient(ea: f64, [before, after]: [f64; 2]) -> Mean {
     }
 }
 
-/// The negative and the positive root of a x² − b x + c for a > 0; c is not positive except for rounding.
+/// Negative and positive root of a x² − b x + c for a > 0; c is not positive except for rounding.
 fn roots([a, b, c]: [f64; 3]) -> [f64; 2] {
     let c = c.min(0.0);
     let greater = 0.5 * (b.abs() + (b * b - 4.0 * a * c).sqrt());
@@ -181,7 +179,7 @@ impl Viscoelastic {
         }
     }
 
-    /// A segment without memory, of stiffness EA [N] and damping BA [N s].
+    /// Law of a segment without memory, of stiffness EA [N] and damping BA [N s].
     pub fn plain(stiffness: f64, damping: f64) -> Self {
         Viscoelastic {
             stiffness,
@@ -195,7 +193,7 @@ impl Viscoelastic {
         }
     }
 
-    /// Slow damper BA_s [N s]; 0 of a segment without memory.
+    /// Slow damper BA_s [N s]; 0 for a segment without memory.
     pub fn slow_damping(&self) -> f64 {
         match self.contraction {
             0.0 => 0.0,
@@ -211,7 +209,7 @@ impl Viscoelastic {
         strain.max(0.0) * self.fast / (self.fast + self.slow)
     }
 
-    /// Tension without the damper C, before it is limited to zero [N].
+    /// Tension without the damper C, before it is clipped at zero [N].
     #[inline(always)]
     pub fn elastic(&self, strain: f64, slow: f64) -> f64 {
         self.stiffness * strain + self.memory * slow
@@ -252,7 +250,7 @@ impl Viscoelastic {
             let spring = gradient(self.fast, [before, after]);
             spring.tension + damper * (after.max(0.0) - before.max(0.0))
         };
-        // the slow part pulls with nothing where it contracts freely, but where it would go on beyond no strain
+        // the slow part carries no tension while it contracts freely, unless it would contract beyond zero strain
         let resists = if contracted > 0.0 {
             0.0
         } else {
@@ -307,7 +305,7 @@ impl Viscoelastic {
         series.step([relaxed, after], Pull { tension, slope })
     }
 
-    /// Step without memory, of a spring that has a mean tension.
+    /// Step without memory, with the mean tension `spring` of the spring.
     fn plain_step(&self, strains: [f64; 2], spring: Mean, dt: f64) -> ViscoelasticStep {
         let pulled = strains.map(|strain| strain.max(0.0));
         let (damper, change) = (self.fast_damping / dt, strains[1] - strains[0]);
@@ -327,7 +325,7 @@ impl Viscoelastic {
         }
     }
 
-    /// A step in which nothing is carried, between two strains of the rope and of its slow part [-].
+    /// Step without tension, between two strains of the rope and of its slow part [-].
     fn slack(&self, [before, after]: [f64; 2], slow: [f64; 2]) -> ViscoelasticStep {
         ViscoelasticStep {
             slow: slow[1],
@@ -353,7 +351,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// The polyester of a public semi-taut mooring.
+    /// Polyester rope of a published semi-taut mooring.
     fn rope(fast_damping: f64) -> Viscoelastic {
         Viscoelastic::new([1.424e8, 1.586e8], [4.0e9, fast_damping])
     }
@@ -371,7 +369,7 @@ mod tests {
         [real / square, -imaginary / square]
     }
 
-    /// Storage and loss modulus [N] of a rope in a steady sine of `steps` steps a period.
+    /// Storage and loss modulus [N] of a rope in a steady sine of `steps` steps per period.
     fn measured(law: &Viscoelastic, omega: f64, steps: usize) -> [f64; 2] {
         let period = 2.0 * std::f64::consts::PI / omega;
         let dt = period / steps as f64;

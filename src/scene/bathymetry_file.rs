@@ -1,4 +1,4 @@
-//! Soundings from a file: a table in CSV, or a file of the kind that MoorDyn-F and MoorPy read, or one that MoorDyn-C reads.
+//! Soundings from a file: a table in CSV, or a bathymetry file of MoorDyn-F and MoorPy, or of MoorDyn-C.
 //!
 //! ```text
 //! CSV:  y/x, x₁, x₂, …     MoorDyn-F:  --- MoorPy Bathymetry Input File ---     MoorDyn-C:  3 2
@@ -9,12 +9,13 @@
 //!                                      y₂  d₂₁ d₂₂ d₂₃                                      … one row for every x and y, in any order
 //! ```
 //!
-//! The first two are the same table of depths, positive downwards [m]; a unit in brackets in the first corner of the CSV, such as `y/x [km]`, is
-//! that of all its numbers, and nothing else there counts. Between semicolons, decimals may have commas. The third has heights of the seabed,
-//! negative below the water [m]. The kind is recognised by the first row: a rule of dashes begins the second, two whole numbers begin
-//! the third. Lines that are blank or begin with # are skipped.
+//! The first two are the same table of depths, positive downwards [m]. A unit in brackets in the top left cell of the CSV, such as `y/x [km]`,
+//! applies to all its numbers; other text in this cell is ignored. With semicolons between the columns, numbers may have decimal commas. The
+//! third lists heights of the seabed, negative below the water [m]. The first row identifies the format: a row of dashes the second, two whole
+//! numbers the third. Blank lines and lines that begin with # are skipped.
 //! Source of the second: documentation of MoorDyn, "Seafloor/Bathymetry File", and the reader of MoorPy; of the third: MoorDyn-C,
-//! `source/Seafloor.cpp`, where a row off the listed x and y is put at the next lower ones and a missing row is a height of 0: both are refused here.
+//! `source/Seafloor.cpp`, which moves a row off the listed x and y to the next lower ones and takes a missing row as a height of 0: here both
+//! are refused.
 
 use std::path::Path;
 
@@ -22,16 +23,16 @@ use super::columns::Separator;
 use super::units::{self, Quantity};
 use super::{DepthGrid, input_file};
 
-/// Words that name the sizes in a file of MoorDyn-F's kind, in capitals.
+/// Names of the grid sizes in a file of MoorDyn-F, in capitals.
 const SIZES: [&str; 2] = ["NGRIDX", "NGRIDY"];
 
-/// A line of the file by its number, and its words.
+/// Number and words of a line of the file.
 type Row = (usize, Vec<String>);
 
-/// The soundings in a file.
+/// Reads the soundings in a file.
 ///
 /// # Errors
-/// The file, the line and what would be right.
+/// The file and line of the mistake, and its correction.
 pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
     let name = path.display();
     let bytes = input_file::read_table(path, "a file of soundings")?;
@@ -52,7 +53,7 @@ fn below_water(grid: DepthGrid) -> Result<DepthGrid, String> {
     Ok(grid)
 }
 
-/// The soundings in a text; problems begin with a comma and a line, or a colon.
+/// Returns the soundings in a text. Messages begin with a comma and the line number, or with a colon.
 fn parse(text: &str) -> Result<DepthGrid, String> {
     let rows: Vec<Row> = text
         .trim_start_matches('\u{feff}')
@@ -81,7 +82,7 @@ fn words(line: &str) -> Vec<String> {
     separator.cells(line).into_iter().map(decimal).collect()
 }
 
-/// Unit in the corner of a table [m]; 1 where there is none.
+/// Unit in the corner of a table [m]; 1 if there is none.
 fn corner_unit(corner: &str) -> Result<f64, String> {
     let mut factor = None;
     for unit in units::bracketed(corner) {
@@ -96,7 +97,7 @@ fn corner_unit(corner: &str) -> Result<f64, String> {
     Ok(factor.unwrap_or(1.0))
 }
 
-/// Table below the sizes of the grid.
+/// Reads the sizes of the grid, then the table below them.
 fn moordyn_table(rows: &[Row]) -> Result<DepthGrid, String> {
     let mut sizes = [0; 2];
     for (size, (row, key)) in sizes.iter_mut().zip(rows[1..].iter().zip(SIZES)) {
@@ -122,13 +123,13 @@ fn moordyn_table(rows: &[Row]) -> Result<DepthGrid, String> {
     Ok(grid)
 }
 
-/// The numbers of x and of y, if a first row is these two whole numbers.
+/// Numbers of x and of y, if the first row consists of two whole numbers.
 fn counts(words: &[String]) -> Option<[usize; 2]> {
     let [x, y] = words else { return None };
     Some([x.parse().ok()?, y.parse().ok()?])
 }
 
-/// The numbers of x and of y, then both lists, then a row of x, y and height for every place.
+/// Reads the numbers of x and of y, then both lists, then a row of x, y and height for every grid point.
 fn moordyn_c_heights(rows: &[Row], sizes: [usize; 2]) -> Result<DepthGrid, String> {
     let list = |index: usize, axis: &str| -> Result<Vec<f64>, String> {
         let wanted = sizes[index];
@@ -183,7 +184,7 @@ fn moordyn_c_heights(rows: &[Row], sizes: [usize; 2]) -> Result<DepthGrid, Strin
     Ok(DepthGrid { x, y, depth })
 }
 
-/// The words of a line as finite numbers [m]; `factor` is the size of their unit in metres.
+/// Words of a line as finite numbers [m]; `factor` is their unit in metres.
 fn numbers(line: usize, words: &[String], factor: f64) -> Result<Vec<f64>, String> {
     let number = |word: &String| match word.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value * factor),
@@ -196,7 +197,7 @@ fn numbers(line: usize, words: &[String], factor: f64) -> Result<Vec<f64>, Strin
 
 /// Grid from a row of x after `skipped` words, and rows of y with its depths.
 fn table(header: &Row, rows: &[Row], skipped: usize) -> Result<DepthGrid, String> {
-    let corner = header.1[..skipped].last(); // none where nothing is skipped
+    let corner = header.1[..skipped].last(); // none if nothing is skipped
     let factor = corner.map_or(Ok(1.0), |word| corner_unit(word));
     let factor = factor.map_err(|problem| format!(", line {}: {problem}", header.0))?;
     let x = numbers(header.0, &header.1[skipped..], factor)?;

@@ -1,18 +1,18 @@
-//! Names of output channels as MoorDyn has them: `FairTen1`, `AnchTen1`, `Con4Fx`, `L1N10T`, `Line3NAPz`.
+//! Names of output channels in MoorDyn's notation: `FairTen1`, `AnchTen1`, `Con4Fx`, `L1N10T`, `Line3NAPz`.
 //!
 //! Numbers are those of a deck: line `1` is the scene's `line1`, point `1` is `point1`. Case is ignored.
 
 pub use super::LineEnd;
 use super::Scene;
 
-/// Quantity that a channel writes.
+/// Output channel: a quantity of a node or point.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Channel {
     /// `L1N10Px`: quantity of a node of a line. `FairTen1` and `AnchTen1` are the tension of the segment at end B and A.
     Node {
         /// Name of the line.
         line: String,
-        /// The node.
+        /// Node of the line.
         node: NodePlace,
         /// Quantity.
         quantity: Quantity,
@@ -31,7 +31,7 @@ pub enum Channel {
 pub enum NodePlace {
     /// Counted from end A, which is 0.
     Number(usize),
-    /// The first or the last.
+    /// First or last node.
     End(LineEnd),
 }
 
@@ -95,7 +95,7 @@ impl Channel {
         }
     }
 
-    /// Returns whether a name is that of the tension of a line.
+    /// Returns whether a name denotes a tension of a line.
     pub(super) fn is_tension(name: &str) -> bool {
         let quantity = match Channel::parse(name) {
             Ok(Channel::Node { quantity, .. }) => Some(quantity),

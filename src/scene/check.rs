@@ -18,10 +18,10 @@ use super::table::{Rule, check_table};
 use super::{Note, Scene, SceneError};
 
 impl Scene {
-    /// Finds the first mistake.
+    /// Checks the scene.
     ///
     /// # Errors
-    /// Names the key path and what would be right.
+    /// The first mistake, with its key path and correction.
     pub fn check(&self) -> Result<(), SceneError> {
         match self.mistakes().into_iter().next() {
             Some(first) => Err(first),
@@ -43,7 +43,7 @@ impl Scene {
     }
 }
 
-/// A list to which rules add.
+/// List to which rules add their findings.
 pub(super) trait Report {
     /// Adds a finding at a key path.
     fn add(&mut self, at: String, text: String);
@@ -71,8 +71,8 @@ pub(super) fn below(at: &str, key: &str) -> String {
     }
 }
 
-/// Adds the findings of a table of rules: a key below a path, the condition, and the sentence if it holds; or, after `given`, the value that the
-/// sentence is about, where there is one. The rules of a table are independent.
+/// Adds the findings of a table of rules. A rule is a key below a path, a condition, and the sentence that is added if it holds; or, with
+/// `given`, an optional value and the sentence about it. The rules of a table are independent.
 macro_rules! rules {
     ($report:expr, $at:expr;) => {};
     ($report:expr, $at:expr; $key:literal if $holds:expr => $text:literal $(, $part:expr)*; $($rest:tt)*) => {
@@ -96,7 +96,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Runs the check of the value at a key or an index, its `place`, and prefixes the paths of the findings with that.
+    /// Runs the check of the value at a key or an index, `place`, and prefixes the paths of its findings with it.
     pub(super) fn below(&mut self, place: impl FnOnce() -> String, check: impl FnOnce(&mut Findings)) {
         let (mistakes, notes) = (self.mistakes.len(), self.notes.len());
         check(self);
@@ -116,7 +116,7 @@ impl Findings {
         self.mistakes.push(SceneError::new(at, problem));
     }
 
-    /// Adds a number that is not finite or outside its bounds; returns whether it is within them.
+    /// Adds a mistake for a number that is not finite or outside its bounds; returns whether it is within them.
     pub(super) fn number(&mut self, at: impl Into<String>, value: f64, bounds: Bounds, unit: &str) -> bool {
         match bounds.complaint(value, unit) {
             None => true,
@@ -127,7 +127,7 @@ impl Findings {
         }
     }
 
-    /// Adds the numbers of a row that are not finite or outside the bounds of their columns, which have units.
+    /// Adds a mistake for every number of a row that is not finite or outside the bounds of its column; columns have units.
     pub(super) fn row(&mut self, at: &str, numbers: &[f64], columns: &[(Bounds, &str)]) {
         for (i, (value, (bounds, unit))) in numbers.iter().zip(columns).enumerate() {
             if !bounds.accepts(*value) {
@@ -136,8 +136,8 @@ impl Findings {
         }
     }
 
-    /// Adds a number that breaks the rule of its key, with the hint of the rule where it is negative or only its size is bounded; or a note on one
-    /// outside the usual range, and on angles beyond a turn. Zero is usual: it leaves an effect out.
+    /// Adds a mistake for a number that breaks the rule of its key, with the hint of the rule if the number is negative or only its magnitude is
+    /// bounded; or a note on a number outside the usual range or an angle beyond a turn. Zero is not noted, since it leaves an effect out.
     pub(super) fn ruled(&mut self, at: impl Into<String>, value: f64, rule: &Rule, unit: &str) {
         if let Some(problem) = rule.bounds.complaint(value, unit) {
             let about = value < 0.0 || matches!(rule.bounds, Bounds::Magnitude(_));
@@ -156,21 +156,21 @@ impl Findings {
     }
 }
 
-/// Least positive number that stands for anything in a mooring, in any unit: squares and products of a few of them are numbers still.
+/// Smallest positive value accepted for a physical quantity, in any unit: products of a few such values do not underflow.
 const POSITIVE_MIN: f64 = 1e-15;
 
-/// Bounds of a number. Limits are far beyond any mooring: they catch slips of units and powers of ten.
+/// Bounds of a number. The limits are far beyond any mooring: they catch slips of units and powers of ten.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bounds {
     /// Any finite number.
     Finite,
-    /// Bounds that depend on other keys, or on the place in a list: checked by the code of the value or of its table.
+    /// Bounds that depend on other keys or on the position in a list; the code of the value or of its table checks them.
     Elsewhere,
     /// From [`POSITIVE_MIN`] up to a limit.
     Positive(f64),
     /// Zero or more, up to a limit.
     NotNegative(f64),
-    /// No further from zero than a limit.
+    /// Magnitude up to a limit.
     Magnitude(f64),
     /// From one value to another, both allowed.
     Within(f64, f64),
@@ -184,7 +184,7 @@ impl Bounds {
         self == Bounds::Elsewhere || value.is_finite() && is_within
     }
 
-    /// Least and greatest number that are accepted, where the bounds alone determine it.
+    /// Smallest and largest number that are accepted, if the bounds alone determine them.
     pub(crate) fn range(self) -> [Option<f64>; 2] {
         match self {
             Bounds::Finite | Bounds::Elsewhere => [None, None],
@@ -220,7 +220,7 @@ impl Bounds {
     }
 }
 
-/// Shortest digits; powers of ten where plain digits would be long.
+/// A number with the fewest digits; with a power of ten if plain digits would be long.
 pub(super) fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-4..1e6).contains(&size) || !value.is_finite() {
@@ -235,7 +235,7 @@ pub(super) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
-/// A number and its unit; a bare number where it has none.
+/// A number and its unit; the number alone if it has no unit.
 pub(super) fn quantity(value: f64, unit: &str) -> String {
     if unit == "-" {
         number(value)
@@ -244,7 +244,7 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
     }
 }
 
-/// Returns the refusal of a name of a line type, point, line or vessel, which is the stem of variables of the FMU.
+/// Returns the reason why a line type, point, line or vessel cannot have this name, which is the stem of variables of the FMU.
 pub fn name_problem(name: &str) -> Option<String> {
     let allowed = "a name starts with a letter or _ and holds letters a-z A-Z, digits, _ and - only, \
                    since the variables of the FMU are called after it";
@@ -265,7 +265,6 @@ pub fn name_problem(name: &str) -> Option<String> {
     })
 }
 
-/// Checks a name.
 fn check_name(findings: &mut Findings, at: &str, name: &str) {
     if let Some(problem) = name_problem(name) {
         findings.say(at, problem);

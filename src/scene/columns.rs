@@ -6,7 +6,7 @@ use std::io::{BufRead, Read};
 use super::rows::shown;
 use super::units;
 
-/// Longest line that is read [bytes].
+/// Maximum length of a line [bytes].
 const LINE_MAX: u64 = 1 << 20;
 
 /// Hint on numbers with decimal commas that are separated by commas, tabs or blanks.
@@ -17,13 +17,13 @@ pub(super) const DECIMAL_COMMAS: &str = "; decimal commas are read where `;` sta
 pub(super) enum Separator {
     Comma,
     Semicolon,
-    /// Tabs in a header, whose names may have blanks in them.
+    /// Tabs in a header, whose names may contain blanks.
     Tab,
     Blank,
 }
 
 impl Separator {
-    /// The separator inferred from a row.
+    /// Infers the separator from a row.
     pub(super) fn of(row: &str) -> Separator {
         if row.contains(';') {
             Separator::Semicolon
@@ -74,7 +74,7 @@ impl Separator {
         joined.iter().map(|cell| Heading::of(cell)).collect()
     }
 
-    /// A finite number in a cell; decimal commas are read in columns between semicolons.
+    /// Reads a finite number from a cell; decimal commas are accepted if semicolons separate the columns.
     ///
     /// # Errors
     /// The cell that was found instead of a number.
@@ -100,7 +100,7 @@ pub(super) fn is_number(cell: &str) -> bool {
     cell.replacen(',', ".", 1).parse::<f64>().is_ok()
 }
 
-/// A name of a header, and its unit where it has one.
+/// Name in a header, and its unit if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Heading {
     pub name: String,
@@ -108,7 +108,7 @@ pub(super) struct Heading {
 }
 
 impl Heading {
-    /// `pitch [deg]`, `pitch (deg)`, `pitch/deg` or `pitch deg`.
+    /// Reads `pitch [deg]`, `pitch (deg)`, `pitch/deg` or `pitch deg`.
     fn of(cell: &str) -> Heading {
         let cell = cell.trim().trim_start_matches('\u{feff}');
         let end = cell.find([' ', '[', '(', '/']).unwrap_or(cell.len());
@@ -122,7 +122,7 @@ impl Heading {
     }
 }
 
-/// Lines of a file with their numbers, without those that are blank or a comment.
+/// Lines of a file with their numbers, except blank lines and comments.
 pub(super) struct Lines<R> {
     input: R,
     /// Number of the last line [-], from 1.

@@ -1,7 +1,6 @@
-//! A scene as TOML with comments: units behind numbers, and where each part stood in the file it was read from.
+//! Scene as TOML with comments: the units of numbers, and the line of the original file for each part.
 //!
-//! The comments stand in lines of the TOML that [`Scene::to_toml`] writes and do not change it, so that the scene that is read back is the same, bit for
-//! bit.
+//! The comments are appended to lines of the TOML that [`Scene::to_toml`] writes. They do not change the scene, which is read back bit for bit.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -35,7 +34,7 @@ impl LoadedScene {
     }
 }
 
-/// The table that a line of TOML stands in.
+/// Table that contains a line of TOML.
 #[derive(Default)]
 struct Place {
     /// Header, such as `lines.sections`.
@@ -45,7 +44,7 @@ struct Place {
 }
 
 impl Place {
-    /// Comment behind a line of TOML: the line of the file, or the unit.
+    /// Comment at the end of a line of TOML: the line of the file, or the unit.
     fn comment(&mut self, line: &str, loaded: &LoadedScene) -> Option<String> {
         let header = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         if let Some(header) = header {
@@ -61,7 +60,7 @@ impl Place {
             return Some(format!("file line {line}"));
         }
         let (key, value) = line.split_once(" = ")?;
-        // A list of tables holds several units.
+        // the tables in an inline list hold several units
         if value.contains('{') {
             return None;
         }

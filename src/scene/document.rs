@@ -30,12 +30,12 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// The same value, whose numbers have a unit.
+    /// Returns the value with a unit for its numbers.
     pub(super) fn in_unit(self, unit: Option<&'static str>) -> Node<'n> {
         Node { unit, ..self }
     }
 
-    /// Value that a table holds under a key; the unit of its numbers is open.
+    /// Value of a key in a table, without a unit for its numbers.
     fn under(&'n self, key: &'n str, value: &'n Spanned<DeValue<'n>>) -> Node<'n> {
         Node {
             value,
@@ -74,7 +74,7 @@ impl<'n> Node<'n> {
         self.expected_instead_of(expected, &self.found())
     }
 
-    /// The same where the value is described in other words.
+    /// As [`Node::expected`], with another description of the value.
     pub(super) fn expected_instead_of(&self, expected: &str, found: &str) -> SceneError {
         let expected = match self.unit {
             Some(unit) if expected.contains("a number") => {
@@ -129,13 +129,11 @@ impl<'n> Node<'n> {
         u64::try_from(self.integer(expected)?).map_err(|_| self.expected(expected))
     }
 
-    /// Reads a truth value.
     pub(super) fn truth(&self) -> Result<bool, SceneError> {
         let truth = self.value.get_ref().as_bool();
         truth.ok_or_else(|| self.expected("true or false"))
     }
 
-    /// Reads a text.
     pub(super) fn text(&self) -> Result<&'n str, SceneError> {
         self.value
             .get_ref()
@@ -143,7 +141,7 @@ impl<'n> Node<'n> {
             .ok_or_else(|| self.expected("a string"))
     }
 
-    /// Elements of an array; `None` of other values.
+    /// Elements of an array; `None` for any other value.
     pub(super) fn elements(&'n self) -> Option<impl ExactSizeIterator<Item = Node<'n>>> {
         let elements = self.value.get_ref().as_array()?.iter().enumerate();
         Some(elements.map(move |(index, value)| Node {
@@ -153,7 +151,7 @@ impl<'n> Node<'n> {
         }))
     }
 
-    /// Entries of a table in the order of the text; `None` of other values.
+    /// Entries of a table in the order of the text; `None` for any other value.
     pub(super) fn entries(&'n self) -> Option<Vec<Entry<'n>>> {
         let entries = self.value.get_ref().as_table()?.iter();
         let entries = entries.map(|(key, value)| Entry {

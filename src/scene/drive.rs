@@ -6,17 +6,17 @@ use std::str::FromStr;
 use super::motion_file::{Moves, axis_number, read_moves};
 use super::{HarmonicMotion, MotionPath, MotionRow, Point, PointKind, Scene};
 
-/// Motions of a run, in addition to those of its scene. A body that moves here does not move as its scene says.
+/// Motions of a run, in addition to those of its scene. They replace the scene's motion of the same body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Drive {
-    /// A CSV file. With the columns time [s], x, y, z [m] and perhaps roll, pitch, yaw [rad] it moves the scene's one vessel, or
-    /// without vessels all coupled points alike; with columns such as `platform.x` what they name.
+    /// CSV file. Columns time [s], x, y, z [m] and optionally roll, pitch, yaw [rad] move the only vessel of the scene, or all coupled points of
+    /// a scene without vessels; columns such as `platform.x` move the body that they name.
     pub file: Option<PathBuf>,
     /// Regular motions.
     pub regular: Vec<RegularMotion>,
-    /// Duration of the cosine ramp of the regular motions [s]; none where absent.
+    /// Duration of the cosine ramp of the regular motions [s]; no ramp if absent.
     pub ramp: Option<f64>,
-    /// Duration of the run [s]; where absent, that of the motion file, else that of the scene.
+    /// Duration of the run [s]; by default that of the motion file, otherwise that of the scene.
     pub duration: Option<f64>,
 }
 
@@ -25,7 +25,7 @@ pub struct Drive {
 pub struct RegularMotion {
     /// Name of a vessel or coupled point.
     pub body: String,
-    /// 0 to 5: x, y, z, roll, pitch, yaw [-].
+    /// Axis [-], 0 to 5: x, y, z, roll, pitch, yaw.
     pub axis: usize,
     /// Amplitude [m] or [rad].
     pub amplitude: f64,
@@ -66,17 +66,17 @@ impl FromStr for RegularMotion {
 }
 
 impl Drive {
-    /// Returns whether nothing is given.
+    /// Returns whether the drive is empty.
     pub fn is_empty(&self) -> bool {
         *self == Drive::default()
     }
 }
 
 impl Scene {
-    /// Takes motions and the duration from a drive. Returns the interpretation of its motion file, in words.
+    /// Takes motions and the duration from a drive. Returns a description of its motion file as it was read.
     ///
     /// # Errors
-    /// The file and line, or the body, and what would be right.
+    /// The file and line of the mistake, or the body, and the correction.
     pub fn drive(&mut self, drive: &Drive) -> Result<Option<String>, String> {
         let (mut end, mut words) = (None, None);
         let mut taken: Vec<String> = Vec::new();
@@ -143,7 +143,7 @@ impl Scene {
         Ok(named)
     }
 
-    /// The one vessel of the scene, or without vessels all coupled points, with the same rows.
+    /// The only vessel of the scene, or all coupled points of a scene without vessels, each with the same rows.
     fn all_alike(&self, rows: Vec<MotionRow>, turns: bool) -> Result<Vec<(String, Vec<MotionRow>)>, String> {
         let known = self.moved_by_a_host();
         let alike = known.len() == 1 || self.vessels.is_empty();
@@ -164,7 +164,7 @@ impl Scene {
         Ok(bodies.collect())
     }
 
-    /// Vessels and coupled points that do not ride on one.
+    /// Vessels, and coupled points that are not on a vessel.
     pub(super) fn moved_by_a_host(&self) -> Vec<&str> {
         let vessels = self.vessels.iter().map(|vessel| vessel.name.as_str());
         let coupled = |point: &&Point| point.kind == PointKind::Coupled && point.on.is_none();
@@ -213,7 +213,7 @@ impl Scene {
     }
 }
 
-/// The regular motions of one body as a scene has them.
+/// Regular motions of one body, in the form of a scene.
 fn harmonic(all: &[RegularMotion], body: &str, ramp: Option<f64>) -> HarmonicMotion {
     let mut axes: [Vec<Vec<f64>>; 6] = Default::default();
     for regular in all.iter().filter(|regular| regular.body == body) {

@@ -13,7 +13,7 @@ pub struct SceneError {
     pub at: String,
     /// The mistake and its correction.
     pub problem: String,
-    /// Bytes of the text it concerns, where known.
+    /// Bytes of the text it concerns, if known.
     pub span: Option<Range<usize>>,
 }
 
@@ -35,7 +35,7 @@ impl SceneError {
         }
     }
 
-    /// Line and column in the text it came from, both from 1; the first where it concerns the whole text.
+    /// Line and column in the text it came from, both from 1; (1, 1) if it concerns the whole text.
     pub fn line_column(&self, text: &str) -> (usize, usize) {
         path::line_column(text, self.span.as_ref().map_or(0, |span| span.start))
     }
@@ -44,7 +44,7 @@ impl SceneError {
 /// Reason why a scene file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// The file cannot be used as a whole: there is none, it is a folder, or it is not of the kind that is wanted.
+    /// The file as a whole cannot be used: it does not exist, is a folder, or is of another kind than expected.
     #[error("{}: {problem}", path.display())]
     Unreadable {
         /// The file.
@@ -57,7 +57,7 @@ pub enum LoadError {
     NotText {
         /// The file.
         path: PathBuf,
-        /// Number of the first byte that is not text, from 0.
+        /// Index of the first byte that is not text, from 0.
         byte: usize,
         /// The mistake and its correction.
         problem: String,
@@ -67,7 +67,7 @@ pub enum LoadError {
     Scene {
         /// The file.
         path: PathBuf,
-        /// Its text, which the spans of the mistakes count bytes of.
+        /// Its text; the spans of the mistakes are bytes of it.
         text: String,
         /// The mistakes, at least one.
         mistakes: Vec<SceneError>,
@@ -75,7 +75,7 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// The mistakes of the scene; none where the file could not be read at all.
+    /// The mistakes of the scene; empty if the file could not be read.
     pub fn mistakes(&self) -> &[SceneError] {
         match self {
             LoadError::Scene { mistakes, .. } => mistakes,
@@ -83,7 +83,7 @@ impl LoadError {
         }
     }
 
-    /// Every mistake on a line: file, line, column, key, what is wrong.
+    /// Lists the mistakes, one on a line: file, line, column, key, problem.
     pub fn list(&self) -> String {
         match self {
             LoadError::Scene { path, text, mistakes } => {

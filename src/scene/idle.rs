@@ -10,7 +10,7 @@ use super::{
 };
 
 impl Scene {
-    /// Returns a note for every object with keys that change nothing.
+    /// Returns a note for every object with keys that have no effect.
     pub(super) fn idle(&self) -> Vec<Note> {
         let mut notes = Vec::new();
         let used = |name: &str| self.sections().any(|section| section.line_type == name);
@@ -76,7 +76,7 @@ impl Scene {
         notes
     }
 
-    /// Returns notes on keys without which a scene cannot be written, and which have no effect.
+    /// Returns notes on keys that are required but have no effect.
     pub(super) fn idle_by_need(&self) -> Vec<Note> {
         let mut notes = Vec::new();
         let sounded = self.seabed.as_ref().is_some_and(|seabed| seabed.grid.is_some());
@@ -91,7 +91,7 @@ impl Scene {
         self.solver.integrator == Integrator::QuasiStatic
     }
 
-    /// Adds the given properties that have no effect without water, or at rest.
+    /// Adds notes on given properties that have no effect without water, or in quasi-static runs.
     fn idle_by_rule<T: Table>(&self, at: &str, table: &T, notes: &mut Vec<Note>) {
         let still = self.water.as_ref().is_some_and(|water| water.current.is_none());
         let rests = |acts: Acts| match acts {
@@ -115,7 +115,7 @@ impl Scene {
 
     fn idle_of_line_type(&self, at: &str, line_type: &LineType, notes: &mut Vec<Note>) {
         let beam = self.makes_beams(line_type);
-        // a beam may have its rotary inertia from the diameter
+        // the rotary inertia of a beam may be computed from the diameter
         let spun = beam && line_type.rotary_inertia.is_none() && line_type.solid_section.is_none();
         let sheared = [line_type.shear_stiffness, line_type.torsional_stiffness];
         let sheared = beam && sheared.iter().any(Option::is_none);

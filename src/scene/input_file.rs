@@ -1,17 +1,17 @@
-//! Files that are read: opened once, regular files or standard input, up to a stated size.
+//! Input files: regular files or standard input, opened once and read up to a maximum size.
 //!
-//! A device may never end and a named pipe may never begin; both are refused by their kind before they are opened.
+//! Reading a device may never end, and opening a named pipe may never return: both kinds are refused before they are opened.
 
 use std::fmt::Write;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Longest scene, and longest table that is not a motion file [bytes].
+/// Maximum size of a scene, and of a table that is not a motion file [bytes].
 pub const SIZE_MAX: u64 = 64 << 20;
-/// Longest motion file [bytes]; it is read as a stream.
+/// Maximum size of a motion file [bytes], which is read as a stream.
 pub(crate) const MOTION_SIZE_MAX: u64 = 4 << 30;
-/// Hint on a missing file that a scene or a deck names.
+/// Hint in the message on a missing file to which a scene or a deck refers.
 pub(super) const RELATIVE: &str = " (a relative path starts at the folder of the file that names it)";
 /// Names of standard input.
 const STANDARD_INPUT: [&str; 3] = ["/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"];
@@ -19,7 +19,7 @@ const STANDARD_INPUT: [&str; 3] = ["/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"]
 /// Reason why a file was not opened, in words that follow its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unopened {
-    /// True if there is none.
+    /// True if there is no such file.
     pub is_missing: bool,
     /// The reason.
     pub problem: String,
@@ -33,12 +33,12 @@ impl Unopened {
         }
     }
 
-    /// The file's name, the reason, and a hint where there is no such file.
+    /// Returns the file's name and the reason, followed by `hint` if there is no such file.
     pub fn at(&self, path: &Path, hint: &str) -> String {
         let mut text = path.display().to_string();
         let colon = if self.is_missing { ":" } else { "" };
         let hint = if self.is_missing { hint } else { "" };
-        // a String takes every text
+        // writing to a String cannot fail
         let _ = write!(text, "{colon} {}{hint}", self.problem);
         text
     }
@@ -48,7 +48,7 @@ impl Unopened {
 #[derive(Debug)]
 pub struct InputFile {
     source: Source,
-    /// Bytes that may still come.
+    /// Number of bytes that may still be read.
     left: u64,
     size_max: u64,
 }
@@ -120,7 +120,7 @@ impl Read for InputFile {
     }
 }
 
-/// The whole of a table that should be `noun` and that another file names.
+/// Reads the whole of a table, described by `noun`, that another file refers to.
 ///
 /// # Errors
 /// The name of the file and the reason.

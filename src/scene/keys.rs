@@ -36,7 +36,7 @@ pub fn choices() -> Vec<(&'static Key, Words)> {
     found
 }
 
-/// The table under a header such as `line_types.chain.rayleigh`; that of the scene under an empty one.
+/// Table with a header such as `line_types.chain.rayleigh`; the scene for an empty header.
 pub(super) fn table(header: &str) -> Option<Schema> {
     let mut table = Scene::SCHEMA;
     let mut steps = header.split('.').filter(|step| !step.is_empty());

@@ -3,7 +3,7 @@
 use super::TimeFunction;
 use super::table::{choice, choice_of_values, magnitude, not_negative, positive, table, within};
 
-/// Most elements of a section, or of a line [-].
+/// Maximum number of elements of a section, or of a line [-].
 pub(super) const ELEMENTS_MAX: f64 = 1e5;
 
 table! {
@@ -36,7 +36,7 @@ table! {
     }
 }
 
-/// The rule of numbers of elements.
+/// Rule of a number of elements.
 const fn elements() -> super::table::Rule {
     within(1.0, ELEMENTS_MAX).elsewhere(&["numsegs", "segments", "nodes"])
 }
@@ -47,7 +47,7 @@ impl Line {
         self.elements.is_none() && self.sections.iter().any(|section| section.elements.is_none())
     }
 
-    /// Returns whether one of its ends is at the point of a name.
+    /// Returns whether one of its ends is at the point with this name.
     pub fn joins(&self, point: &str) -> bool {
         self.from == point || self.to == point
     }
@@ -68,7 +68,7 @@ impl Line {
         }
     }
 
-    /// Number of its elements [-], if every section has its own.
+    /// Number of its elements [-], if every section specifies its own.
     pub(super) fn element_count(&self) -> Option<usize> {
         let mut counts = self.sections.iter().map(|section| section.elements);
         counts.try_fold(0_usize, |sum, count| sum.checked_add(count?))

@@ -71,7 +71,7 @@ table! {
 /// The rule of damping ratios.
 const RATIO: super::table::Rule = not_negative(100.0).usual([0.0, 1.0], "0 to 1 is usual, 1 being critical");
 
-/// The rule of coefficients of drag and added mass: 3.8 is measured in model chains.
+/// Rule of drag and added-mass coefficients: 3.8 has been measured for model chains.
 const fn coefficient(acts: Acts) -> super::table::Rule {
     not_negative(1e3)
         .usual([0.0, 5.0], "0 to 5 is usual")
@@ -80,7 +80,7 @@ const fn coefficient(acts: Acts) -> super::table::Rule {
 }
 
 impl LineType {
-    /// Returns whether there is a bending stiffness: as given, else that of the solid section.
+    /// Returns whether there is a bending stiffness: the given one, otherwise that of the solid section.
     pub fn bends(&self) -> bool {
         let of_section = self.solid_section.is_some();
         self.bending_stiffness.map_or(of_section, |ei| ei > 0.0)
@@ -96,7 +96,7 @@ impl LineType {
 }
 
 impl Scene {
-    /// Mass per unstretched length [kg/m]: the given one, else weight/gravity.
+    /// Mass per unstretched length [kg/m]: the given one, otherwise weight/gravity.
     pub(super) fn mass(&self, line_type: &LineType) -> f64 {
         let of_weight = || line_type.weight.map(|weight| weight / self.gravity);
         line_type.mass.or_else(of_weight).unwrap_or(0.0)
@@ -118,12 +118,12 @@ impl Scene {
         self.solver.integrator == Integrator::Beam || types.any(|kind| kind.model == LineModel::Beam)
     }
 
-    /// Returns whether a line type makes beams: by its model, or because the integrator makes every line a beam.
+    /// Returns whether lines of a line type are beams: by its model, or because the integrator treats every line as a beam.
     pub(super) fn makes_beams(&self, line_type: &LineType) -> bool {
         self.solver.integrator == Integrator::Beam || line_type.model == LineModel::Beam
     }
 
-    /// Name of the first line type that makes beams and meets a condition.
+    /// Name of the first line type whose lines are beams and that meets a condition.
     pub(super) fn type_of_beams(&self, meets: impl Fn(&LineType) -> bool) -> Option<&str> {
         let mut types = self.line_types.iter();
         let found = types.find(|(_, line_type)| self.makes_beams(line_type) && meets(line_type));

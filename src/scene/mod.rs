@@ -2,11 +2,11 @@
 //!
 //! A scene comes from a TOML file ([`load`]) or from TOML text ([`Scene::from_toml`]); every mistake names its key, line and
 //! column. [`Scene::notes`] lists remarks on a scene that can be used as it is, [`Scene::in_words`] describes the model.
-//! [`crate::model::Model::new`] is the one gate from here to the solver.
+//! [`crate::model::Model::new`] builds the solver's model from a scene.
 //!
 //! # The property table
 //!
-//! Each key of the scene format has one entry, the field of a struct inside the macro `table!`:
+//! Each key of the scene format has one entry, a field of a struct inside the macro `table!`:
 //!
 //! ```text
 //! table! {
@@ -21,29 +21,29 @@
 //! }
 //! ```
 //!
-//! The doc comment is the text of the reference page, the unit in it that of the number, its beginning the name of the property in messages
-//! and in the FMU. A field of type `Option`, or with a default after `=`, may be left out. Behind `=>` stands a [`table::Rule`]: bounds, the
-//! range of moorings, names in other programs, when the property acts, whether the FMU has it as a parameter. The macro makes the struct
-//! and implements [`table::Table`] for it: a list of [`table::Key`]s and their values, each a [`table::Value`] that reads, writes and
-//! checks itself. Choices of words are made by `choice!` in the same manner, and by `choice_of_values!` where words hold values. Everything
-//! else is a loop over keys and values:
+//! The doc comment is the text of the reference page. It also gives the unit of the number, and its beginning is the name of the property in
+//! messages and in the FMU. A field of type `Option`, or with a default after `=`, may be left out. A [`table::Rule`] follows `=>`: bounds, the
+//! range usual in moorings, names in other programs, the circumstances under which the property acts, and whether it is a parameter of the FMU.
+//! The macro declares the struct and implements [`table::Table`] for it: a list of [`table::Key`]s and their values, each a [`table::Value`] that
+//! reads, writes and checks itself. `choice!` declares choices of words in the same manner, and `choice_of_values!` those whose words hold
+//! values. Everything else is a loop over keys and values:
 //!
 //! | loop | for |
 //! |---|---|
 //! | `Table::read` in [`table`] | reading, required and unknown keys, "did you mean" (with `nearest`), units in messages |
 //! | `Table::write` | TOML; `commented` adds the units |
 //! | `check_table` | bounds; `check/` adds the refusals that concern several keys |
-//! | `plausibility` | notes on unusual values; rules on several keys stand next to it |
-//! | `idle` | notes on keys that change nothing |
+//! | `plausibility` | notes on unusual values; the rules on several keys are next to it |
+//! | `idle` | notes on keys without effect |
 //! | `words` | sentences of `moorline check` |
 //! | [`crate::interface`] | parameters of the FMU, and the results that depend on them |
 //! | [`page`] | the reference in `docs/scene.md` |
-//! | [`keys`] | the list of all keys that tests go through |
+//! | [`keys`] | the list of all keys, which tests iterate over |
 //!
-//! Refusals and notes that concern several keys stand in tables too: each row of `rules!` is a key, a condition and a sentence.
+//! Refusals and notes that concern several keys are also in tables: each row of `rules!` is a key, a condition and a sentence.
 //!
 //! Values that are not single numbers (tension over strain, friction by direction, functions of time, motions, seas) implement
-//! [`table::Value`] by hand next to their type; their keys stand in a `table!` too.
+//! [`table::Value`] by hand next to their type; their keys are also declared by `table!`.
 
 mod bathymetry_file;
 pub mod channel;
@@ -110,14 +110,14 @@ pub(crate) use words::{few, metres, percent};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
-/// Elements of a line alone that a damping ratio refers to [-]: those that the default tolerance gives. The damping BA that follows is one
-/// of the line and the same on every mesh, so that finer meshes have a limit.
+/// Number of elements of a single line that a damping ratio refers to [-], as given by the default tolerance. The resulting damping BA is a
+/// property of the line and the same on every mesh, so that results converge as the mesh is refined.
 pub(crate) const DAMPING_ELEMENTS: usize = 40;
-/// Axial damping of a line whose type leaves it open, as a part of critical of one of [`DAMPING_ELEMENTS`] elements and of every longer one [-].
-/// A line that slackens and snaps without damping is driven by the kink of its tension law when the step is explicit; codes of that kind
-/// damp the highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
+/// Axial damping ratio [-] of a line whose type leaves the damping open, relative to critical damping of one of [`DAMPING_ELEMENTS`] elements, or
+/// of the actual element if that is longer. Without damping, the kink of the tension law drives a line that slackens and snaps when the step is
+/// explicit; explicit codes damp the highest axial frequencies, which no mesh resolves, by the same amount (linear bulk viscosity).
 pub(crate) const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
-/// Least spectral radius at infinite frequency of `axial_implicit` [-], at which it damps most.
+/// Smallest spectral radius at infinite frequency of `axial_implicit` [-], which gives the strongest damping.
 pub const AXIAL_RADIUS_MIN: f64 = 0.5;
 
 table! {
@@ -151,7 +151,7 @@ table! {
 }
 
 impl Scene {
-    /// The current, where there is one.
+    /// Current, if the scene has one.
     fn current(&self) -> Option<&Current> {
         self.water.as_ref()?.current.as_ref()
     }
@@ -161,7 +161,7 @@ impl Scene {
         self.water.as_ref().is_some_and(|water| water.flow.is_some())
     }
 
-    /// The waves, where there are some.
+    /// Waves, if the scene has any.
     fn waves(&self) -> Option<&Waves> {
         self.water.as_ref()?.waves.as_ref()
     }
@@ -171,7 +171,7 @@ impl Scene {
         self.points.iter().find(|point| point.name == name)
     }
 
-    /// The points that forces move.
+    /// Points that move under forces.
     fn free_points(&self) -> impl Iterator<Item = &Point> {
         self.points.iter().filter(|point| point.kind == PointKind::Free)
     }
@@ -181,7 +181,7 @@ impl Scene {
         self.vessels.iter().find(|vessel| vessel.name == name)
     }
 
-    /// Names of points, lines and vessels, which share the name space of the FMU's variables, each with the key path of its owner.
+    /// Names of points, lines and vessels, which share the namespace of the FMU's variables, each with the key path of its owner.
     fn names(&self) -> impl Iterator<Item = (String, &str)> {
         let points = self.points.iter().enumerate();
         let points = points.map(|(i, point)| (format!("points[{i}]"), &point.name[..]));
@@ -197,7 +197,7 @@ impl Scene {
         self.lines.iter().flat_map(|line| &line.sections)
     }
 
-    /// Line types of the sections of a line, as far as the scene has them.
+    /// Line types of the sections of a line; sections without a line type in the scene are skipped.
     fn types_of(&self, line: &Line) -> impl Iterator<Item = &LineType> {
         line.sections.iter().filter_map(|section| self.type_of(section))
     }

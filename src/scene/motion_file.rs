@@ -1,6 +1,6 @@
-//! Motion tables in text files: a header row, then time, x, y, z, and for vessels roll, pitch, yaw; or time and columns that name
-//! what they move, such as `platform.x` and `buoy.z`; or the results of a run. Between the columns stand commas, semicolons, tabs or
-//! blanks; units stand in the header, in a row below it, or in a file `….units.csv` next to it, and are SI where there are none.
+//! Motion tables in text files: a header row, then rows of time, x, y, z, and for vessels roll, pitch, yaw; or of time and columns that
+//! name a body, such as `platform.x` and `buoy.z`; or the results of a run. Columns are separated by commas, semicolons, tabs or blanks.
+//! Units are given in the header, in the row below it, or in a file `….units.csv` next to the table; columns without units are in SI units.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
@@ -24,20 +24,20 @@ const SYNONYMS: [[&str; 2]; 6] = [
     ["rz", "ptfmyaw"],
 ];
 
-/// Greatest number of rows that are read: a day at 100 Hz.
+/// Maximum number of rows: a day at 100 Hz.
 const ROWS_MAX: usize = 8_640_000;
 
 /// Motions in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Moves {
-    /// Rows of time [s], displacement x, y, z [m] and rotation [rad] of bodies in the order of the file; of one body without a name where the file
+    /// Rows of time [s], displacement x, y, z [m] and rotation [rad] by body, in the order of the file; a single body without a name if the file
     /// names none.
     pub bodies: Vec<(Option<String>, Vec<MotionRow>)>,
     /// Description of the columns that were read.
     pub columns: String,
     /// True if the file has columns of rotation.
     pub turns: bool,
-    /// True if the file holds the results of a run, whose angles are Z-Y-X and which may have bodies that nothing moves.
+    /// True if the file holds the results of a run: its angles are Z-Y-X, and it may contain bodies that no host moves.
     pub is_recorded: bool,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct OneBody {
 /// Rows of time [s], displacement x, y, z [m] and rotation [rad] of one body, and a description of the columns.
 ///
 /// # Errors
-/// The file, the line and what would be right.
+/// The file and line of the mistake, and its correction.
 pub(super) fn read(path: &Path, body: &str) -> Result<OneBody, String> {
     let moves = read_moves(path, input_file::RELATIVE)?;
     let (columns, is_recorded) = (moves.columns, moves.is_recorded);
@@ -79,10 +79,10 @@ pub(super) fn read(path: &Path, body: &str) -> Result<OneBody, String> {
     })
 }
 
-/// The motions of all bodies in a file, with a hint where there is no such file.
+/// Returns the motions of all bodies in a file; the message on a missing file ends with `hint`.
 ///
 /// # Errors
-/// The file, the line and what would be right.
+/// The file and line of the mistake, and its correction.
 pub(super) fn read_moves(path: &Path, hint: &str) -> Result<Moves, String> {
     let file = input_file::open(path, "a CSV file", input_file::MOTION_SIZE_MAX)
         .map_err(|unopened| unopened.at(path, hint))?;
@@ -90,7 +90,7 @@ pub(super) fn read_moves(path: &Path, hint: &str) -> Result<Moves, String> {
     parse(BufReader::new(file), &of_units_file).map_err(|problem| format!("{}{problem}", path.display()))
 }
 
-/// The motions in a text; problems begin with a comma and a line, or a colon.
+/// Returns the motions in a text. Messages begin with a comma and the line number, or with a colon.
 fn parse(input: impl BufRead, of_units_file: &BTreeMap<String, String>) -> Result<Moves, String> {
     let mut lines = Lines::new(input);
     let (line, first) = lines.next()?.unwrap_or((1, String::new()));
@@ -116,7 +116,7 @@ fn on_line(line: usize) -> impl Fn(String) -> String {
     move |problem| format!(", line {line}: {problem}")
 }
 
-/// Units of columns by name, in the file that a run writes next to its results; none where there is no such file.
+/// Units of columns by name, from the file that a run writes next to its results; empty if there is no such file.
 fn read_units(path: &Path) -> Result<BTreeMap<String, String>, String> {
     let path = path.with_extension("units.csv");
     if !path.is_file() {
@@ -141,17 +141,17 @@ fn read_units(path: &Path) -> Result<BTreeMap<String, String>, String> {
 /// A column that is read.
 #[derive(Debug)]
 struct Column {
-    /// Place in a row, from 0.
+    /// Index in a row, from 0.
     place: usize,
     /// Name in messages.
     name: String,
-    /// Body that it moves, where the file names one.
+    /// Body that it moves, if the file names one.
     body: Option<String>,
-    /// 0 of the time, 1 to 6 of the axes.
+    /// Index in a [`MotionRow`]: 0 for the time, 1 to 6 for the axes.
     entry: usize,
     /// Unit as written, or the SI unit.
     unit: String,
-    /// Size of its unit in SI units.
+    /// Conversion factor from its unit to SI units.
     factor: f64,
 }
 
@@ -178,16 +178,16 @@ struct Table {
     separator: Separator,
     /// Columns that are read.
     columns: Vec<Column>,
-    /// Columns of a row, read or not.
+    /// Number of columns in a row, including those that are not read.
     width: usize,
     has_header: bool,
     /// True if it holds the results of a run.
     is_recorded: bool,
-    /// True if any unit stands in the header.
+    /// True if the header contains a unit.
     has_units: bool,
-    /// True if a row below the header has the units.
+    /// True if the units are in a row below the header.
     has_unit_row: bool,
-    /// Decimal mark in columns between semicolons, once one was found.
+    /// Decimal mark of a file with semicolons, once one has been found.
     decimal: Option<char>,
 }
 
@@ -218,7 +218,7 @@ impl Table {
         self.columns.push(column);
     }
 
-    /// Columns by their places: time, x, y, z and perhaps roll, pitch, yaw, between blanks.
+    /// Layout of a file without a header: columns time, x, y, z and optionally roll, pitch, yaw, separated by blanks or tabs.
     fn without_header(separator: Separator, row: &str) -> Result<Table, String> {
         let width = separator.cells(row).len();
         let between_blanks = matches!(separator, Separator::Tab | Separator::Blank);
@@ -292,7 +292,7 @@ impl Table {
         }
     }
 
-    /// Takes the units from the row below the header, where that is a row of units.
+    /// Takes the units from the row below the header; returns false if that is not a row of units.
     fn take_units(&mut self, row: &str) -> Result<bool, String> {
         let cells = self.separator.cells(row);
         let is_units = cells.len() == self.width
@@ -391,7 +391,7 @@ impl Table {
         said
     }
 
-    /// The rows by the body that they move.
+    /// Groups the rows by body.
     fn moves(&self, rows: &[Vec<f64>]) -> Moves {
         let of = |body: Option<&str>| {
             let columns = self.columns.iter().enumerate();
@@ -421,7 +421,7 @@ impl Table {
     }
 }
 
-/// Decimal mark of a file, once a cell has one.
+/// Decimal mark of a file, once a cell has contained one.
 ///
 /// # Errors
 /// A cell with the other mark, which may be a thousands separator.
@@ -461,12 +461,12 @@ fn unknown_column(row: &str, named: bool) -> String {
     )
 }
 
-/// The number of an axis by its name: x, y, z, roll, pitch, yaw.
+/// Index of an axis from its name: x, y, z, roll, pitch, yaw.
 pub(super) fn axis_number(name: &str) -> Option<usize> {
     AXES.iter().position(|axis| *axis == name)
 }
 
-/// The number of an axis by any of its names, in any case.
+/// Index of an axis from any of its names, ignoring case.
 fn axis_of(name: &str) -> Option<usize> {
     let name = name.to_lowercase();
     let synonym = || SYNONYMS.iter().position(|names| names.contains(&name.as_str()));

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{Line, Point, Scene, Vessel};
 
-/// Points and vessels of a scene by name; the first one where a name is taken twice.
+/// Points and vessels of a scene by name; the first one if a name occurs twice.
 pub(crate) struct Names<'s> {
     scene: &'s Scene,
     points: HashMap<&'s str, usize>,
@@ -12,7 +12,7 @@ pub(crate) struct Names<'s> {
 }
 
 impl<'s> Names<'s> {
-    /// Names of a scene.
+    /// Look-up by name for a scene.
     pub(crate) fn of(scene: &'s Scene) -> Names<'s> {
         let points = scene.points.iter().map(|point| &point.name[..]);
         let vessels = scene.vessels.iter().map(|vessel| &vessel.name[..]);
@@ -23,27 +23,22 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Index of the point with this name.
     pub(crate) fn point_index(&self, name: &str) -> Option<usize> {
         self.points.get(name).copied()
     }
 
-    /// The point with this name.
     pub(crate) fn point(&self, name: &str) -> Option<&'s Point> {
         Some(&self.scene.points[self.point_index(name)?])
     }
 
-    /// The points at the ends of a line.
     pub(crate) fn ends(&self, line: &Line) -> [Option<&'s Point>; 2] {
         [&line.from, &line.to].map(|name| self.point(name))
     }
 
-    /// Index of the vessel with this name.
     pub(crate) fn vessel_index(&self, name: &str) -> Option<usize> {
         self.vessels.get(name).copied()
     }
 
-    /// The vessel with this name.
     pub(crate) fn vessel(&self, name: &str) -> Option<&'s Vessel> {
         Some(&self.scene.vessels[self.vessel_index(name)?])
     }

@@ -1,8 +1,8 @@
-//! The nearest known name to one that is not known.
+//! The known name nearest to an unknown one.
 
 use super::keys;
 
-/// The known name that the user may have meant: a key that other programs call so, or else the most similar one.
+/// Returns the known name that the user may have meant: a key that has this name in other programs, otherwise the most similar name.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let lower = name.to_lowercase();
     let spelled = |candidate: &&str| {
@@ -19,7 +19,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone)
     })
 }
 
-/// 1 where equal; the beginning of a name counts as close.
+/// Similarity of two names, 1 if they are equal; a name that begins with the other counts as close.
 fn closeness(name: &str, candidate: &str) -> f64 {
     let (short, long) = if name.len() < candidate.len() {
         (name, candidate)

@@ -20,7 +20,7 @@ pub struct Note {
     pub at: String,
     /// The remark.
     pub text: String,
-    /// Line of the file [-], from 1, where the key has one.
+    /// Line of the key in the file [-], from 1, if it is in a file.
     pub line: Option<usize>,
 }
 
@@ -79,7 +79,7 @@ impl Scene {
         self.has_host_flow().then(|| Note::new("water.flow", remark))
     }
 
-    /// Returns suggestions for keys that are left open, and keys that cannot be left out and change nothing, which only `moorline check` prints.
+    /// Returns suggestions for keys that are left open, and notes on required keys without effect; only `moorline check` prints them.
     pub fn advice(&self) -> Vec<Note> {
         let mut notes = self.idle_by_need();
         if self.solver.integrator == Integrator::QuasiStatic {
@@ -116,8 +116,8 @@ impl Scene {
         }
     }
 
-    /// Damping BA [N s] that is [`FIRST_MODE_RATIO`] of critical in the first axial mode of a line of a length [m]: a quarter of a wave
-    /// along it, ω = ½π√(EA/m)/L, BA = 2ζ·EA/ω.
+    /// Damping BA [N s] with a ratio of [`FIRST_MODE_RATIO`] in the first axial mode of a line of a length [m], a quarter wave: ω = ½π√(EA/m)/L,
+    /// BA = 2ζ·EA/ω.
     fn damping_of_first_mode(&self, line_type: &LineType, length: f64) -> Option<f64> {
         let (ea, mass) = (line_type.axial_stiffness?, self.mass(line_type));
         let damping = 4.0 * FIRST_MODE_RATIO / PI * length * (ea * mass).sqrt();
@@ -145,7 +145,7 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
     }
 }
 
-/// Position of a point in the reference configuration, global axes [m]; `None` where its vessel is missing.
+/// Position of a point in the reference configuration, global axes [m]; `None` if its vessel is missing.
 pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3]> {
     let Some(carrier) = &point.on else {
         return Some(point.position);
@@ -155,19 +155,19 @@ pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3
     Some((Vector3::from(vessel.position) + turn * Vector3::from(point.position)).into())
 }
 
-/// Distance between the ends of a line [m], where both are known.
+/// Distance between the ends of a line [m], if both are known.
 pub(super) fn chord(scene: &Scene, line: &Line) -> Option<f64> {
     chord_between(scene, [&line.from, &line.to].map(|name| scene.point(name)))
 }
 
-/// Distance between two points [m], where both are known.
+/// Distance between two points [m], if both are known.
 pub(super) fn chord_between(scene: &Scene, ends: [Option<&Point>; 2]) -> Option<f64> {
     let [a, b] = ends.map(|end| reference_position(scene, end?));
     let (a, b) = (a?, b?);
     Some((0..3).map(|i| (b[i] - a[i]).powi(2)).sum::<f64>().sqrt())
 }
 
-/// Depth below a seabed that is not level at which a point is noted [m].
+/// Depth below a seabed that is not level from which on a point is noted [m].
 const BURIED: f64 = 0.01;
 
 fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: &mut Vec<Note>) {
@@ -206,10 +206,10 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
     }
 }
 
-/// Distance below which two ends count as coincident, over the length of the line [-].
+/// Distance below which two ends count as coincident, relative to the length of the line [-].
 const ENDS_APART: f64 = 1e-6;
 
-/// Notes lines of the same sections between the same places, to a micrometre: a row that is written or repeated twice makes them.
+/// Notes lines with the same sections between the same positions, to a micrometre: they usually come from a row that was entered twice.
 fn note_twins(scene: &Scene, names: &Names, notes: &mut Vec<Note>) {
     let mut known: BTreeMap<[[i64; 3]; 2], &Line> = BTreeMap::new();
     for (i, line) in scene.lines.iter().enumerate() {
@@ -226,7 +226,7 @@ fn note_twins(scene: &Scene, names: &Names, notes: &mut Vec<Note>) {
     }
 }
 
-/// Notes names of points, lines and vessels that differ in upper and lower case alone.
+/// Notes names of points, lines and vessels that differ only in case.
 fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
     let mut known = BTreeMap::new();
     for (at, name) in scene.names() {

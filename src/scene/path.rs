@@ -1,4 +1,4 @@
-//! Key paths such as `lines[0].sections[1].length`, and the bytes of the text that they stand for.
+//! Key paths such as `lines[0].sections[1].length`, and the bytes of the text that they refer to.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -11,7 +11,7 @@ use toml::de::DeValue;
 pub(super) enum Step<'s> {
     /// A key of a table.
     Key(&'s str),
-    /// A place in an array, from 0.
+    /// An index in an array, from 0.
     Index(usize),
 }
 
@@ -22,7 +22,7 @@ fn is_bare(key: &str) -> bool {
             .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
-/// A key as written in TOML: quoted where it must be.
+/// A key as written in TOML: quoted where necessary.
 pub fn quoted(key: &str) -> String {
     if is_bare(key) {
         key.to_string()
@@ -43,10 +43,10 @@ pub(super) fn push(path: &mut String, step: Step<'_>) {
     }
 }
 
-/// Keys whose values may stand in the `file` of the same table.
+/// Keys whose values may be read from the `file` of the same table.
 const IN_FILE: [&str; 3] = [".profile", ".components", ".grid"];
 
-/// The path of the `file` that holds the value at a path, if the text has that in its place.
+/// Path of the `file` that holds the value at a path, if the text gives the file instead of the value.
 pub(super) fn file_of(root: &Spanned<DeValue<'_>>, path: &str) -> Option<String> {
     let holder = IN_FILE
         .iter()
@@ -57,7 +57,7 @@ pub(super) fn file_of(root: &Spanned<DeValue<'_>>, path: &str) -> Option<String>
     (file != own && own == locate(root, holder)).then(|| format!("{holder}.file"))
 }
 
-/// Bytes of the value at a path; where there is none, of the last table or array on the way.
+/// Bytes of the value at a path; if there is none, those of the last value on the way.
 pub(super) fn locate(root: &Spanned<DeValue<'_>>, path: &str) -> Option<Range<usize>> {
     let mut span = None;
     let mut table = root.get_ref().as_table();
@@ -92,7 +92,7 @@ fn next_step(path: &str) -> Option<(String, Option<usize>, &str)> {
     (end > 0).then(|| (path[..end].to_string(), None, &path[end..]))
 }
 
-/// Undoes the quoting of [`quoted`]: TOML reads the same escapes.
+/// Splits a quoted key off a path and reverses [`quoted`]: TOML has the same escapes.
 fn split_quoted(path: &str) -> Option<(String, &str)> {
     let mut escaped = false;
     let end = path.char_indices().skip(1).find_map(|(at, c)| {

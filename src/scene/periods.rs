@@ -1,10 +1,10 @@
-//! Periods of the motion of a scene, and the frequency above which its tension does not count if it is low-passed.
+//! Periods of a scene's motions, and the cut-off frequency of its low-passed tension.
 
 use super::{MotionPath, Scene};
 
-/// Cut-off of the low-passed tension over the frequency of the fastest sine of the motion [-].
+/// Ratio of the cut-off of the low-passed tension to the frequency of the fastest sine of the motion [-].
 const CUT_OFF: f64 = 5.0;
-/// Period that is assumed where no sine moves anything [s]: that of common waves.
+/// Period that is assumed for motions without sines [s]: that of common waves.
 const PERIOD: f64 = 10.0;
 
 impl Scene {
@@ -24,12 +24,12 @@ impl Scene {
         axes.flatten().map(|sine| sine[1])
     }
 
-    /// Shortest period of the motions [s]; 10 s where they have no sines.
+    /// Shortest period of the motions [s]; 10 s if they have no sines.
     pub fn shortest_period(&self) -> f64 {
         self.periods().reduce(f64::min).unwrap_or(PERIOD)
     }
 
-    /// Cut-off of the low-passed tension [Hz]: five times the frequency of the fastest sine of the motions, or 0.5 Hz where they have none.
+    /// Cut-off of the low-passed tension [Hz]: five times the frequency of the fastest sine of the motions, or 0.5 Hz if they have no sines.
     pub fn cut_off(&self) -> f64 {
         CUT_OFF / self.shortest_period()
     }

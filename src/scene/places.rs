@@ -28,7 +28,7 @@ impl Places {
         self.places.insert(at.into(), place);
     }
 
-    /// The place of a key path, or of what holds it.
+    /// Place of a key path, or of the innermost part that contains it.
     fn find(&self, at: &str) -> Option<&Place> {
         let mut at = at;
         while !at.is_empty() {
@@ -40,7 +40,7 @@ impl Places {
         None
     }
 
-    /// A mistake in the scene as one in the file.
+    /// Converts a mistake in the scene to one in the file.
     pub fn locate(&self, mut mistake: SceneError) -> SceneError {
         if mistake.span.is_none() {
             let place = self.find(&mistake.at);
@@ -52,7 +52,7 @@ impl Places {
         mistake
     }
 
-    /// A remark on the scene as one on a line of the file.
+    /// Converts a remark on the scene to one on a line of the file.
     pub fn locate_note(&self, source: &str, mut note: Note) -> Note {
         if let Some(place) = self.find(&note.at) {
             let (line, _) = path::line_column(source, place.span.start);

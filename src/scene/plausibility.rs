@@ -1,4 +1,4 @@
-//! Notes on values that a scene may have but a mooring seldom has: most of them are slips of units. Single values are noted by the usual range of
+//! Notes on values that are accepted but unusual for moorings, most of them slips of units. Notes on single values follow from the usual range of
 //! their key in the property table; the rules here concern several keys.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -20,36 +20,36 @@ const WAVE_SPEED: [f64; 2] = [300.0, 6000.0];
 const WEIGHT_STRAIN: f64 = 0.2;
 /// Strain [-] beyond which ropes of polyester and steel break or yield.
 const STRAIN: f64 = 0.05;
-/// Strain between the ends [-] of lines at a free point, whose position is a first guess: the equilibrium shows theirs.
+/// Strain between the ends [-] up to which lines at a free point are not noted: its position is a first guess, and the equilibrium gives the strain.
 const FIRST_GUESS_STRAIN: f64 = 0.5;
-/// Mass over volume of the diameter [kg/m³]: foam has 200, steel 7850, lead 11 340. The upper limit is the geometric mean of steel and of
-/// the bar's diameter of a chain, three times steel.
+/// Mass per volume of the diameter [kg/m³]: 200 for foam, 7850 for steel, 11 340 for lead. The upper limit is the geometric mean of steel and three
+/// times steel, the value of a chain with its bar diameter.
 pub const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
-/// Weight in water over volume of the diameter [kg/m³] of a line whose mass is not given, without sign: ropes that nearly float have 30.
+/// Weight in water per volume of the diameter, as a density without sign [kg/m³], of a line without a given mass: 30 for ropes that nearly float.
 const EXCESS_MIN: f64 = 1.0;
 /// Density of steel [kg/m³].
 pub(crate) const STEEL: f64 = 7850.0;
-/// Steel of a chain over that of one straight bar of its links [-]: two bars side by side, bends and perhaps studs make
-/// somewhat more than three.
+/// Mass of a chain relative to one straight bar of its links [-]: two bars side by side, the bends and any studs make it somewhat
+/// more than three.
 const CHAIN: std::ops::Range<f64> = 2.7..4.0;
-/// Normal drag coefficient [-] from which it refers to the bar of a chain (2.4 on the bar, 1.3 on the volume-equivalent diameter): the
-/// diameter is then the bar's by intention, as in several published systems.
+/// Normal drag coefficient [-] from which it is taken to refer to the bar of a chain (2.4 on the bar, 1.3 on the volume-equivalent diameter): the
+/// bar diameter is then given on purpose, as in several published systems.
 pub const DRAG_ON_BAR: f64 = 1.8;
-/// Height of an end above the seabed, over the length of its line [-], up to which it is taken to lie on it.
+/// Height of an end above the seabed, relative to the length of its line [-], up to which it is taken to lie on the seabed.
 const ON_SEABED: f64 = 0.02;
 /// Distance of a fairlead from its vessel's origin [m]: the longest vessel is 488 m long.
 const FAIRLEAD_DISTANCE: f64 = 300.0;
-/// Unstretched length of a line [m]: the longest moorings, in water 3000 m deep, have less than half of it.
+/// Unstretched length of a line [m]: the longest moorings, in water 3000 m deep, are less than half as long.
 const LENGTH: f64 = 20e3;
-/// Unstretched length of a line over the distance of its ends [-].
+/// Ratio of the unstretched length of a line to the distance between its ends [-].
 const LENGTH_OVER_CHORD: f64 = 20.0;
 /// Period of a motion [s]; in models at 1:100, waves have periods of a few tenths of a second.
 const PERIOD: f64 = 0.1;
 /// Height above z = 0 of the highest row of a current [m].
 const CURRENT_HEIGHT: f64 = 1.0;
-/// Height over length from which a wave breaks in deep water (Michell 1893) [-].
+/// Ratio of height to length at which a wave breaks in deep water (Michell 1893) [-].
 const BREAKING_DEEP: f64 = 0.142;
-/// Height over depth from which a wave breaks in shallow water (McCowan 1894) [-].
+/// Ratio of height to depth at which a wave breaks in shallow water (McCowan 1894) [-].
 const BREAKING_SHALLOW: f64 = 0.78;
 
 /// A rule, which adds notes on its findings.
@@ -87,7 +87,7 @@ fn outside(value: f64, [lower, upper]: [f64; 2]) -> bool {
     !(lower..=upper).contains(&value)
 }
 
-/// Rows of a current's profile, and its factor; the velocity has its own usual range.
+/// Notes rows of a current's profile, and its factor; the velocity has a usual range of its own.
 fn current(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(current) = scene.current() else {
         return;
@@ -150,7 +150,7 @@ fn wave_steepness(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Returns the note on a wave that breaks at a lower height, from a seventh of its length on; `None` of others.
+/// Returns the note on a wave that would break below this height, in deep water a seventh of its length; `None` for other waves.
 fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
     if scene.gravity <= 0.0 || period.is_nan() || period <= 0.0 {
         return None;
@@ -174,7 +174,7 @@ fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
     })
 }
 
-/// Returns the note on an angle beyond a turn, which may be given in degrees.
+/// Returns the note on an angle of more than one turn, which may have been given in degrees.
 pub(super) fn degrees(angle: f64) -> Option<String> {
     (angle.abs() > TAU).then(|| {
         format!(
@@ -186,7 +186,7 @@ pub(super) fn degrees(angle: f64) -> Option<String> {
     })
 }
 
-/// Angles in rows of components; those of single keys are noted by their unit.
+/// Notes angles in rows of components; angles of single keys are recognised by their unit.
 fn sea_angles(scene: &Scene, notes: &mut Vec<Note>) {
     for (at, sea) in seas(scene) {
         let mut angles = trains(sea).iter().flat_map(|row| &row[2..]);
@@ -206,7 +206,7 @@ fn line_type_properties(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Stiffness EA of a line type [N], of tables that of the last row, and its key.
+/// Stiffness EA of a line type [N], for a table the secant stiffness of its last row, and its key.
 fn stiffness(line_type: &LineType) -> Option<(f64, &'static str)> {
     let table = line_type.tension_strain.as_ref().and_then(|table| {
         let [strain, tension] = table.rows.last()?;
@@ -231,7 +231,7 @@ fn wave_speed(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Vec<Not
     }
 }
 
-/// A number with four digits.
+/// A number rounded to four significant digits.
 fn significant(value: f64) -> f64 {
     rounded(value, 4)
 }
@@ -259,8 +259,8 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
     }
 }
 
-/// Returns the note on a diameter [m] and a mass [kg/m] that make a density above a limit [kg/m³]: the diameter is that of a cylinder
-/// of the line's volume, not that of a chain's bar.
+/// Returns the note on a diameter [m] and a mass [kg/m] that give a density above a limit [kg/m³]: the diameter should be that of a cylinder of
+/// the line's volume, not that of a chain's bar.
 pub fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> {
     let density = mass / (circle::area(diameter));
     if density <= limit {
@@ -293,7 +293,7 @@ fn fairlead_distance(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Fixed points above the water with lines into it, or to what a host moves: most are anchors at a depth without its minus sign.
+/// Notes fixed points above the water with lines to coupled points or into the water: most are anchors whose depth lacks its minus sign.
 fn anchor_height(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, point) in scene.points.iter().enumerate().filter(|_| scene.water.is_some()) {
         let lines = scene.lines.iter().filter(|line| line.joins(&point.name));
@@ -310,7 +310,7 @@ fn anchor_height(scene: &Scene, notes: &mut Vec<Note>) {
 }
 
 impl Scene {
-    /// Strain [-] beyond which a line is noted: 5 %, or where its tables of tension end; none where a measure of large strains is chosen.
+    /// Strain [-] beyond which a line is noted: 5 %, or the end of its tension tables if that is greater; infinite with a measure for large strains.
     pub(crate) fn usual_strain(&self, line: &Line) -> f64 {
         let of_type = |line_type: &LineType| match (&line_type.tension_strain, line_type.strain) {
             (_, Strain::Green | Strain::Logarithmic(_)) => f64::INFINITY,
@@ -326,7 +326,7 @@ fn is_guessed(scene: &Scene, line: &Line) -> bool {
     scene.free_points().any(|point| line.joins(&point.name))
 }
 
-/// Lines that are too long; without water a scene is a bench test, and ends at one place make a loop.
+/// Notes lines that are too long, except in scenes without water (bench tests); chords of zero (loops) or to free points (first guesses) are ignored.
 fn line_length(scene: &Scene, notes: &mut Vec<Note>) {
     let names = Names::of(scene);
     for (i, line) in scene.lines.iter().enumerate().filter(|_| scene.water.is_some()) {
@@ -406,7 +406,7 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Returns the note on a roll, pitch (beyond a right angle) or yaw (beyond a turn), the axes 3, 4 and 5, that may be given in degrees [rad].
+/// Returns the note on a roll or pitch beyond a right angle or a yaw beyond a turn (axes 3, 4 and 5) [rad], which may have been given in degrees.
 fn turned(axis: usize, angle: f64) -> Option<String> {
     let limit = if axis == 5 { TAU } else { FRAC_PI_2 };
     let angle = significant(angle.abs());
@@ -422,7 +422,7 @@ fn turned(axis: usize, angle: f64) -> Option<String> {
     })
 }
 
-/// Angles of the vessels, and the greatest ones of motions.
+/// Notes the angles of vessels, and the maximum angles of motions.
 fn turns(scene: &Scene, notes: &mut Vec<Note>) {
     let mut say = |at: String, axis: usize, angle: f64| {
         notes.extend(turned(axis, angle).map(|text| Note::new(at, text)));
@@ -445,7 +445,7 @@ fn turns(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Phases and periods of motions.
+/// Notes phases and periods of motions.
 fn sines(scene: &Scene, notes: &mut Vec<Note>) {
     for (at, motion) in motions(scene) {
         let MotionPath::Harmonic(harmonic) = motion else {

@@ -1,4 +1,4 @@
-//! Points that lines end at, and the vessels that carry them.
+//! Points at the ends of lines, and the vessels that carry them.
 
 use std::f64::consts::TAU;
 
@@ -39,7 +39,7 @@ table! {
 }
 
 impl Point {
-    /// A point with nothing but a name, a reference position [m] and its kind.
+    /// Point with a name, a reference position [m] and a kind only.
     pub fn at(name: impl Into<String>, position: [f64; 3], kind: PointKind) -> Point {
         Point {
             name: name.into(),
@@ -115,7 +115,7 @@ table! {
 }
 
 impl Vessel {
-    /// Rows of a motion whose angles are Z-Y-X, as in the results of a run, with angles in the order of this vessel's motions [rad].
+    /// Converts rows of a motion with Z-Y-X angles, as in the results of a run, to the order of angles of this vessel's motions [rad].
     pub(super) fn in_own_order(&self, mut rows: Vec<MotionRow>) -> Vec<MotionRow> {
         if self.motion_angles.is_zyx() {
             return rows;
@@ -137,7 +137,7 @@ impl Vessel {
 }
 
 impl Scene {
-    /// [`Vessel::in_own_order`] of a body by its name; the rows of a point are as they are.
+    /// As [`Vessel::in_own_order`], for the body with this name; the rows of a point are returned unchanged.
     pub(super) fn in_own_order(&self, body: &str, rows: Vec<MotionRow>) -> Vec<MotionRow> {
         match self.vessel(body) {
             Some(vessel) => vessel.in_own_order(rows),

@@ -1,4 +1,4 @@
-//! TOML text -> Scene, scene file -> Scene, Scene -> TOML text.
+//! Reads scenes from TOML text and from files, and writes them as TOML.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use super::{
 /// A scene and the file it came from.
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
-    /// The scene, checked, with its motion files read.
+    /// Checked scene; the files that it names have been read.
     pub scene: Scene,
     /// The text of the file.
     pub text: String,
@@ -35,7 +35,7 @@ pub struct LoadedScene {
 }
 
 impl LoadedScene {
-    /// Gives a note that was found later its place in the file.
+    /// Adds the place in the file to a note that was found after loading.
     pub fn locate_note(&self, note: Note) -> Note {
         if self.format != TOML {
             return self.places.locate_note(&self.text, note);
@@ -46,7 +46,7 @@ impl LoadedScene {
         }
     }
 
-    /// Replaces the scene by a changed one and drops the remarks that no longer apply. Returns the new ones, without places in the file.
+    /// Replaces the scene by a changed one and drops the remarks that no longer apply. Returns the new remarks, without places in the file.
     pub fn change(&mut self, scene: Scene) -> Vec<Note> {
         let (before, mut now) = (self.scene.notes(), scene.notes());
         let past = before.iter().filter(|note| !now.contains(note));
@@ -59,7 +59,7 @@ impl LoadedScene {
         now
     }
 
-    /// Gives a mistake that was found later its place in the file.
+    /// Adds the place in the file to a mistake that was found after loading.
     pub fn locate(&self, mistake: SceneError) -> SceneError {
         if self.format != TOML {
             return self.places.locate(mistake);
@@ -109,7 +109,7 @@ impl Scene {
                 table.rows = rows;
             }
         }
-        // two shapes are refused by the checks
+        // a seabed with both a grid and a file is refused by the checks
         if let Some(seabed) = self.seabed.as_mut().filter(|seabed| seabed.grid.is_none())
             && let Some(grid) = files.read(
                 seabed.file.as_deref(),
@@ -149,7 +149,7 @@ pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
     load_text(path, read_text(path, |_| false)?)
 }
 
-/// As [`load`], where the text of the file has been read.
+/// As [`load`], for a file whose text has been read.
 ///
 /// # Errors
 /// All mistakes in it.
@@ -171,7 +171,7 @@ pub fn load_text(path: &Path, text: String) -> Result<LoadedScene, LoadError> {
     }
 }
 
-/// Returns whether a text is TOML, of a scene or of anything else.
+/// Returns whether a text is valid TOML, be it a scene or not.
 pub fn is_toml(text: &str) -> bool {
     Document::parse(text).is_ok()
 }
@@ -203,7 +203,7 @@ struct Files<'f> {
 }
 
 impl Files<'_> {
-    /// The content of a file; `None` where there is no file, and where there is a mistake in it, which is kept for its key path.
+    /// Returns the content of a file; `None` if no file is given, or if there is a mistake in it, which is stored with its key path.
     fn read<T>(
         &mut self,
         file: Option<&str>,
@@ -217,7 +217,7 @@ impl Files<'_> {
     }
 }
 
-/// Reads the files of waves and current, whose rows take their place.
+/// Reads the files of waves and current, and replaces their paths by the rows.
 fn read_water(scene: &mut Scene, files: &mut Files<'_>) {
     let Some(water) = &mut scene.water else {
         return;
@@ -267,7 +267,7 @@ fn read_motions(scene: &mut Scene, files: &mut Files<'_>) {
     }
 }
 
-/// Text that is TOML.
+/// Parsed TOML text.
 struct Document<'t> {
     root: Spanned<DeValue<'t>>,
 }
@@ -282,7 +282,7 @@ impl<'t> Document<'t> {
         Node::root(&self.root).read()
     }
 
-    /// Gives a note the line of the text where its key stands.
+    /// Sets the line of a note to that of its key in the text.
     fn place_note(&self, text: &str, mut note: Note) -> Note {
         if let Some(file) = path::file_of(&self.root, &note.at) {
             note.at = file;
@@ -292,7 +292,7 @@ impl<'t> Document<'t> {
         note
     }
 
-    /// Gives mistakes their place in the text and puts them in its order.
+    /// Sets the places of mistakes in the text and sorts them by place.
     fn place(&self, mut mistakes: Vec<SceneError>) -> Vec<SceneError> {
         for mistake in &mut mistakes {
             if mistake.span.is_none() {
@@ -304,7 +304,7 @@ impl<'t> Document<'t> {
     }
 }
 
-/// Mistake in the syntax, or a file of another program.
+/// Mistake for a text that is not TOML: a syntax error, or a file of another program.
 fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
     let mistake = |span, problem: &str| SceneError {
         at: String::new(),
@@ -326,7 +326,7 @@ fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
 /// Reads a text file; bytes that are not UTF-8 are read as Latin-1 if `is_latin_1` accepts the resulting text.
 ///
 /// # Errors
-/// The reason why the file cannot be read, or the first byte that is no text.
+/// The reason why the file cannot be read, or the first byte that is not text.
 pub fn read_text(path: &Path, is_latin_1: impl Fn(&str) -> bool) -> Result<String, LoadError> {
     let unreadable = |problem: String| LoadError::Unreadable {
         path: path.to_path_buf(),

@@ -1,4 +1,4 @@
-//! Text -> rows of fields with their places, for every reader whose format is a table in columns.
+//! Splits text into rows and fields with their positions, for all readers of tables in columns.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ pub struct Row<'t> {
 }
 
 impl<'t> Row<'t> {
-    /// The lines of a text that hold more than blanks.
+    /// Lines of a text that are not blank.
     pub fn all(text: &'t str) -> impl Iterator<Item = Row<'t>> {
         let mut at = 0;
         text.split_inclusive(['\n', '\r']).filter_map(move |line| {
@@ -56,7 +56,7 @@ impl<'t> Row<'t> {
         self.split(|c| c.is_whitespace())
     }
 
-    /// The parts of the row between characters that separate them.
+    /// Parts of the row between separators.
     pub fn split(&self, separates: impl Fn(char) -> bool) -> Vec<Field<'t>> {
         let mut fields = Vec::new();
         let mut begin = None;
@@ -78,7 +78,7 @@ impl<'t> Row<'t> {
     }
 }
 
-/// Returns the number [-] that a word gives in the form of C or of Fortran (`1.0D5`).
+/// Parses a number [-] in the notation of C or of Fortran (`1.0D5`).
 ///
 /// # Errors
 /// A description of the word that was found instead.
@@ -100,7 +100,7 @@ pub fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A word of the file in quotes, shortened where it is long.
+/// A word of the file in quotes, shortened if it is long.
 pub fn shown(text: &str) -> String {
     if text.chars().count() <= 40 {
         return format!("{text:?}");

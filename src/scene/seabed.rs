@@ -9,7 +9,7 @@ use super::table::{Key, Kind, PLAIN, Table, Value, choice, magnitude, not_negati
 
 /// Default normal stiffness [Pa/m].
 const STIFFNESS: f64 = 3.0e6;
-/// Stiffness of soft mud, and of the concrete floor under the chain of a model [Pa/m].
+/// Usual stiffness, from soft mud to the concrete floor under the chain of a model [Pa/m].
 const STIFFNESS_USUAL: [f64; 2] = [1e4, 2e9];
 /// Default normal damping [Pa s/m].
 const DAMPING: f64 = 3.0e5;
@@ -39,7 +39,7 @@ table! {
     }
 }
 
-/// Steepest seabed [-]: 63 degrees.
+/// Maximum slope of a seabed [-]: 63 degrees.
 const SLOPE_MAX: f64 = 2.0;
 
 table! {
@@ -69,9 +69,9 @@ choice! {
 /// Coulomb friction between lines and seabed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Friction {
-    /// Across the line, and of points [-].
+    /// Coefficient across the line, and for points [-].
     pub transverse: f64,
-    /// Along the line [-].
+    /// Coefficient along the line [-].
     pub axial: f64,
 }
 
@@ -104,7 +104,7 @@ impl Seabed {
         self.grid.is_none() && self.file.is_none() && self.slope.is_none_or(|slope| slope == [0.0; 2])
     }
 
-    /// Height of the seabed at a place [m]; between soundings the lowest of those around.
+    /// Height of the seabed at a place [m]; between soundings, the lowest of the surrounding ones.
     pub(super) fn lowest_at(&self, [x, y]: [f64; 2]) -> f64 {
         let around = |line: &[f64], place: f64| {
             let next = line.partition_point(|known| *known <= place);

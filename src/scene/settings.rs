@@ -143,10 +143,10 @@ table! {
 /// Form of node positions and tensions among the variables.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Profile {
-    /// They are no variables.
+    /// Node positions and tensions are not variables.
     #[default]
     None,
-    /// Arrays in FMI 3.0; FMI 2.0, which has none, gets scalars.
+    /// Arrays in FMI 3.0; scalars in FMI 2.0, which has no arrays.
     Array,
     /// One scalar for each node.
     Scalar,
@@ -195,7 +195,7 @@ impl Value for Profile {
     }
 }
 
-/// Digits with which every number reads back to the same bits [-].
+/// Number of digits with which every number is read back bit for bit [-].
 const DIGITS_MAX: f64 = 17.0;
 
 choice! {
@@ -241,13 +241,13 @@ choice_of_values! {
     }
 }
 
-/// Threads that share the lines of a system. Results do not depend on it.
+/// Number of threads that share the lines of a system. Results do not depend on it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Threads {
-    /// As many as pay: one for a few lines.
+    /// As many as shorten the run: one for a few lines.
     #[default]
     Auto,
-    /// This number [-], or the number of systems of lines that are joined by held points only, where that is less.
+    /// This number [-], or the number of networks of lines if that is less.
     Number(usize),
 }
 

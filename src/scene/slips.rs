@@ -1,6 +1,6 @@
 //! Common slips in TOML: words without quotes, decimal commas, units after numbers.
 
-/// Returns the likely slip in a line of text that is not TOML, and its correction, if the slip is a known one.
+/// Returns the likely slip in a line that is not TOML, with its correction, if the slip is a known one.
 pub(super) fn slip(text: &str, place: usize) -> Option<String> {
     let start = text[..place.min(text.len())].rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].lines().next()?;
@@ -35,8 +35,8 @@ fn is_behind_comma(token: &Token) -> bool {
         && is_number(token.text)
 }
 
-/// The slip in numbers with commas between them of which the second stands at `at`: a decimal comma, perhaps after thousands separators, or a list without
-/// brackets.
+/// Describes the slip in numbers separated by commas, the second of which is token `at`: a decimal comma, possibly after thousands separators, or a
+/// list without brackets.
 fn comma(tokens: &[Token], at: usize) -> String {
     let more = tokens[at..].iter().take_while(|token| is_behind_comma(token));
     let numbers: Vec<&str> = [tokens[at].last]
@@ -144,7 +144,7 @@ fn odd(token: &Token) -> Option<String> {
     word.then(|| format!("`{text}` is a word without quotes: write \"{text}\""))
 }
 
-/// A number in the notation of other languages.
+/// Number without a digit before or after its point, as other languages allow.
 fn unfinished(text: &str) -> Option<String> {
     let bare = text.trim_start_matches(['+', '-']);
     let sign = &text[..text.len() - bare.len()];
@@ -173,7 +173,7 @@ fn not_a_number(text: &str, lower: &str) -> Option<String> {
     })
 }
 
-/// A line without its `=`.
+/// Line that lacks its `=`.
 fn unjoined(line: &str, tokens: &[Token]) -> Option<String> {
     let first = tokens.first()?;
     if first.after == '=' || line.trim_start().starts_with('[') {

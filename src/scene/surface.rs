@@ -7,13 +7,14 @@ use super::{Line, MotionPath, Point, PointKind, Scene};
 const TROUGH: f64 = 3.0;
 
 impl Scene {
-    /// Returns whether a line meets the water's surface: as `water.surface` gives it; else where one of its ends lies above z = 0, or above the troughs of
-    /// waves, in the reference configuration, or where it is buoyant or hangs on a free point that floats, and is long enough to come up. Beams never do.
+    /// Returns whether a line may come out of the water: as set by `water.surface`; otherwise if, in the reference configuration, one of its ends
+    /// lies above z = 0, or above the troughs of waves, or if it is buoyant or ends at a free point that floats, and is long enough to come up. Beams
+    /// never do.
     pub fn meets_surface(&self, line: &Line) -> bool {
         self.meets_surface_between(line, [&line.from, &line.to].map(|name| self.point(name)))
     }
 
-    /// [`Scene::meets_surface`] of a line between the points at its ends, as far as the scene has them.
+    /// As [`Scene::meets_surface`], for the given points at the ends of the line.
     pub(crate) fn meets_surface_between(&self, line: &Line, ends: [Option<&Point>; 2]) -> bool {
         let Some(water) = &self.water else {
             return false;
@@ -31,7 +32,7 @@ impl Scene {
         };
         let length = line.length();
         let buoyant = self.types_of(line).any(|line_type| self.weight(line_type) < 0.0);
-        // the greatest height to which a line of this length could be pulled up
+        // the maximum height to which a line of this length could be pulled up
         let highest = match (a_floats, b_floats) {
             (true, true) => f64::INFINITY,
             (true, false) => b + length,
@@ -44,7 +45,7 @@ impl Scene {
         highest > trough
     }
 
-    /// Greatest height by which the scene's own motion lifts a point [m].
+    /// Maximum height by which the scene's own motion lifts a point [m].
     pub(super) fn rise(&self, point: &Point) -> f64 {
         let body = point.on.as_ref().unwrap_or(&point.name);
         let path = point.motion.as_ref().or_else(|| self.motion.get(body));
@@ -56,7 +57,7 @@ impl Scene {
             Some(_) => x.hypot(y).hypot(height),
             None => 0.0,
         };
-        z + arm * (roll + pitch).min(2.0) // no farther than to the other side
+        z + arm * (roll + pitch).min(2.0) // a rotation moves a point by at most twice its arm
     }
 
     /// Returns whether a free point is lighter than the water it displaces.

@@ -20,7 +20,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// Returns whether the table is refused without the key.
+    /// Returns whether a table needs the key.
     pub(crate) fn is_required(&self) -> bool {
         !(self.is_optional)()
     }
@@ -45,7 +45,7 @@ impl Key {
         in_line(self.doc)
     }
 
-    /// Unit of its numbers: that of the rule, or the first one in brackets in the doc comment; `None` of a key without numbers.
+    /// Unit of its numbers: that of the rule, or the first one in brackets in the doc comment; `None` for a key without numbers.
     pub fn unit(&self) -> Option<&'static str> {
         match self.rule.bounds {
             Bounds::Elsewhere => self.rule.unit,
@@ -54,7 +54,7 @@ impl Key {
         }
     }
 
-    /// Meaning in a few words, for descriptions of the FMU and the sentences of `check`: the beginning of the doc comment without units.
+    /// Short meaning, for descriptions in the FMU and the sentences of `check`: the beginning of the doc comment without units.
     pub fn meaning(&self) -> String {
         meaning(self.doc)
     }
@@ -100,27 +100,27 @@ pub(crate) fn meaning(doc: &[&str]) -> String {
 #[derive(Clone, Copy)]
 pub struct Rule {
     name: Option<&'static str>,
-    /// Another name that is read.
+    /// Second name that is also read.
     pub alias: Option<&'static str>,
-    /// Names in decks, papers and other programs, in lower case, for "did you mean"; the first is a column of MoorDyn where it has one.
+    /// Names in decks, papers and other programs, in lower case, for "did you mean"; the first is the column of MoorDyn, where there is one.
     pub spellings: &'static [&'static str],
     unit: Option<&'static str>,
     /// Keys of the same table that cannot be given together with it.
     pub excluded: &'static [&'static str],
     /// Numbers that are accepted.
     pub bounds: Bounds,
-    /// Sentence that follows the refusal of a number below its bounds.
+    /// Sentence that ends the refusal of a negative number, or of a magnitude beyond its limit.
     pub hint: Option<&'static str>,
-    /// Range of moorings [unit of the key], and the note on other numbers.
+    /// Range usual in moorings [unit of the key], and the note on numbers outside it.
     pub usual: Option<([f64; 2], &'static str)>,
     /// Circumstances under which the property acts on a line or point.
     pub acts: Acts,
     label: Option<&'static str>,
-    /// Name of the force or effect that is not modelled where the key is left out.
+    /// Name of the force or effect that is not modelled if the key is left out.
     pub absence: Option<&'static str>,
     /// True if the FMU has it as a parameter, which is fixed after initialization.
     pub is_parameter: bool,
-    /// Description of the FMU's parameter, where it is not the meaning of the key.
+    /// Description of the FMU's parameter, where it differs from the meaning of the key.
     pub described: Option<&'static str>,
 }
 
@@ -139,7 +139,7 @@ pub enum Acts {
     InAccelerations,
 }
 
-/// The rule of a key without any further fact: its numbers are finite.
+/// Rule without further facts: numbers must be finite.
 pub(super) const PLAIN: Rule = Rule {
     name: None,
     alias: None,
@@ -156,7 +156,7 @@ pub(super) const PLAIN: Rule = Rule {
     described: None,
 };
 
-/// The rule of a key whose numbers have several units, and whose bounds are checked where it is read.
+/// Rule of a key whose numbers have several units, and whose bounds are checked by the code of its value.
 pub(super) const MIXED: Rule = bounded(Bounds::Elsewhere);
 
 const fn bounded(bounds: Bounds) -> Rule {
@@ -173,7 +173,7 @@ pub(super) const fn not_negative(limit: f64) -> Rule {
     bounded(Bounds::NotNegative(limit))
 }
 
-/// Numbers no further from 0 than a limit.
+/// Numbers with a magnitude up to a limit.
 pub(super) const fn magnitude(limit: f64) -> Rule {
     bounded(Bounds::Magnitude(limit))
 }
@@ -196,32 +196,32 @@ macro_rules! facts {
 }
 
 facts! {
-    /// Key that is not called as its field.
+    /// Name in a scene, where it differs from the field.
     called(name: &'static str) name = Some(name);
-    /// A second name that is read too.
+    /// Second name that is also read.
     or_called(alias: &'static str) alias = Some(alias);
-    /// Names elsewhere.
+    /// Names in decks, papers and other programs.
     elsewhere(names: &'static [&'static str]) spellings = names;
-    /// Keys that cannot be given too.
+    /// Keys that cannot be given together with it.
     instead_of(keys: &'static [&'static str]) excluded = keys;
     /// Units of a list that holds several quantities.
     in_units(unit: &'static str) unit = Some(unit);
-    /// Sentence on a number below the bounds.
+    /// Sentence that ends the refusal of a negative number, or of a magnitude beyond its limit.
     hint(hint: &'static str) hint = Some(hint);
-    /// Range of moorings, and the note on numbers outside it.
+    /// Range usual in moorings, and the note on numbers outside it.
     usual(range: [f64; 2], note: &'static str) usual = Some((range, note));
     /// Circumstances under which the property acts.
     acts(acts: Acts) acts = acts;
     /// Name in the sentences of `check`.
     label(label: &'static str) label = Some(label);
-    /// Effect that is missing where the key is left out.
+    /// Effect that is missing if the key is left out.
     absence(absence: &'static str) absence = Some(absence);
-    /// Description of a parameter of the FMU, in place of the meaning.
+    /// Description of the FMU's parameter, instead of the meaning of the key.
     in_fmu(description: &'static str) described = Some(description);
 }
 
 impl Rule {
-    /// Unit that the rule gives.
+    /// Unit given by the rule.
     pub(super) const fn unit(&self) -> Option<&'static str> {
         self.unit
     }
@@ -290,12 +290,12 @@ pub struct Schema {
     pub doc: &'static [&'static str],
     /// Keys in the order of the page.
     pub keys: &'static [Key],
-    /// Values of the keys where they are left out.
+    /// Values of keys that are left out.
     pub defaults: fn() -> Vec<Option<Toml>>,
 }
 
 impl Schema {
-    /// The key of a name.
+    /// The key with this name.
     pub fn key(&self, name: &str) -> Option<&'static Key> {
         self.keys.iter().find(|key| key.is_called(name))
     }
@@ -316,26 +316,26 @@ pub trait Value {
     }
     /// Reads the value.
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError>;
-    /// The value as TOML; `None` where it is absent.
+    /// The value as TOML; `None` if it is absent.
     fn write(&self) -> Option<Toml>;
-    /// Adds the mistakes that the value has by itself: numbers out of bounds, rows out of order.
+    /// Adds the mistakes in the value itself: numbers out of bounds, rows out of order.
     fn check(&self, _key: &Key, _findings: &mut Findings) {}
-    /// The number, in the unit of the key, of a value that is one.
+    /// Number, in the unit of the key; `None` for a value that is not a number.
     fn number(&self) -> Option<f64> {
         None
     }
     /// Sets the number. Bounds are left to [`Value::check`].
     ///
     /// # Errors
-    /// Numbers that stand for no choice.
+    /// A number that denotes no word of a choice.
     fn set_number(&mut self, _number: f64) -> Result<(), String> {
         Ok(())
     }
-    /// Returns whether the value is that of a key that is left out.
+    /// Returns whether the key was left out.
     fn is_absent(&self) -> bool {
         false
     }
-    /// The value in the sentences of `check`; `None` of a value that they describe together with others.
+    /// Value in the sentences of `check`; `None` for a value that is described together with others.
     fn in_words(&self, _key: &Key) -> Option<String> {
         None
     }
@@ -421,7 +421,7 @@ impl<T: Table> Value for T {
     }
 }
 
-/// Adds the mistakes that each value of a table has by itself, and keys of which only one can be given.
+/// Adds the mistakes in each value of a table, and keys that exclude one another.
 pub(super) fn check_table<T: Table>(table: &T, findings: &mut Findings) {
     for (key, value) in table.entries().filter(|(_, value)| !value.is_absent()) {
         findings.below(|| key.name().to_string(), |findings| value.check(key, findings));
@@ -433,7 +433,7 @@ pub(super) fn check_table<T: Table>(table: &T, findings: &mut Findings) {
 }
 
 /// Declares a table of the scene format: its struct, and next to each field the rule of its key. The doc comment of a field is the text of the
-/// reference page, the unit in it that of the number. A field has a default after `=`, is optional by its type, or is required.
+/// reference page and gives the unit of the number. A field has a default after `=`, is optional by its type, or is required.
 macro_rules! table {
     (
         $(#[doc = $about:literal])+ $(#[derive($($derive:ident),+)])?
@@ -490,7 +490,7 @@ macro_rules! table {
 }
 
 /// Declares a choice of words: an enum, and for each variant the word in a scene. The doc comment of a variant is its meaning on the
-/// reference page; the first variant is taken where a key with a default is left out.
+/// reference page; the first variant is the default.
 macro_rules! choice {
     ($(#[doc = $about:literal])+ $vis:vis enum $name:ident {
         $($(#[doc = $doc:literal])+ $variant:ident = $word:literal,)+
@@ -619,7 +619,7 @@ pub trait Choice: Copy + PartialEq + 'static {
     /// Words with their meanings.
     const MEANINGS: Words;
 
-    /// Place among the words, from 0.
+    /// Index among the words, from 0.
     fn place(self) -> Option<usize> {
         Self::WORDS.iter().position(|(_, value)| *value == self)
     }
@@ -638,7 +638,7 @@ pub(super) fn read_choice<T: Choice>(node: &Node<'_>) -> Result<T, SceneError> {
     Ok(known.expect("the word is one of these").1)
 }
 
-/// The choice that a number stands for in the FMU.
+/// Choice that a number denotes in the FMU.
 pub(super) fn numbered_choice<T: Choice>(number: f64) -> Result<T, String> {
     let words = T::WORDS.iter().enumerate();
     let found = words.clone().find(|(place, _)| *place as f64 == number);

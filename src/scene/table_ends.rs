@@ -1,11 +1,11 @@
-//! Tables in time that end before the run does, begin after it, have a gap, or hold positions in place of displacements.
+//! Tables in time that end before the run, begin after its start, have a gap, or contain positions instead of displacements.
 
 use super::check::quantity;
 use super::notes::Note;
 use super::path::quoted;
 use super::{MotionPath, Scene, TimeFunction};
 
-/// Remarks on such tables, one per table.
+/// Returns the remarks on such tables.
 pub(super) fn notes(scene: &Scene) -> Vec<Note> {
     let duration = scene.output.duration;
     let ends = motions(scene).filter_map(|(at, motion)| note_motion(at, motion, duration));
@@ -15,14 +15,15 @@ pub(super) fn notes(scene: &Scene) -> Vec<Note> {
     ends.chain(functions).chain(gaps).chain(absolute).collect()
 }
 
-/// Rows from which on a table is a record [-].
+/// Minimum number of rows for a table to be treated as a record [-].
 const RECORD_ROWS: usize = 20;
-/// Time between two rows of a record that is a gap, over the median of all [-].
+/// Shortest time between two rows that counts as a gap, relative to the median of the record [-].
 const GAP: f64 = 10.0;
-/// Distance of the first row from the position of the moved object that counts as none, over the distance of that position from the origin [-].
+/// Distance between the first row and the position of the body, relative to the distance of that position from the origin, up to which the first
+/// row is taken for that position [-].
 const NEAR: f64 = 0.1;
 
-/// A record that moves on over a gap.
+/// Remark on a record whose values change across a gap.
 fn note_gap(at: String, rows: &[[f64; 7]]) -> Option<Note> {
     if rows.len() < RECORD_ROWS {
         return None;
@@ -41,7 +42,7 @@ fn note_gap(at: String, rows: &[[f64; 7]]) -> Option<Note> {
     Some(Note::new(at, text))
 }
 
-/// A table that begins where a body or point is, as seen from the origin.
+/// Remark on a table whose first row is about the position of the body: its rows are probably positions.
 fn note_absolute(scene: &Scene, at: &str, rows: &[[f64; 7]]) -> Option<Note> {
     let name = at.strip_prefix("motion.")?.trim_matches('"');
     let vessel = scene.vessel(name).map(|vessel| vessel.position);
@@ -103,7 +104,7 @@ fn note_motion(at: String, motion: &MotionPath, duration: f64) -> Option<Note> {
     Some(Note::new(at, text))
 }
 
-/// A function that has come to rest at its end, or ends with a jump, is intended.
+/// Remark on a function that ends before the run; one that is constant at its end, or ends with a jump, is taken as intended.
 fn note_function(at: String, function: &TimeFunction, duration: f64) -> Option<Note> {
     let TimeFunction::Table(rows) = function else {
         return None;

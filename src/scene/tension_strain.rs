@@ -13,17 +13,17 @@ use super::value::entry;
 use super::words::significant;
 use super::{SceneError, input_file};
 
-/// Tension over strain: `[[strain, tension], …]` or `{ file = "rope.csv" }`, which stands relative to the scene's folder.
+/// Tension over strain: `[[strain, tension], …]` or `{ file = "rope.csv" }`, a path relative to the scene's folder.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TensionStrain {
-    /// Path of the file, where there is one.
+    /// Path of the file, if there is one.
     pub file: Option<String>,
     /// Rows of strain [-] and tension [N]; those of a file are filled in by the reader.
     pub rows: Vec<[f64; 2]>,
 }
 
 impl TensionStrain {
-    /// A table whose rows stand in a file that has not been read.
+    /// Table in a file that has not been read.
     pub fn from_file(file: &str) -> TensionStrain {
         TensionStrain {
             file: Some(file.to_string()),
@@ -100,11 +100,11 @@ impl Value for TensionStrain {
     }
 }
 
-/// Rows of strain [-] and tension [N] of a file: two columns between blanks, commas or semicolons, below any lines that do not begin with a number. Two
-/// units in brackets in the last of these, such as `(-) (kN)`, are those of the columns.
+/// Reads rows of strain [-] and tension [N] from a file: two columns separated by blanks, commas or semicolons. Lines above them that do not begin
+/// with a number are headings; two units in brackets in the last heading, such as `(-) (kN)`, apply to the columns.
 ///
 /// # Errors
-/// The file, the line and what would be right.
+/// The file and line of the mistake, and its correction.
 pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let name = path.display();
     let bytes = input_file::read_table(path, "a table of strain and tension")?;
@@ -114,7 +114,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     for row in Row::all(&text) {
         let line = text[..row.span().start].matches('\n').count() + 1;
         let row = row.before('#');
-        // between semicolons, a comma is the decimal mark
+        // with semicolons between the columns, a comma is the decimal mark
         let decimal = row.text.contains(';');
         let cells = row.split(|c| c.is_whitespace() || c == if decimal { ';' } else { ',' });
         let value = |cell: &Field<'_>| match decimal {
@@ -141,7 +141,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     Ok(rows)
 }
 
-/// Takes rows from the units of a heading to SI units.
+/// Converts rows from the units in a heading to SI units.
 fn in_units_of(heading: &str, rows: &mut [[f64; 2]]) -> Result<(), String> {
     let found = units::bracketed(heading);
     let [strain, tension] = found[..] else {

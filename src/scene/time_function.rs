@@ -1,4 +1,4 @@
-//! Functions of time that a scene can write down: loads and motions.
+//! Functions of time in a scene: loads and motions.
 
 use toml::Value as Toml;
 
@@ -13,13 +13,13 @@ use super::words::motion_in_words;
 /// `{ table = [[t, f], …] }`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TimeFunction {
-    /// The same value always.
+    /// Constant value.
     Constant(f64),
     /// Cubic step from f0 before t0 to f1 after t1, with zero slope at both (MotionSolve's STEP).
     Step([f64; 4]),
-    /// Straight from f0 before t0 to f1 after t1.
+    /// Linear from f0 before t0 to f1 after t1.
     Ramp([f64; 4]),
-    /// Straight between (t, f) pairs of ascending t, constant outside; two pairs at one time are a jump.
+    /// Linear between (t, f) pairs in ascending t, constant outside; two pairs at the same t are a jump.
     Table(Vec<[f64; 2]>),
 }
 
@@ -115,7 +115,7 @@ impl Value for TimeFunction {
     }
 }
 
-/// Times of tables and steps [s]: thirty years.
+/// Bounds of times in tables and steps [s]: about thirty years.
 const TIME: Bounds = Bounds::Magnitude(1e9);
 
 /// Checks `[t0, f0, t1, f1]` of a step or ramp.
@@ -129,7 +129,7 @@ fn check_rise(findings: &mut Findings, at: &str, [t0, f0, t1, f1]: [f64; 4], uni
     }
 }
 
-/// Checks the first column of a table; where it may jump, two rows may share a time.
+/// Checks the times in the first column of a table; two rows may have the same time only if `jumps` is true.
 fn check_times(findings: &mut Findings, at: &str, times: impl Iterator<Item = f64>, jumps: bool) {
     let mut last: Option<f64> = None;
     for (row, time) in times.enumerate() {
@@ -169,7 +169,7 @@ impl TimeFunction {
         }
     }
 
-    /// Values at its corners, in the unit of its numbers, such as [m] of a length: it has no greater and no smaller ones.
+    /// Values at its corners, in the unit of its numbers, such as [m] for a length; they include its minimum and maximum.
     pub fn corners(&self) -> Vec<f64> {
         match self {
             TimeFunction::Constant(value) => vec![*value],
@@ -180,7 +180,7 @@ impl TimeFunction {
         }
     }
 
-    /// Greatest rate, in the unit of its numbers per second, such as [m/s] of a length; infinite where it jumps.
+    /// Maximum rate, in the unit of its numbers per second, such as [m/s] for a length; infinite if it jumps.
     pub(crate) fn rate_max(&self) -> f64 {
         let rise = |f0: f64, f1: f64, time: f64| match f1 - f0 {
             0.0 => 0.0,
@@ -199,7 +199,7 @@ impl TimeFunction {
         }
     }
 
-    /// Mean from `from` to `to` [s], in the unit of its numbers; exact, jumps and kinks included.
+    /// Mean from `from` to `to` [s], in the unit of its numbers; exact, also across jumps and kinks.
     pub fn mean(&self, from: f64, to: f64) -> f64 {
         if to <= from {
             return self.at(from);
@@ -213,7 +213,7 @@ impl TimeFunction {
         }
     }
 
-    /// Two points of Gauss are exact for the cubics between the ascending `breaks` [s].
+    /// Mean from `from` to `to` [s]: two-point Gauss quadrature is exact for the cubics between the ascending `breaks` [s].
     fn mean_over(&self, breaks: impl Iterator<Item = f64>, from: f64, to: f64) -> f64 {
         let inside = breaks.filter(|t| (from..to).contains(t));
         let (mut start, mut mean) = (from, 0.0);
@@ -243,10 +243,10 @@ fn interpolate(pairs: &[[f64; 2]], t: f64) -> f64 {
 /// A row of a motion table: time [s], displacement x, y, z [m], then roll, pitch and yaw [rad], which are 0 for points.
 pub type MotionRow = [f64; 7];
 
-/// A prescribed displacement from the reference position, and of vessels a rotation from the reference attitude.
+/// Prescribed displacement from the reference position and, for vessels, rotation from the reference attitude.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MotionPath {
-    /// Read from a table in a CSV file.
+    /// Table in a CSV file.
     File(MotionFile),
     /// A table in the scene.
     Table(Vec<MotionRow>),
@@ -254,8 +254,8 @@ pub enum MotionPath {
     Harmonic(HarmonicMotion),
 }
 
-/// `file = "motion.csv"`: columns time, x, y, z [s, m] and for vessels roll, pitch, yaw [rad], a header row, relative to the scene's
-/// folder.
+/// `file = "motion.csv"`, relative to the scene's folder: a header row, then columns time [s], x, y, z [m] and for vessels roll, pitch, yaw
+/// [rad].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MotionFile {
     /// Path of the file.
@@ -281,12 +281,12 @@ pub struct HarmonicMotion {
     pub pitch: Vec<Vec<f64>>,
     /// Components of yaw: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
     pub yaw: Vec<Vec<f64>>,
-    /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) [s]; none where absent.
+    /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) [s]; no ramp if absent.
     pub ramp: Option<f64>,
 }
 
 impl HarmonicMotion {
-    /// The motion by the sines of its axes x, y, z, roll, pitch and yaw, with a ramp [s].
+    /// Motion from the sines of its axes x, y, z, roll, pitch and yaw, with a ramp [s].
     pub(super) fn of([x, y, z, roll, pitch, yaw]: [Vec<Vec<f64>>; 6], ramp: Option<f64>) -> HarmonicMotion {
         HarmonicMotion {
             x,
@@ -313,7 +313,7 @@ impl HarmonicMotion {
 }
 
 impl MotionPath {
-    /// Rows where the motion is a table or was read from a file.
+    /// Rows of a motion that is a table or was read from a file.
     pub fn rows(&self) -> Option<&[MotionRow]> {
         match self {
             MotionPath::File(file) => Some(&file.rows),
@@ -322,7 +322,7 @@ impl MotionPath {
         }
     }
 
-    /// Greatest displacements [m], if any is above 0, and sizes of rotations [rad], all sines being taken to be in phase.
+    /// Maximum displacements [m], at least 0, and maximum absolute rotations [rad]; sines are assumed to be in phase.
     pub fn greatest(&self) -> [f64; 6] {
         match self {
             MotionPath::Harmonic(motion) => motion.axes().map(|(_, sines)| {
@@ -379,7 +379,7 @@ table! {
 }
 
 impl MotionText {
-    /// The motion, where the keys go together.
+    /// Returns the motion, or an error if the keys do not form one.
     fn path(self) -> Result<MotionPath, String> {
         let axes = [self.x, self.y, self.z, self.roll, self.pitch, self.yaw];
         let swings = axes.iter().any(|axis| axis.is_some());
@@ -453,7 +453,7 @@ impl Value for MotionPath {
         Ok(())
     }
 
-    /// Rows that were read from a file are written in its place, so that the scene needs no other file.
+    /// Rows that were read from a file are written instead of its path, so that the scene needs no other file.
     fn write(&self) -> Option<Toml> {
         let rows = match self {
             MotionPath::File(file) if file.rows.is_empty() => return Some(entry("file", file.file.clone())),
@@ -501,7 +501,7 @@ const DISPLACEMENT: Bounds = Bounds::Magnitude(1e7);
 /// Rotations [rad]: many turns.
 const ROTATION: Bounds = Bounds::Magnitude(1e4);
 
-/// Columns of a motion table; times are checked by their order.
+/// Bounds and units of the columns of a motion table; times are checked by their order.
 const COLUMNS: [(Bounds, &str); 7] = [
     (Bounds::Elsewhere, "s"),
     (DISPLACEMENT, "m"),

@@ -14,7 +14,7 @@ pub(super) enum Quantity {
     Number,
 }
 
-/// Units that the header of a table may have, with their size in SI units; the first of each quantity is the SI unit.
+/// Units accepted in the header of a table, with their values in SI units; the first of each quantity is the SI unit.
 const HEADER_UNITS: &[(Quantity, &[&str], f64)] = &[
     (Quantity::Time, &["s", "sec", "seconds"], 1.0),
     (Quantity::Time, &["ms"], 1e-3),
@@ -54,7 +54,7 @@ impl Quantity {
     }
 }
 
-/// A unit of a header, with or without brackets, in SI units. Case counts only where it distinguishes units.
+/// Returns the value in SI units of a unit in a header, with or without brackets. Case matters only where it distinguishes units.
 ///
 /// # Errors
 /// The known units of the quantity.
@@ -80,8 +80,8 @@ pub(super) fn factor(text: &str, quantity: Quantity) -> Result<f64, String> {
     })
 }
 
-/// Returns the factor [-] that converts numbers in a unit of a heading to the unit of a key, such as 1000 from `kN` to `N`. Of units that no
-/// header of a table has, such as `kg/m`, the unit of the key alone is accepted.
+/// Returns the factor [-] that converts numbers in a unit of a heading to the unit of a key, such as 1000 from `kN` to `N`. For a key with a unit
+/// that tables do not have, such as `kg/m`, only this unit is accepted.
 ///
 /// # Errors
 /// The units that would be right.
@@ -102,7 +102,7 @@ pub fn factor_to(si: &str, text: &str) -> Result<f64, String> {
     }
 }
 
-/// Returns whether two units are different ones of the same quantity, as far as their first factors tell, such as `(kN-s)` and `N s`.
+/// Returns whether two units of the same quantity differ, judged by their first factors, such as `(kN-s)` and `N s`.
 pub fn differ(one: &str, other: &str) -> bool {
     let [one, other] = [one, other].map(|text| {
         let text = bare(text);

@@ -158,7 +158,7 @@ fn list_of(kind: Kind) -> Kind {
     }
 }
 
-/// The end of the refusal of a list that would have one of the lengths if its commas were decimal ones.
+/// End of the message on a refused list: a hint if the list would have one of the lengths with decimal commas, otherwise empty.
 pub(super) fn decimal_commas(numbers: &[f64], lengths: &[usize]) -> String {
     let is_whole = |number: &f64| number.fract() == 0.0;
     let pairs = numbers
@@ -243,7 +243,7 @@ impl<T: Value + Default> Value for Vec<T> {
         for (index, value) in self.iter().enumerate().filter(|(_, value)| !is_plain(value)) {
             findings.below(|| format!("[{index}]"), |findings| value.check(key, findings));
             if matches!(T::kind(), Kind::Number | Kind::Numbers) && findings.mistakes.len() > known {
-                return; // one wrong number of a long list is enough
+                return; // one mistake per list of numbers is enough
             }
         }
     }

@@ -48,12 +48,12 @@ impl Water {
     }
 }
 
-/// Fastest water [m/s]; the strongest tidal streams reach 10 m/s.
+/// Bounds of the water velocity [m/s]; the strongest tidal streams reach 10 m/s.
 pub(super) const SPEED: Rule = magnitude(100.0).usual(
     [-SPEED_USUAL, SPEED_USUAL],
     "less than 5 m/s in any direction is usual",
 );
-/// Speed of the fastest currents that moorings are laid in [m/s].
+/// Fastest current that is usual for moorings [m/s].
 pub(super) const SPEED_USUAL: f64 = 5.0;
 
 table! {
@@ -81,7 +81,7 @@ pub struct Waves {
 const PERIOD: Rule = within(0.05, 1e5);
 /// Directions and phases [rad].
 const ANGLE: Rule = magnitude(1e6);
-/// Heights of waves [m]: the highest ever measured had 32 m.
+/// Wave heights [m]; the highest wave ever measured had 32 m.
 const HEIGHT: Rule = positive(100.0);
 
 table! {
@@ -148,9 +148,9 @@ pub enum WaveComponents {
     Number(u64),
 }
 
-/// Components drawn from a spectrum where the scene gives no number [-].
+/// Default number of components drawn from a spectrum [-].
 const COMPONENTS: u64 = 100;
-/// Peakedness of a JONSWAP spectrum where the scene gives none [-], the mean of the measurements.
+/// Default peakedness of a JONSWAP spectrum [-], the mean of the measurements.
 const PEAKEDNESS: f64 = 3.3;
 
 impl Sea {
@@ -178,7 +178,7 @@ impl Sea {
         }
     }
 
-    /// Peakedness γ of the spectrum [-]; 1 makes a Pierson-Moskowitz spectrum of it.
+    /// Peakedness γ of the spectrum [-]; 1 for a Pierson-Moskowitz spectrum.
     pub fn gamma(&self) -> f64 {
         match self.spectrum {
             Some(SpectrumKind::PiersonMoskowitz) => 1.0,
@@ -188,7 +188,7 @@ impl Sea {
 }
 
 impl RegularWave {
-    /// Half the height [m]; `None` unless one of the two is given.
+    /// Half the height [m]; `None` unless either the height or the amplitude is given.
     pub(crate) fn half_height(&self) -> Option<f64> {
         match (self.height, self.amplitude) {
             (Some(height), None) => Some(0.5 * height),
@@ -204,7 +204,7 @@ impl Waves {
         self.seas.iter().map(Sea::variance).sum::<f64>().sqrt()
     }
 
-    /// Duration of the ramp [s], where one of the seas says so.
+    /// Duration of the ramp [s], if one of the seas has one.
     pub fn ramp(&self) -> Option<f64> {
         self.seas.iter().find_map(|sea| sea.ramp)
     }

@@ -1,4 +1,4 @@
-//! Files of waves and currents in the formats of MoorDyn: rows of numbers between blanks.
+//! Files of waves and currents in the formats of MoorDyn: rows of numbers separated by blanks.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
@@ -6,16 +6,16 @@ use std::path::Path;
 use super::input_file;
 use super::units::{self, Quantity};
 
-/// Greatest number of rows that are read.
+/// Maximum number of rows.
 const ROWS_MAX: usize = 100_000;
-/// Lines above the rows of a current, which are not read.
+/// Number of lines above the rows of a current; only the units in the last one are read.
 const CURRENT_HEAD: usize = 3;
 
-/// Rows of amplitude [m], period [s], direction [rad] and phase [rad] from rows of frequency ω [rad/s], real and imaginary part of the
-/// amplitude A [m] and, where it is not 0, direction β [rad]: Σ |A| sin(ωt − kx + arg A), as MoorDyn adds components up.
+/// Reads rows of frequency ω [rad/s], real and imaginary part of the amplitude A [m] and optionally direction β [rad]. Returns rows of
+/// amplitude [m], period [s], direction [rad] and phase [rad] of the components of Σ |A| sin(ωt − kx + arg A), the sum in MoorDyn.
 ///
 /// # Errors
-/// The file, the line and what would be right.
+/// The file and line of the mistake, and its correction.
 pub(super) fn components(path: &Path) -> Result<Vec<[f64; 4]>, String> {
     let mut components = Vec::new();
     for (line, row) in rows(path, &text_of(path)?, 0)? {
@@ -47,10 +47,10 @@ pub(super) fn components(path: &Path) -> Result<Vec<[f64; 4]>, String> {
     Ok(components)
 }
 
-/// Rows of height z [m] and velocity vx, vy [m/s] from rows that also have vz, below three lines of headings.
+/// Reads rows of height z [m] and velocity vx, vy, vz [m/s] below three lines of headings. Returns rows of z, vx and vy; vz must be 0.
 ///
 /// # Errors
-/// The file, the line and what would be right.
+/// The file and line of the mistake, and its correction.
 pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
     let mut profile = Vec::new();
     let text = text_of(path)?;
@@ -74,13 +74,12 @@ pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
     Ok(profile)
 }
 
-/// The text of a file.
 fn text_of(path: &Path) -> Result<String, String> {
     let bytes = input_file::read_table(path, "a table of numbers")?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Units of heights [m] and velocities [m/s], which stand in the last line of headings.
+/// SI values of the units of heights [m] and velocities [m/s] in the last line of headings.
 fn profile_units(path: &Path, text: &str) -> Result<(f64, f64), String> {
     let heading = text.lines().nth(CURRENT_HEAD - 1).unwrap_or_default();
     let wrong = |problem: String| format!("{}, line {CURRENT_HEAD}: {problem}", path.display());
@@ -106,7 +105,7 @@ fn profile_units(path: &Path, text: &str) -> Result<(f64, f64), String> {
     Ok((of(above, Quantity::Length)?, of(flow[0], Quantity::Speed)?))
 }
 
-/// Numbers of every line that has some, with the number of the line; the first `head` lines are skipped.
+/// Numbers of every line that contains any, with the line number; the first `head` lines are skipped.
 fn rows(path: &Path, text: &str, head: usize) -> Result<Vec<(usize, Vec<f64>)>, String> {
     let name = path.display();
     let mut rows = Vec::new();

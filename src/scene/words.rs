@@ -1,7 +1,7 @@
 //! A scene in words: the sentences of `moorline check`.
 //!
 //! The given properties are written by a loop over the property table ([`given`]); each value describes itself ([`super::table::Value::in_words`]).
-//! Sentences on what follows from several keys, and on effects that are not modelled, stand in the modules here.
+//! The modules here write the sentences on consequences of several keys, and on effects that are not modelled.
 
 mod line_types;
 mod lines;
@@ -15,10 +15,10 @@ use super::check::{number, quantity, rounded};
 use super::table::{Choice, Kind, Table};
 use super::{ForceOutput, Format, Frames, Integrator, InterfaceOutput, Output, Reconstruction, Scene};
 
-/// Widest line of the text, in characters.
+/// Maximum width of the text, in characters.
 const WIDTH: usize = 110;
 
-/// Relation of the tensions among the channels to the variables of a line.
+/// Sentence on the relation of the tensions among the channels to the variables of a line.
 const TENSIONS_OF_CHANNELS: &str = "tensions among them are those of segments, as in MoorDyn-C: the last one for FairTen, the first for AnchTen, \
      the mean of both segments at an inner node; `tension_a` and `tension_b` of a line are the forces on the points at its ends, including the \
      weight, drag and inertia of half a segment";
@@ -143,7 +143,7 @@ impl Scene {
     }
 }
 
-/// The given properties of a table that describe themselves, except those in `left_out`: "mass 126 kg/m".
+/// The given properties of a table in words, except those in `left_out`: "mass 126 kg/m".
 fn given<T: Table>(table: &T, left_out: &[&str]) -> Vec<String> {
     let defaults = (T::SCHEMA.defaults)();
     let entries = table.entries().zip(defaults);
@@ -156,7 +156,7 @@ fn given<T: Table>(table: &T, left_out: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// The given properties of a table within a table: "(damping ratios 0.1 and 0.1, circular frequencies 1 and 9 rad/s)".
+/// The given properties of a table within a table, in words: "(damping ratios 0.1 and 0.1, circular frequencies 1 and 9 rad/s)".
 pub(super) fn group<T: Table>(table: &T) -> String {
     format!("({})", given(table, &[]).join(", "))
 }
@@ -187,7 +187,7 @@ fn triple(values: [f64; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// Appends a heading and its entries; nothing where there are none.
+/// Appends a heading and its entries, or nothing if there are no entries.
 fn section(text: &mut String, heading: &str, entries: impl IntoIterator<Item = String>) {
     for (i, entry) in entries.into_iter().enumerate() {
         if i == 0 {
@@ -220,7 +220,7 @@ pub(super) fn paragraph(text: &mut String, indent: &str, sentence: &str) {
     text.push('\n');
 }
 
-/// Five significant digits: enough to recognise a number.
+/// A number with five significant digits, enough to recognise it.
 pub(super) fn significant(value: f64) -> String {
     number(rounded(value, 5))
 }
@@ -230,7 +230,7 @@ pub(crate) fn metres(length: f64) -> String {
     quantity(rounded(length, 4), "m")
 }
 
-/// A part of a whole [-] in percent.
+/// A fraction [-] in percent.
 pub(crate) fn percent(part: f64) -> String {
     format!("{} %", significant(100.0 * part))
 }

@@ -1,14 +1,14 @@
-//! Ends of lines that a host moves, and their impedance at the frequency of the communication points.
+//! Line ends that a host moves, and their impedance at the communication frequency.
 //!
-//! The acceleration of the path jumps at communication points and changes linearly between them. Its velocity errors are periodic with the communication step
-//! h, with amplitudes as 1/k² at the frequencies 2πk/h. With the impedance Z(ω) of the line and that of a long line, Z₀ = √(EA m_t), the
-//! tension error is amplified by
+//! The acceleration of the path jumps at communication points and changes linearly between them. Its velocity errors are periodic with the
+//! communication step h; at the frequencies 2πk/h their amplitudes are proportional to 1/k². With the impedance Z(ω) of the line and that of a long
+//! line, Z₀ = √(EA m_t), the tension error is amplified by
 //!
 //! √(Σ |Z(2πk/h)/Z₀|²/k⁴ / Σ 1/k⁴),   k = 1 … 4,
 //!
-//! which is about 1 between the axial modes of the line and 10 or more at one of them ([`crate::physics::axial_wave`]). The line has its shape at rest. Its modes
-//! shift by some per cent as it moves, and drag damps them: both are represented by a loss factor of the stiffness, which gives the modes a width. At a free
-//! point the other lines carry waves away as long lines would.
+//! which is about 1 between the axial modes of the line and 10 or more at one of them ([`crate::physics::axial_wave`]). The line is taken in its
+//! shape at rest. Its modes shift by some per cent as it moves, and drag damps them: a loss factor of the stiffness represents both effects and gives
+//! the modes a width. At a free point, the other lines are taken as long lines, which carry the waves away.
 
 use std::f64::consts::TAU;
 
@@ -23,31 +23,31 @@ use crate::scene::Integrator;
 
 /// Loss factor of the stiffness [-].
 const LOSS: f64 = 0.05;
-/// Multiples of the frequency of the communication points that count [-].
+/// Number of harmonics of the communication frequency that are included [-].
 const HARMONICS: i32 = 4;
-/// Trailing bits of a communication step that its amplification does not depend on: steps within 1.6 % of each other share one.
+/// Number of trailing bits of a communication step that are ignored: steps within 1.6 % of each other share an amplification.
 const BITS: u32 = f64::MANTISSA_DIGITS - 1 - 6;
 
-/// A line of which a host moves an end, or both.
+/// Line with one end or both ends moved by a host.
 #[derive(Debug, Clone)]
 pub(super) struct MovedLine {
     line: usize,
-    /// Its moved ends, that at B first.
+    /// Moved ends, end B first.
     ends: Vec<MovedEnd>,
 }
 
-/// An end that a host moves.
+/// Line end moved by a host.
 #[derive(Debug, Clone)]
 struct MovedEnd {
     end: End,
     mover: Mover,
     /// Impedance of axial waves, √(EA m_t) [N s/m].
     impedance: f64,
-    /// Equations of the tensions, from the other end to this one.
+    /// Tension equations, from the other end to this one.
     rows: Vec<TensionRow>,
-    /// Mass of the half node [kg].
+    /// Mass of the half segment [kg].
     mass: f64,
-    /// Mass [kg] and impedance of other lines [N s/m] at the other end, if it is a free point.
+    /// Mass [kg] of the other end and impedance of the other lines there [N s/m], if it is a free point.
     beyond: Option<[f64; 2]>,
     /// Leading bits of the latest communication step, and its amplification [-].
     latest: (u64, f64),
@@ -63,7 +63,7 @@ enum Mover {
 }
 
 impl MovedLine {
-    /// Lines of a model at rest with axial waves that a host moves.
+    /// Returns the lines with axial waves that a host moves, from a model and its state at rest.
     pub(super) fn all(model: &Model, at_rest: &State) -> Vec<MovedLine> {
         if model.solver.integrator == Integrator::QuasiStatic {
             return Vec::new();
@@ -84,14 +84,14 @@ impl MovedLine {
         lines.filter(|line| !line.ends.is_empty()).collect()
     }
 
-    /// Tension of the segment at its moved end [N].
+    /// Tension of the segment at the first moved end [N].
     pub(super) fn tension(&self, model: &Model, state: &State) -> f64 {
         let (line, state) = (&model.lines[self.line], &state.lines[self.line]);
         let segment = at(line, self.ends[0].end).1;
         reaction::tension(line, state, segment, model.solver.negative_tension)
     }
 
-    /// Excitation of axial waves at its moved ends, Σ A Z |J| between two paths [N/s], with communication steps of a length [s].
+    /// Excitation of axial waves at the moved ends, Σ A Z |J| between two paths [N/s], for a communication step of a given length [s].
     pub(super) fn excitation(&mut self, paths: [&Paths; 2], step: f64) -> f64 {
         let ends = self.ends.iter_mut();
         ends.map(|end| end.impedance * end.mover.jump(paths) * end.amplification(step))
@@ -99,7 +99,7 @@ impl MovedLine {
     }
 }
 
-/// Sources of the motion of the points that a host moves.
+/// Returns the source of motion of every point; `None` if no host moves it.
 fn movers(model: &Model) -> Vec<Option<Mover>> {
     let mut coupled = 0..;
     let mover = |point: &Point| match &point.role {
@@ -138,7 +138,7 @@ impl MovedEnd {
         }
     }
 
-    /// Amplification of the tension error by the axial modes of the line with communication steps of a length [s], at least 1 [-].
+    /// Amplification of the tension error by the axial modes of the line for a communication step [s], at least 1 [-].
     fn amplification(&mut self, step: f64) -> f64 {
         let leading = step.to_bits() >> BITS;
         if self.latest.0 != leading {
@@ -148,7 +148,7 @@ impl MovedEnd {
         self.latest.1
     }
 
-    /// The same at a circular frequency of the communication points [rad/s].
+    /// Amplification of the tension error at a communication frequency [rad/s], at least 1 [-].
     fn amplification_at(&self, frequency: f64) -> f64 {
         let mut sums = [0.0; 2];
         for k in (1..=HARMONICS).map(f64::from) {
@@ -175,7 +175,7 @@ impl MovedEnd {
     }
 }
 
-/// Node at the end of a line, and the segment there.
+/// Node and segment at an end of a line.
 fn at(line: &Line, end: End) -> (usize, usize) {
     let node = line.end_node(end);
     (node, node.min(line.segment_count() - 1))
@@ -188,7 +188,7 @@ fn impedance(line: &Line, end: End) -> f64 {
     (line.segments.in_motion(segment).0 * mass).sqrt()
 }
 
-/// Equations of the tensions of a line at rest, from the other end to this one, and the mass of the half node at this end along the line [kg].
+/// Tension equations of a line at rest, from the other end to this one, and the tangential mass of the half segment at this end [kg].
 fn rows(model: &Model, at_rest: &State, index: usize, end: End) -> (Vec<TensionRow>, f64) {
     let (line, position) = (&model.lines[index], &at_rest.lines[index].position);
     let (count, nodes) = (line.segment_count(), &line.nodes);
@@ -226,7 +226,7 @@ fn rows(model: &Model, at_rest: &State, index: usize, end: End) -> (Vec<TensionR
     ((0..count).map(row).collect(), nodes.mass_tangent[numbered(count)])
 }
 
-/// Mass [kg], with that of the half node there, and impedance of other lines [N s/m] at the other end of a line, if it is a free point.
+/// Mass at the other end of a line, including the half segment there [kg], and impedance of the other lines [N s/m], if that end is a free point.
 fn beyond(model: &Model, index: usize, end: End) -> Option<[f64; 2]> {
     let line = &model.lines[index];
     let (other, node) = match end {

@@ -1,38 +1,40 @@
 //! Quantities for a host that solves for the motion of a body together with its mooring: mass of the mooring's ends, forces of the coming step, and
 //! derivatives of the forces with respect to the motion at the end of a step.
 //!
-//! **Why explicit coupling needs a heavy body.** A host that steps a body of mass m with the force of the last communication point feeds this force back
-//! one step h late. The force consists of −M a of the end's half element, −Z v of the waves that the end radiates into the line, with Z = √(EA m_t) along
-//! it, and −K x of the geometry. The delayed inertia requires m > M at any h (added-mass instability: Causin, Gerbeau & Nobile (2005), Comput. Methods
-//! Appl. Mech. Eng. 194, 4506-4527); the delayed damper requires m > ½Zh, since v₊ = v − (h/m) Z v₋ has a root outside the unit circle above h Z/m = 1 to
-//! 2, depending on the lag. On the OC3 line M is 950 kg and Z 170 t/s: above h = 0.01 s the impedance governs, not the mass of the end, and moving M alone
-//! to the host's side gains little.
+//! **Why explicit coupling needs a heavy body.** A host that steps a body of mass m with the force of the last communication point feeds this force
+//! back one step h late. The force consists of −M a of the half segment at the end, −Z v of the waves that the end radiates into the line, with Z =
+//! √(EA m_t) along it, and −K x of the geometry. The delayed inertia requires m > M at any h (added-mass instability: Causin, Gerbeau & Nobile
+//! (2005), Comput. Methods Appl. Mech. Eng. 194, 4506-4527); the delayed damper requires m > ½Zh, since v₊ = v − (h/m) Z v₋ has a root outside the
+//! unit circle above h Z/m = 1 to 2, depending on the lag. On the OC3 line M is 950 kg and Z 170 t/s: above h = 0.01 s the impedance governs, not the
+//! mass of the end, and moving only M to the host's side gains little.
 //!
-//! **The force of the coming step** ([`Simulation::impedance`]). Over a step the force at its end is a function of the state of the line, which is known,
-//! and of position x and velocity v that the end reaches; the cubic between them is that of [`Reconstruction::Interpolate`](crate::scene::Reconstruction).
+//! **The force of the coming step** ([`Simulation::impedance`]). The force at the end of a step is a function of the known state of the line and of
+//! the position x and velocity v that the line end reaches; the cubic to them is that of
+//! [`Reconstruction::Interpolate`](crate::scene::Reconstruction).
 //! To first order
 //!
 //! F(t+h) = F₀ − C v − K x − M a,   K = −∂F'/∂x,   C = −∂F'/∂v,   F' = F + M a,
 //!
-//! where F₀ is F' + C v + K x of a trial step from the present velocity at the mean acceleration of the last step. The neglected terms are of second order
-//! in the distance between this prediction and the motion, O(h³), except for the share of the load of the end that depends on its acceleration
-//! ([`LineEnd`](crate::dynamics::reaction::LineEnd)), O(h). A host that moves M, C and K to its own side, (m + M) a + C v + K x = f + F₀ with the Newmark or generalised-α relations between
-//! a, v and x, solves body and line together, as a Rosenbrock method solves a system; this is stable for any mass, without iterations or repeated steps, if
-//! its own integration is. The resulting position is then given for the true step. Interface conditions of this kind are Robin conditions (Badia, Nobile &
-//! Vergara (2008), J. Comput. Phys. 227, 7027-7051) and, where K is zero and C is Z, those of transmission-line modelling (Krus, Jansson & Palmberg (1991),
-//! Simulation of fluid power transmission lines).
+//! where F₀ is F' + C v + K x of a trial step from the present velocity with the mean acceleration of the last step. The neglected terms are of
+//! second order in the distance between this prediction and the motion, O(h³), except for the part of the end load that depends on the acceleration
+//! of the end ([`reaction`]), O(h). A host that moves M, C and K to its own side, (m + M) a + C v + K x = f + F₀ with the Newmark or generalised-α
+//! relations between a, v and x, solves body and line together, as a Rosenbrock method solves a system. If its own integration is stable, this is
+//! stable for any mass, without iterations or repeated steps. The resulting position is then given for the true step. Interface conditions of this
+//! kind are Robin conditions (Badia, Nobile & Vergara (2008), J. Comput. Phys. 227, 7027-7051) and, where K is zero and C is Z, those of
+//! transmission-line modelling (Krus, Jansson & Palmberg (1991), Simulation of fluid power transmission lines).
 //!
-//! The inertia is kept apart because the acceleration at the end of the cubic, (6(x₀ − x) + h(2v₀ + 4v))/h², is not the host's: it turns
-//! differences of positions into forces M·6/h².
+//! The inertia is a separate term because the acceleration at the end of the cubic, (6(x₀ − x) + h(2v₀ + 4v))/h², differs from the host's: it
+//! multiplies differences of positions by 6M/h².
 //!
-//! **Derivatives** ([`Simulation::derivative`]). The last step is repeated from the state at its start, with the end of the path at x ± δ or v ± δ/h, and
-//! the quotient of central differences is taken. Every integrator, contact, friction and the seabed are thus differentiated as they were computed: the
-//! result is the exact derivative of the discrete step, except for O(δ²) and rounding over δ. δ is 1e-8 of the longest line: rounding of positions is 1e-8
-//! of it, and it is small compared with ah²/6, the displacement that changes the acceleration at the end of the cubic by that of the motion itself, a,
-//! beyond which the load of the last element is not linear. Derivatives are one-sided averages where a node lands, slackens or slips within δ. Each
-//! component of motion to differentiate with respect to costs a pair of steps; without any, nothing is computed.
+//! **Derivatives** ([`Simulation::derivative`]). The last step is repeated from the state at its start, with the end of the path at x ± δ or v ± δ/h,
+//! and the central difference quotient is taken. Every integrator, contact, friction and the seabed are thus differentiated as they were computed:
+//! the result is the exact derivative of the discrete step, except for O(δ²) and rounding over δ. δ is 1e-8 of the longest line. Rounding of
+//! positions is 1e-8 of δ. δ is small compared with ah²/6, the displacement that changes the acceleration at the end of the cubic by the acceleration
+//! a of the motion itself, beyond which the load of the last element is not linear. Where a node lands, slackens or slips within δ, derivatives are
+//! averages of the one-sided derivatives. Each component of motion to differentiate with respect to costs a pair of steps; without any, nothing is
+//! computed.
 //!
-//! Before the first step, the force is that of statics, and is differentiated by solving them again.
+//! Before the first step, the force is static, and its derivatives are differences of further static solutions.
 //!
 //! Source: derived here.
 
@@ -49,9 +51,9 @@ use crate::scene::Integrator;
 pub(super) use trial::StepStart;
 use trial::{Sides, Trial};
 
-/// Fraction of a step over which time derivatives are found [-].
+/// Interval between the samples from which time derivatives are computed, as a fraction of the step [-].
 const PART: f64 = 1e-3;
-/// Reason for which a vessel has no derivatives.
+/// Message for a vessel without derivatives.
 const NO_RATES: &str = "the pitch of the vessel is 90 degrees, where roll and yaw have no unique rates";
 
 /// Component of the motion at the end of a step.
@@ -61,7 +63,7 @@ pub struct EndMotion {
     pub body: Body,
     /// Axis: x, y, z and of a vessel roll, pitch, yaw (of a velocity: rotation about x, y, z), 0 to 5.
     pub axis: usize,
-    /// True for the velocity, at the same displacement; else the displacement, at the same velocity.
+    /// True for a change of velocity at constant displacement, false for a change of displacement at constant velocity.
     pub is_velocity: bool,
 }
 
@@ -79,7 +81,7 @@ pub struct Impedance {
     pub damping: Matrix6<f64>,
 }
 
-/// Mass and impedance of the bodies, each evaluated when first read.
+/// Mass and impedance of the bodies, each evaluated when it is first read.
 #[derive(Debug, Clone)]
 pub(super) struct InterfaceValues {
     masses: Vec<OnceCell<Matrix6<f64>>>,
@@ -88,7 +90,7 @@ pub(super) struct InterfaceValues {
 }
 
 impl InterfaceValues {
-    /// Allocates for a model.
+    /// Allocates the values for the bodies of a model.
     pub(super) fn new(model: &Model) -> InterfaceValues {
         let bodies = model.bodies().count();
         InterfaceValues {
@@ -105,7 +107,7 @@ impl Simulation {
         values.get_or_init(|| InterfaceValues::new(&self.model))
     }
 
-    /// Force [N] and moment [N m] on a body, with [`Simulation::end_mass`] times its acceleration added.
+    /// Force [N] and moment [N m] on a body, plus [`Simulation::end_mass`] times its acceleration.
     pub fn force_without_inertia(&self, body: Body) -> Vector6<f64> {
         let (model, snapshot) = (&*self.model, &self.snapshot);
         let acceleration = match body {
@@ -122,8 +124,8 @@ impl Simulation {
         Vector6::from(self.total_force(body)) + self.end_mass(body) * acceleration
     }
 
-    /// Mass of the mooring's ends on a body: −∂F/∂a at the present positions and velocities, of force [kg, kg m] and moment [kg m, kg m²] by
-    /// acceleration and angular acceleration; added mass and the bodies of points are included. Zero in quasi-static runs.
+    /// Mass of the mooring's ends on a body, −∂F/∂a at the present positions and velocities: force [kg, kg m] and moment [kg m, kg m²] in rows,
+    /// acceleration and angular acceleration in columns. It includes added mass and the bodies of points. Zero in quasi-static runs.
     pub fn end_mass(&self, body: Body) -> Matrix6<f64> {
         let mass = &self.interface_values().masses[self.snapshot.inputs.place(body)];
         *mass.get_or_init(|| self.evaluate_end_mass(body))
@@ -156,7 +158,7 @@ impl Simulation {
         sum
     }
 
-    /// Mass [kg] of a point: of the ends of its lines and its own.
+    /// Mass matrix of a point [kg]: the masses of the line ends attached to it and its own mass.
     fn point_mass(&self, point: usize) -> Matrix3<f64> {
         let at = self.snapshot.state.points[point];
         let of_line = |&(line, end): &(usize, End)| self.at_end(line, end, &at).mass();
@@ -172,8 +174,8 @@ impl Simulation {
         of_lines + Matrix3::from_columns(&axes.map(|axis| still - pushed(axis)))
     }
 
-    /// Force of the mooring on a body over the coming step, whose length is taken as that of the last one, or as the scene's interval for the first. `None`
-    /// where the step fails, or where the attitude of a vessel has no unique rates.
+    /// Force of the mooring on a body in the coming step. The step is taken as long as the last one; the first is as long as the scene's interval.
+    /// `None` if the step fails or the attitude of a vessel has no unique rates.
     pub fn impedance(&self, body: Body) -> Option<&Impedance> {
         let impedance = &self.interface_values().impedances[self.snapshot.inputs.place(body)];
         impedance.get_or_init(|| self.evaluate_impedance(body)).as_ref()
@@ -204,14 +206,14 @@ impl Simulation {
         })
     }
 
-    /// [`Simulation::vessel_stiffness`], evaluated once.
+    /// Returns [`Simulation::vessel_stiffness`], evaluated once in a state.
     pub fn static_stiffness(&self, vessel: usize) -> Option<&[[f64; 6]; 6]> {
         let stiffness = &self.interface_values().stiffnesses[vessel];
         stiffness.get_or_init(|| self.vessel_stiffness(vessel)).as_ref()
     }
 
-    /// Derivatives of the values that `read` returns with respect to a component of the motion at the end of the last step, by differences of repeated
-    /// steps (see the module). Before the first step, those of the static values.
+    /// Returns the derivatives of the values that `read` returns with respect to a component of the motion at the end of the last step, from
+    /// differences of repeated steps (see the module). Before the first step, these are the derivatives of the static values.
     ///
     /// # Errors
     /// A sentence with the reason.
@@ -230,8 +232,8 @@ impl Simulation {
         Ok(pairs.map(|(above, below)| (above - below) / apart).collect())
     }
 
-    /// Time derivatives of the values that `read` returns at the end of the last step: those of the parabola through the values there and one and two
-    /// thousandths of the step earlier, along the same path.
+    /// Returns the time derivatives of the values that `read` returns, at the end of the last step: the slope of the parabola through the values at
+    /// the end and one and two thousandths of the step earlier, along the same path.
     ///
     /// # Errors
     /// As [`Simulation::derivative`].
@@ -250,7 +252,7 @@ impl Simulation {
     }
 }
 
-/// Six components of two vectors.
+/// Joins two vectors into one of six components.
 fn joined(first: Vector3<f64>, second: Vector3<f64>) -> Vector6<f64> {
     Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
 }

@@ -1,9 +1,9 @@
-//! Flow of the water at the nodes of the lines, as a host gives it in place of waves.
+//! Water flow at the nodes of the lines, given by a host instead of waves.
 //!
-//! The host gives velocity u and acceleration a of the water at the places of the nodes, once for every communication step. With
-//! `input_reconstruction = "interpolate"` these hold for the end t + h of the coming step and for the positions r + h v that the nodes will reach if they
-//! keep their velocities. Over the step the velocity follows the cubic between both ends with the slopes a, and the acceleration the parabola through its
-//! last three values, with errors h⁴u⁗/384 and h³a‴/16. Built-in waves differ in the acceleration alone: their cubic has the exact slopes.
+//! The host gives velocity u and acceleration a of the water at the positions of the nodes, once for every communication step. With
+//! `input_reconstruction = "interpolate"` these hold for the end t + h of the coming step and for the positions r + h v that the nodes will reach if
+//! they keep their velocities. Over the step the velocity follows the cubic between both ends with the slopes a, and the acceleration the parabola
+//! through its last three values, with errors h⁴u⁗/384 and h³a‴/16. Built-in waves differ only in the acceleration: its cubic has the exact slopes.
 //!
 //! Otherwise they hold for the start t of the step and for the present positions. With the previous values, given h₀ earlier, the flow at the end is
 //! predicted as
@@ -14,7 +14,7 @@
 //! â and j, so that neither jumps. The difference of the velocities, rather than a, is extrapolated, since it includes the change of u due to the motion of
 //! the node through the water. Without previous values, at the start or where the step has more than doubled, û = u + h a and â = a.
 //!
-//! A point moves in the flow of the first line end that is attached to it. Source: derived here.
+//! The flow at a point is that at the first line end attached to it. Source: derived here.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -27,17 +27,17 @@ use crate::scene::{Reconstruction, SceneError};
 
 /// Components of the flow at a node: velocity along x, y, z [m/s], then acceleration [m/s²].
 pub const FLOW_COMPONENTS: [&str; 6] = ["vx", "vy", "vz", "ax", "ay", "az"];
-/// Reason for which a host cannot give the flow along a line.
+/// Message for a line that takes no flow from a host.
 pub const NO_FLOW: &str = "it takes no flow of the water: that needs `flow = \"host\"` in [water], and a `diameter` of its line type";
-/// Greatest velocity [m/s], that of a current in a scene, and acceleration [m/s²], a thousand times that of gravity.
+/// Limits of velocity [m/s], as for a current in a scene, and of acceleration [m/s²], a thousand times that of gravity.
 const LIMITS: [f64; 2] = [100.0, 1e4];
-/// Length of a step over that of the step before up to which rates are extrapolated from one to the other [-].
+/// Greatest ratio of a step to the previous one for which rates are extrapolated [-].
 const GROWTH_MAX: f64 = 2.0;
 
-/// Flow of the water at the nodes of the lines.
+/// Water flow at the nodes of the lines.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaterFlow {
-    /// Components at the nodes from end A to end B, by line: empty for a line without a given flow; no lines if none is given at all.
+    /// Components at the nodes of each line, from end A to end B: empty for a line that takes no flow; no lines if the host gives none.
     lines: Vec<[Vec<f64>; 6]>,
 }
 
@@ -54,7 +54,7 @@ impl Clone for WaterFlow {
 }
 
 impl WaterFlow {
-    /// Water at rest, with room for the lines that take a flow.
+    /// Water at rest, allocated for the lines that take a flow.
     pub fn still(model: &Model) -> WaterFlow {
         let lines = model.lines.iter().filter(|_| model.host_flow);
         WaterFlow {
@@ -64,7 +64,7 @@ impl WaterFlow {
         }
     }
 
-    /// Number of the nodes of a line at which a host gives the flow [-]; 0 where the line takes none.
+    /// Number of nodes of a line at which a host gives the flow [-]; 0 if the line takes none.
     pub fn node_count(&self, line: usize) -> usize {
         self.lines.get(line).map_or(0, |[vx, ..]| vx.len())
     }
@@ -74,7 +74,7 @@ impl WaterFlow {
         &self.lines[line][component]
     }
 
-    /// The same, to be set.
+    /// Component of [`FLOW_COMPONENTS`] at the nodes of a line, to be set [m/s, m/s²].
     pub fn component_mut(&mut self, line: usize, component: usize) -> &mut [f64] {
         &mut self.lines[line][component]
     }
@@ -105,7 +105,7 @@ impl WaterFlow {
         ]
     }
 
-    /// The first line with a value beyond the limits, the component and the node.
+    /// Line, component and node of the first value beyond the limits.
     fn beyond(&self) -> Option<(usize, usize, usize)> {
         let columns = |(line, columns): (usize, &[Vec<f64>; 6])| {
             columns.iter().enumerate().find_map(|(component, values)| {
@@ -130,13 +130,13 @@ impl WaterFlow {
         )
     }
 
-    /// Refuses values of a start beyond the limits.
+    /// Refuses start values beyond the limits.
     pub(super) fn check_start(&self, model: &Model) -> Result<(), SceneError> {
         let beyond = self.beyond();
         beyond.map_or(Ok(()), |at| Err(SceneError::new("", self.refusal(model, at))))
     }
 
-    /// Refuses values of a step from a time [s] beyond the limits.
+    /// Refuses values beyond the limits for a step from a time [s].
     pub(super) fn check_step(&self, model: &Model, time: f64) -> Result<(), StepError> {
         let Some(at @ (line, _, node)) = self.beyond() else {
             return Ok(());
@@ -146,27 +146,27 @@ impl WaterFlow {
     }
 }
 
-/// Meaning of the flow that a host gave last, for the coming step.
+/// Treatment of the latest flow of a host in the coming step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Course {
-    /// The flow at the end or at the start of the step, as the scene says.
+    /// The flow holds for the end or the start of the step, as the scene specifies.
     Given,
-    /// That of the previous step: the host has not given the next one.
+    /// The flow of the previous step is extrapolated: the host has not given the next one.
     Continued,
 }
 
-/// The coming step of the flow.
+/// Flow over the coming step.
 struct Coming<'a> {
     model: &'a Model,
     course: Course,
-    /// Flow that the host gives now, and the one before.
+    /// Present and previous flow that the host gave.
     given: [&'a WaterFlow; 2],
     /// Start and end [s].
     times: [f64; 2],
 }
 
 impl Coming<'_> {
-    /// Motion at both ends of the step at a node of a line; `old` is the motion over the step before, of the length h₀ [s].
+    /// Water motion at both ends of the step at a node of a line; `old` is the motion over the previous step, of length h₀ [s].
     fn ends(&self, (line, node): (usize, usize), old: [&Orbit; 2], h0: f64) -> [Orbit; 2] {
         let [earlier, start] = old;
         let h = self.times[1] - self.times[0];
@@ -210,7 +210,7 @@ impl Coming<'_> {
         }
     }
 
-    /// Motion over the step at some nodes of a line, following that over the previous step.
+    /// Lays out the water motion over the step at some nodes of a line, continuing that over the previous step.
     fn extend(&self, line: usize, nodes: std::ops::Range<usize>, old: &WaveSpan, next: &mut WaveSpan) {
         next.times = self.times;
         let [before, after] = &mut next.ends;
@@ -224,7 +224,7 @@ impl Coming<'_> {
     }
 }
 
-/// Line and node whose flow a point moves in: the first end attached to it that is not released, else the first.
+/// Line and node that give the flow at a point: the first end attached to it that is not released, else the first end.
 fn source(model: &Model, state: &State, point: &Point) -> Option<(usize, usize)> {
     let is_joined = |(line, end): &&(usize, End)| !state.lines[*line].released[*end as usize];
     let joined = point.attached.iter().find(is_joined);
@@ -232,7 +232,7 @@ fn source(model: &Model, state: &State, point: &Point) -> Option<(usize, usize)>
     Some((*line, model.lines[*line].end_node(*end)))
 }
 
-/// Flow of a state from its start time on; none where no host gives one.
+/// Initial flow of a state; `None` if no host gives a flow.
 pub(super) fn begin(model: &Model, state: &State, flow: &WaterFlow) -> Option<WaveSpans> {
     if !model.host_flow {
         return None;
@@ -264,8 +264,9 @@ pub(super) fn begin(model: &Model, state: &State, flow: &WaterFlow) -> Option<Wa
 }
 
 impl Simulation {
-    /// Position at which a host is to give the next flow for a node of a line [m]: the present position of the node or, if the flow is for the end of the
-    /// coming step, its position then at constant velocity. That step is taken as long as the last one, the first as long as the scene's interval.
+    /// Position for which a host must give the next flow at a node of a line [m]: the present position of the node or, if the flow holds for the end
+    /// of the coming step, its position then at constant velocity. The coming step is taken as long as the last one, the first as long as the scene's
+    /// interval.
     pub fn flow_place(&self, line: usize, node: usize) -> Vector3<f64> {
         let (model, snapshot) = (&*self.model, &self.snapshot);
         let shape = &snapshot.state.lines[line];
@@ -277,7 +278,7 @@ impl Simulation {
         shape.position[node] + ahead * shape.velocity[node]
     }
 
-    /// Lays out the flow over the next communication step [s]; that of the snapshot stays as it is.
+    /// Lays out the flow over the next communication step [s]; the flow in the snapshot does not change.
     pub(super) fn extend_flow(&mut self, step: f64, course: Course) {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let Some(old) = state.waves.as_ref().filter(|_| model.host_flow) else {
@@ -308,7 +309,7 @@ impl Simulation {
         }
     }
 
-    /// Keeps the flow that the host gave, where the next step needs it.
+    /// Stores the flow that the host gave, if the next step needs it.
     pub(super) fn keep_flow(&mut self) {
         if self.model.host_flow && self.model.solver.input_reconstruction != Reconstruction::Interpolate {
             let snapshot = &mut self.snapshot;

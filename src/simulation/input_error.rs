@@ -11,20 +11,21 @@
 //!
 //! √((2.5 e)² + (A Z ⟨|J|⟩h/12 / σ)²).
 //!
-//! with the amplification A by axial modes at the frequency of the communication points ([`super::axial_response`]). The second part is that of the
-//! line where it is greatest; it is recorded for every line while that is tight, over σ or a hundredth of the mean tension if that is more, and is
-//! the sum over both ends where a host moves both. It dominates where the tension is small and follows the acceleration of the end, as on cables and
-//! risers. ⟨|J|⟩ is used in place of √⟨J²⟩, so that one jump in the acceleration of the motion itself does not count for ten periods. A path that is
-//! interpolated passes through the samples, m = 0; its velocities, where the host gives none, have errors δ too, and δ = J h/12 takes the place of
+//! where A is the amplification by axial modes at the communication frequency ([`super::axial_response`]). The second part is that of the line where
+//! it is greatest. It is recorded for every line while the line is tight, relative to σ or to a hundredth of the mean tension, whichever is greater;
+//! if a host moves both ends, it is the sum over both. It dominates where the tension is small and follows the acceleration of the end, as on cables
+//! and risers. ⟨|J|⟩ is used instead of √⟨J²⟩, so that one jump in the acceleration of the motion itself does not count for ten periods. An
+//! interpolated path passes through the samples, m = 0; if the host gives no velocities, those of the path have errors δ too, and δ = J h/12 replaces
 //! m/h. A path that jumps has jumps m.
 //!
-//! With displacements only and 12 to 40 steps per period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and `taut_polyester`,
-//! and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities, up to 26 times, where both are small. Interpolated displacements: 2.5
-//! to 17 times and 0.8 to 5 times. Jumps on lines other than cables: 1.1 to 4 times. It leaves out the curvature of interpolated cubics with exact
-//! velocities, (ωh)²/12 of an acceleration of frequency ω: 2.3 % with 12 steps per period, 0.2 % with 40. The error falls with h³ or faster, as m/h does.
+//! With displacements only and 12 to 40 steps per period, the estimate is 1.8 to 15 times the error on `lindahl_fast`, `oc3_catenary` and
+//! `taut_polyester`, and 0.95 to 3 times the error on `power_cable` and `lazy_wave`; with velocities, it is up to 26 times the error, where both are
+//! small. With interpolated displacements, these factors are 2.5 to 17 and 0.8 to 5. With jumps, on lines other than cables, the factor is 1.1 to 4.
+//! The estimate excludes the curvature of interpolated cubics with exact velocities, (ωh)²/12 of an acceleration of frequency ω: 2.3 % with 12 steps
+//! per period, 0.2 % with 40. The error falls with h³ or faster, as m/h does.
 //!
-//! Mean values decay with a time constant of ten periods of the frequency √(⟨a²⟩/⟨v²⟩), with the acceleration a. The first samples, which do not determine
-//! a motion, are not counted. The fastest part of the motion dominates the measure, as it does the error of tension.
+//! Mean values decay with a time constant of ten periods of the frequency √(⟨a²⟩/⟨v²⟩), with the acceleration a. The first samples do not determine a
+//! motion and are not recorded. The fastest part of the motion dominates the measure, as it dominates the error of tension.
 
 use std::f64::consts::TAU;
 
@@ -46,33 +47,33 @@ const JUMP: f64 = 12.0;
 const PERIODS: f64 = 10.0;
 /// Periods before a warning [-].
 const PERIODS_MIN: f64 = 3.0;
-/// Number of samples from the start that are not counted [-].
+/// Number of initial samples that are not recorded [-].
 const SAMPLES_MIN: usize = 8;
-/// Share of the scene's size below which an error has no effect [-].
+/// Error below which the motion is taken as exact, relative to the scene's size [-].
 const NEGLIGIBLE: f64 = 1e-7;
-/// Least standard deviation of a tension to which its errors are related, over its mean [-].
+/// Least standard deviation of a tension to which its errors are related, relative to its mean [-].
 pub(crate) const STILL_TENSION: f64 = 0.01;
-/// Part of the tolerance that the inputs may take [-]: the mesh takes 0.8, and squares of the errors add.
+/// Fraction of the tolerance available for the inputs [-]: the mesh takes 0.8, and squares of the errors add.
 const PART: f64 = 0.6;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;
 
-/// Mean squares of the motion given and of the error of its path.
+/// Mean squares of the given motion and of the error of its path.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct InputRecord {
     motion: MotionRecord,
-    /// Of the lines that a host moves.
+    /// Records of the lines that a host moves.
     lines: Vec<LineRecord>,
 }
 
-/// Record of the motion given.
+/// Record of the given motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct MotionRecord {
-    /// Samples so far, up to the number not counted [-].
+    /// Number of samples so far, at most [`SAMPLES_MIN`] [-].
     samples: usize,
-    /// Time in the sums [s].
+    /// Time covered by the sums [s].
     time: f64,
-    /// Σ m²/h, of the interpolated path Σ δ²h [m²/s].
+    /// Σ m²/h, or Σ δ²h for an interpolated path [m²/s].
     missed: f64,
     /// Σ v² h [m²/s].
     speed: f64,
@@ -104,8 +105,8 @@ impl MotionRecord {
         recorded
     }
 
-    /// Records the newest sample of the paths `after`, which continue those `before`, at the end of the first of two `gaps` between samples [s]. Returns the part
-    /// of the earlier sums that is kept.
+    /// Records the newest sample of the paths `after`, which continue the paths `before`. `gaps` are the latest two intervals between samples, newest
+    /// first [s]. Returns the fraction of the earlier sums that is kept.
     #[inline(never)]
     fn take(
         &mut self,
@@ -136,7 +137,7 @@ impl MotionRecord {
         self.add(squares, gaps[0])
     }
 
-    /// Adds the squares of a sample after a step [s]; returns the part of the earlier sums that is kept.
+    /// Adds the squares of a sample after a step [s]; returns the fraction of the earlier sums that is kept.
     fn add(&mut self, [missed, speed, bend]: Squares, step: f64) -> f64 {
         let turned = step * self.frequency() / TAU;
         let kept = (1.0 - turned / PERIODS).max(0.5);
@@ -157,7 +158,7 @@ impl MotionRecord {
         }
     }
 
-    /// Estimated relative error of the motion [-]; 0 where the error is negligible compared with a size [m].
+    /// Estimated relative error of the motion [-]; 0 if the error is negligible compared with a size [m].
     fn error(&self, size: f64) -> f64 {
         let negligible = NEGLIGIBLE * size / self.step;
         match self.speed <= 0.0 || self.missed <= negligible * negligible * self.time {
@@ -168,7 +169,8 @@ impl MotionRecord {
 }
 
 impl LineRecord {
-    /// Records a line with its tension in a state, from the paths before and after it; `kept` is the part of the earlier sums that is kept.
+    /// Records the tension of a line in a state and its excitation between the paths before and after it; `kept` is the fraction of the earlier sums
+    /// that is kept.
     fn take(
         &mut self,
         line: &mut MovedLine,
@@ -186,7 +188,7 @@ impl LineRecord {
         self.tension[1] = kept * self.tension[1] + step * tension * tension;
     }
 
-    /// Estimated error of tension by axial waves over its variation [-], after a `time` in the sums [s].
+    /// Estimated error of tension due to axial waves over its variation [-]; `time` is the time covered by the sums [s].
     fn error(&self, time: f64) -> f64 {
         let [mean, square] = self.tension.map(|sum| sum / time);
         let deviation = (square - mean * mean).max(0.0).sqrt();
@@ -213,7 +215,7 @@ impl InputRecord {
         self.lines.clone_from(&other.lines);
     }
 
-    /// Estimated error of tension over its variation [-]; 0 where the error of the motion is negligible compared with a size [m].
+    /// Estimated error of tension over its variation [-]; 0 if the error of the motion is negligible compared with a size [m].
     fn error(&self, size: f64) -> f64 {
         match self.motion.error(size) {
             0.0 => 0.0,
@@ -233,7 +235,7 @@ fn rates([newest, last, second]: [Vector3<f64>; 3], gaps: [f64; 2]) -> [Vector3<
 }
 
 impl Simulation {
-    /// Writes the record that includes the sample of the next step, whose paths are laid out.
+    /// Updates the next record with the sample of the coming step, whose paths are laid out.
     pub(super) fn record_inputs(&mut self) {
         let (snapshot, paths) = (&self.snapshot, [&*self.snapshot.paths, &*self.paths]);
         let record = &mut self.next_record;
@@ -253,13 +255,13 @@ impl Simulation {
         }
     }
 
-    /// Estimated error of tension, RMS over its standard deviation, from the path between the host's samples over
-    /// the last ten periods of the motion [-].
+    /// Estimated RMS error of tension over its standard deviation [-], caused by the path between the host's samples over the last ten periods of the
+    /// motion.
     pub fn input_error(&self) -> f64 {
         self.snapshot.input_record.error(self.scale.size)
     }
 
-    /// Warning on a host's inputs if the error of the path between them exceeds what the tolerance allows.
+    /// Warning on a host's inputs if the error of the path between them exceeds the limit that follows from the tolerance.
     pub fn input_warning(&self) -> Option<String> {
         let record = &self.snapshot.input_record.motion;
         let (error, allowed) = (self.input_error(), PART * self.model.solver.tolerance);
@@ -299,7 +301,7 @@ impl Simulation {
     }
 }
 
-/// Positive number with one digit, rounded down.
+/// Rounds a positive number down to one significant digit.
 fn rounded_down(number: f64) -> f64 {
     let unit = 10.0_f64.powi(number.log10().floor() as i32);
     let digits = (number / unit).floor().max(1.0);

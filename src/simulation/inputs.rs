@@ -1,4 +1,4 @@
-//! Inputs of a host to a simulation: positions of points and vessels, releases of lines, length changes of winches, flow of the water.
+//! Inputs of a host to a simulation: positions of points and vessels, releases of lines, length changes of winches, water flow.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -14,16 +14,16 @@ pub struct Inputs {
     points: usize,
     /// Inputs of all points, then of all vessels.
     bodies: Vec<BodyInput>,
-    /// Release command of each line: detaches it, permanently, from the point that its scene names.
+    /// Release command of each line: detaches the line permanently from the point named in the scene.
     pub releases: Vec<bool>,
-    /// Target lengths that the winches have paid out beyond those of the scene, negative for length hauled in, by line [m].
+    /// Target length change of the winch of each line, relative to the scene [m]; negative for length hauled in.
     pub length_changes: Vec<f64>,
-    /// Flow of the water: at the end of the coming step if the scene has `input_reconstruction = "interpolate"`, else now.
+    /// Water flow: at the end of the coming step if the scene has `input_reconstruction = "interpolate"`, else at the present time.
     pub flow: WaterFlow,
 }
 
 impl Inputs {
-    /// Inputs before any of them is set.
+    /// Inputs before the host sets any.
     pub fn new(model: &Model) -> Inputs {
         Inputs {
             points: model.points.len(),
@@ -34,7 +34,7 @@ impl Inputs {
         }
     }
 
-    /// Place of a body in lists of all points, then all vessels.
+    /// Index of a body in lists of all points, then all vessels.
     #[inline]
     pub fn place(&self, body: Body) -> usize {
         match body {
@@ -74,13 +74,13 @@ impl Inputs {
     }
 }
 
-/// Input of a host for a point, which has the first three axes, or for a vessel.
+/// Input of a host for a vessel, or for a point, which uses the first three axes only.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyInput {
     /// Displacement from the reference position [m]; roll, pitch and yaw, added to those of the reference attitude [rad].
     pub displacement: [f64; 6],
-    /// Velocity of the origin [m/s] and angular velocity [rad/s], both in global axes. Absent components of the velocity are derived from the
-    /// displacements. So is the angular velocity if all of its components are absent; otherwise absent ones are 0.
+    /// Velocity of the origin [m/s] and angular velocity [rad/s], both in global axes. Absent components are derived from the displacements; the
+    /// angular velocity is used only if all three components are given.
     pub velocity: [Option<f64>; 6],
 }
 
@@ -92,7 +92,7 @@ impl BodyInput {
         (Vector3::new(x, y, z), [vx, vy, vz])
     }
 
-    /// Rates of the displacement and the angles of a vessel [m/s, rad/s].
+    /// Rates of the displacement and the angles of a vessel [m/s, rad/s]. Rates of the angles need all three components of the angular velocity.
     pub(super) fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
         let [vx, vy, vz, w @ ..] = self.velocity;
         let [_, _, _, roll, pitch, yaw] = self.displacement;
@@ -106,12 +106,12 @@ impl BodyInput {
 }
 
 impl Simulation {
-    /// The inputs as set.
+    /// Inputs as set.
     pub fn inputs(&self) -> &Inputs {
         &self.snapshot.inputs
     }
 
-    /// The inputs, to be set.
+    /// Inputs, to be set.
     pub fn inputs_mut(&mut self) -> &mut Inputs {
         &mut self.snapshot.inputs
     }
@@ -119,7 +119,7 @@ impl Simulation {
     /// Sets all inputs.
     ///
     /// # Panics
-    /// The inputs are those of another model.
+    /// If the inputs are those of another model.
     pub fn set_inputs(&mut self, inputs: &Inputs) {
         let own = &mut self.snapshot.inputs;
         own.bodies.copy_from_slice(&inputs.bodies);
@@ -133,8 +133,7 @@ impl Simulation {
         self.snapshot.inputs.bodies[point].displacement[..3].copy_from_slice(&displacement);
     }
 
-    /// Sets the present velocity of a coupled point [m/s]; axes without a velocity are derived from the
-    /// displacements.
+    /// Sets the present velocity of a coupled point [m/s]; on axes without one, the velocity is derived from the displacements.
     pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
         self.snapshot.inputs.bodies[point].velocity[..3].copy_from_slice(&velocity);
     }
@@ -144,7 +143,7 @@ impl Simulation {
         self.snapshot.inputs.body_mut(Body::Vessel(vessel)).displacement = pose;
     }
 
-    /// Sets the present pose and velocity of a body, along its first three axes or all six.
+    /// Sets the present pose and velocity of a body on its axes: three for a point, six for a vessel.
     pub fn set_body(&mut self, body: Body, displacement: [f64; 6], velocity: [Option<f64>; 6]) {
         *self.snapshot.inputs.body_mut(body) = BodyInput {
             displacement,
@@ -152,8 +151,7 @@ impl Simulation {
         };
     }
 
-    /// Sets the release command of a line, which detaches it from the point that its scene names; it is permanent
-    /// from the next step on.
+    /// Sets the release command of a line, which detaches it from the point named in the scene. The release becomes permanent in the next step.
     pub fn set_release(&mut self, line: usize, release: bool) {
         self.snapshot.inputs.releases[line] = release;
     }
@@ -163,7 +161,7 @@ impl Simulation {
         self.snapshot.state.lines[line].released
     }
 
-    /// Sets the present target length paid out by the winch of a line beyond that of the scene [m], negative for length hauled in.
+    /// Sets the present target length change of the winch of a line, relative to the scene [m]; negative for length hauled in.
     pub fn set_length_change(&mut self, line: usize, change: f64) {
         self.snapshot.inputs.length_changes[line] = change;
     }

@@ -1,4 +1,4 @@
-//! The paths that points, vessels and winches follow between communication points.
+//! Paths of points, vessels and winches between communication points.
 
 use pulp::NullaryFnOnce;
 use serde::{Deserialize, Serialize};
@@ -17,13 +17,13 @@ use crate::scene::Reconstruction;
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Paths {
     clock: Clock,
-    /// Of the coupled points, in the order of the model.
+    /// Paths of the coupled points, in the order of the model.
     pub points: Vec<HostPath>,
-    /// Of the vessels, in the order of the model.
+    /// Paths of the vessels, in the order of the model.
     pub vessels: Vec<VesselPath>,
-    /// Lengths that the winches pay out, by line; empty where there are none.
+    /// Paths of the lengths that the winches pay out, by line; empty if there are no winches.
     pub winch_paths: Vec<WinchPath>,
-    /// Filters of the coupled points, then of displacement and angles of the vessels; empty except with [`Reconstruction::Filtered`].
+    /// Filters of the coupled points, then of displacement and angles of the vessels; empty unless [`Reconstruction::Filtered`] is set.
     filters: Vec<Fading>,
 }
 
@@ -53,7 +53,7 @@ pub(super) fn is_coupled(point: &Point) -> bool {
 }
 
 impl Paths {
-    /// Paths at rest at a time [s] at the places of the inputs.
+    /// Paths at rest from a time [s] at the positions of the inputs.
     pub(super) fn at_rest(model: &Model, time: f64, inputs: &Inputs, follows_scene: bool) -> Paths {
         let points = model.points.iter().zip(inputs.of_points());
         let coupled = points.filter(|(point, _)| is_coupled(point));
@@ -82,7 +82,7 @@ impl Paths {
         self.points.iter().map(|path| &path.0).chain(vessels)
     }
 
-    /// The same, to be written.
+    /// Paths as in [`Paths::axes`], to be written.
     fn axes_mut(&mut self) -> impl Iterator<Item = &mut AxesPath> {
         let vessels = self.vessels.iter_mut().flat_map(|path| &mut path.0);
         self.points.iter_mut().map(|path| &mut path.0).chain(vessels)
@@ -93,8 +93,8 @@ impl Paths {
         self.axes().any(|path| path.unrated().is_some())
     }
 
-    /// Leads the paths of motions given without velocities, continued from those `before`, to the predictions of their filters over a step of a length [s]
-    /// from a time [s].
+    /// Leads the paths of motions given without velocities from the paths `before` to the predictions of their filters; `span` is the start and the
+    /// length of the step [s].
     fn filter(&mut self, before: &Paths, span @ [time, length]: [f64; 2]) {
         let mut filters = std::mem::take(&mut self.filters);
         filters.clone_from(&before.filters);
@@ -107,7 +107,7 @@ impl Paths {
         self.filters = filters;
     }
 
-    /// Times between the newest sample, the previous one and the one before that [s], if all are known and in order.
+    /// Intervals between the latest three samples, newest first [s], if all are known and in order.
     pub(super) fn gaps(&self) -> Option<[f64; 2]> {
         self.clock.gaps()
     }
@@ -142,8 +142,7 @@ impl Paths {
     }
 }
 
-/// Continuation of the paths `before` by a host's samples of the coupled points and the vessels, for the vector unit
-/// of the machine.
+/// Extends the paths `before` by a host's samples of the coupled points and the vessels, compiled for the vector unit of the machine.
 struct Extend<'a> {
     paths: &'a mut Paths,
     before: &'a Paths,
@@ -183,7 +182,7 @@ impl NullaryFnOnce for Extend<'_> {
 }
 
 impl Simulation {
-    /// Lays out the paths of the next communication step [s]; those of the snapshot stay as they are.
+    /// Lays out the paths of the next communication step [s]; the paths in the snapshot do not change.
     pub(super) fn extend_paths(&mut self, step: f64) -> Result<(), StepError> {
         let (model, snapshot, paths) = (&*self.model, &self.snapshot, &mut self.paths);
         let before = &snapshot.paths;
@@ -220,7 +219,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Uses paths that are laid out up to a length [s] of the step.
+    /// Applies the laid-out paths up to a length [s] of the step.
     pub(super) fn take_paths(&mut self, length: f64) {
         let end = self.snapshot.state.time + length;
         for (ends, path) in self.prescribed.hosted().iter_mut().zip(&self.paths.points) {

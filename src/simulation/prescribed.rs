@@ -1,10 +1,10 @@
 //! Prescribed motion in time of all points except free ones.
 //!
-//! The motion is evaluated at both ends of a communication step, where it is read most often. Between them the path of a host is a cubic. Motions of the
-//! scene and points on vessels need sines: a quintic through position, velocity and acceleration at the ends bridges the step, in as many pieces as are
-//! needed to keep its error below [`ERROR_MAX`]. Where more pieces would be needed than the networks at the point have internal steps, where a motion has a
-//! kink within the step, or where clamped lines need the rotation of a point, the motion is evaluated at every internal step. Bridges save a quarter of the
-//! instructions of a step of `bridle`, whose fairleads move with a vessel.
+//! The motion is evaluated at both ends of a communication step, where it is read most often. Between them the path of a host is a cubic. Motions of
+//! the scene and of points on vessels need sines: a quintic through position, velocity and acceleration at the ends bridges the step, in as many
+//! pieces as are needed to keep its error below [`ERROR_MAX`]. The motion is evaluated at every internal step if it needs too many pieces for the
+//! internal steps of the networks at the point, if it has a kink within the step, or if clamped lines need the rotation of the point. Bridges save a
+//! quarter of the instructions of a step of `bridle`, whose fairleads move with a vessel.
 //!
 //! The error of a quintic over a piece τ is at most max|r⁽⁶⁾| τ⁶/46080. For a sine, r⁽⁶⁾ ≤ A ω⁶. The rotation of an arm a by angles whose
 //! derivatives are bounded by x₁ … x₆ has r⁽⁶⁾ ≤ |a| B₆(x₁ … x₆), with the complete Bell polynomial B₆, since every derivative of it by an
@@ -22,11 +22,11 @@ use crate::scene::Integrator;
 use super::inputs::Inputs;
 use super::paths::{Paths, is_coupled};
 
-/// Error of a bridge [m].
+/// Greatest error of a bridge [m].
 const ERROR_MAX: f64 = 1e-12;
-/// Pieces of a bridge, at most [-].
+/// Greatest number of pieces of a bridge [-].
 const PIECES_MAX: usize = 16;
-/// Rounding of the requested times, over a piece [-].
+/// Tolerance for rounding of the requested times, relative to a piece [-].
 const ROUNDING: f64 = 1e-6;
 
 /// Source of prescribed motions: the model, and the paths of a communication step.
@@ -38,7 +38,7 @@ pub(super) struct MotionSource<'a> {
 }
 
 impl<'a> MotionSource<'a> {
-    /// Along the scene's own motion or the paths of a host.
+    /// Returns the source for the scene's own motion or the paths of a host.
     pub(super) fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> MotionSource<'a> {
         MotionSource {
             model,
@@ -47,7 +47,7 @@ impl<'a> MotionSource<'a> {
         }
     }
 
-    /// A point at time `t` [s].
+    /// Kinematics of a point at time `t` [s].
     pub(super) fn point(&self, point: usize, t: f64) -> Kinematics {
         let reference = self.model.points[point].reference;
         let moved = |k: Kinematics| Kinematics {
@@ -68,7 +68,7 @@ impl<'a> MotionSource<'a> {
         }
     }
 
-    /// The motion of the scene that a point follows.
+    /// Motion of the scene that a point follows.
     fn own_motion(&self, point: usize) -> Option<&'a Motion> {
         match &self.model.points[point].role {
             Role::Prescribed(motion) => Some(motion),
@@ -77,13 +77,13 @@ impl<'a> MotionSource<'a> {
         }
     }
 
-    /// The motion of the scene that a vessel follows.
+    /// Motion of the scene that a vessel follows.
     fn vessel_motion(&self, vessel: usize) -> Option<&'a Motion> {
         let motion = self.model.vessels[vessel].motion();
         motion.filter(|_| self.follows_scene)
     }
 
-    /// A vessel at time `t` [s].
+    /// Frame of a vessel at time `t` [s].
     pub(super) fn frame(&self, vessel: usize, t: f64) -> Frame {
         self.frame_at(vessel, &self.pose(vessel, t))
     }
@@ -130,13 +130,13 @@ impl<'a> MotionSource<'a> {
 /// Method by which the motion of a point is evaluated.
 #[derive(Debug, Clone)]
 enum Evaluation {
-    /// A point that never moves, or one moved by forces.
+    /// No motion, or motion by forces.
     Fixed,
-    /// The path of the host, by its index among the coupled points.
+    /// Path of the host, by its index among the coupled points.
     Host(usize),
-    /// A bridge over the step.
+    /// Bridge over the step.
     Bridged(Box<Bridge>),
-    /// The motion of the model, evaluated at the time itself.
+    /// Motion of the model, evaluated at every requested time.
     Direct,
 }
 
@@ -147,9 +147,9 @@ struct Bridge {
     start: f64,
     /// Pieces per second [1/s].
     rate: f64,
-    /// Empty where the motion must be evaluated at every internal step.
+    /// Empty if the motion must be evaluated at every internal step.
     pieces: Vec<Quintic>,
-    /// Bounds of the error where a motion of the scene is bridged.
+    /// Derivative bounds of a bridged motion of the scene; `None` for a cubic and for points on vessels.
     derivatives: Option<Derivatives>,
 }
 
@@ -163,7 +163,7 @@ impl Bridge {
         }
     }
 
-    /// Pieces that a motion of the scene needs over a length of time [s]; `None` where they are more than `most`.
+    /// Number of pieces that a motion of the scene needs over a length of time [s]; `None` if it exceeds `most`.
     fn pieces_over(&self, length: f64, most: usize) -> Option<usize> {
         if most == 0 {
             return None;
@@ -172,8 +172,8 @@ impl Bridge {
         pieces(bounds.map_or(0.0, |bounds| bounds.shift(length)), most)
     }
 
-    /// Bridges a span of time [s] in `count` pieces from end to end, between which `at` returns the kinematics of the
-    /// point.
+    /// Builds a bridge of `count` pieces over a span of time [s] between the kinematics `ends`; `at` returns the kinematics at the knots between
+    /// pieces.
     fn build(
         &mut self,
         [start, end]: [f64; 2],
@@ -219,8 +219,7 @@ impl Bridge {
     }
 }
 
-/// Ends of a step of a point that a host moves, along x, y and z: position [m], velocity [m/s] and acceleration
-/// [m/s²].
+/// Position [m], velocity [m/s] and acceleration [m/s²] of a point that a host moves, along x, y and z, at both ends of a step.
 pub(super) type HostEnds = [[Lanes; 3]; 2];
 
 /// Prescribed motions over a communication step.
@@ -230,19 +229,19 @@ pub(super) struct PrescribedMotion {
     span: [f64; 2],
     /// Kinematics of the points at both ends, except those that a host moves.
     ends: Vec<[Kinematics; 2]>,
-    /// Ends of the points that a host moves, given with their paths.
+    /// Ends of the points that a host moves, set from their paths.
     hosted: Vec<HostEnds>,
     evaluations: Vec<Evaluation>,
-    /// True if anything moves by prescribed motion or by a host.
+    /// True if any point follows a motion of the scene or a vessel.
     moves: bool,
-    /// Bounds of the derivatives of the motions of vessels, where these are motions of the scene other than cubics.
+    /// Derivative bounds of the vessel motions; `None` for a path of a host and for a cubic motion of the scene.
     vessels: Vec<Option<Derivatives>>,
-    /// Longest internal step of the networks at every point [s]; infinite where nothing steps between the ends of a communication step.
+    /// Longest internal step of the networks at every point [s]; infinite if no network there makes internal steps.
     step_max: Vec<f64>,
 }
 
 impl PrescribedMotion {
-    /// Motion of a model whose points follow the scene, or a host; `choices` are those of its networks.
+    /// Prescribed motions of a model whose points follow the scene or a host; `choices` are the integrators of its networks.
     pub(super) fn new<'a>(
         model: &Model,
         follows_scene: bool,
@@ -292,7 +291,7 @@ impl PrescribedMotion {
         }
     }
 
-    /// Ends of the points that a host moves at both ends of the next span, to be filled in from their paths.
+    /// Ends of the points that a host moves over the next span, to be set from their paths.
     pub(super) fn hosted(&mut self) -> &mut [HostEnds] {
         &mut self.hosted
     }
@@ -371,8 +370,7 @@ impl PrescribedMotion {
         }
     }
 
-    /// Kinematics of a point at time `t` [s] of the span; its rotation is given at the ends, and everywhere where
-    /// lines are clamped.
+    /// Kinematics of a point at time `t` [s] of the span; the rotation is included at the ends and, if lines are clamped to the point, at all times.
     #[inline(always)]
     pub(super) fn point(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
         let [start, end] = self.span;
@@ -384,7 +382,7 @@ impl PrescribedMotion {
         }
     }
 
-    /// [`PrescribedMotion::point`] except at the ends of a host's samples.
+    /// Evaluates [`PrescribedMotion::point`] at other times than the ends of a host's path.
     #[inline(never)]
     fn other(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
         if let Evaluation::Host(path) = &self.evaluations[point] {
@@ -405,7 +403,7 @@ impl PrescribedMotion {
     }
 }
 
-/// Internal steps of at most `step_max` [s] in a span of time [s].
+/// Number of internal steps of at most `step_max` [s] in a span of time [s].
 fn internal_steps([start, end]: [f64; 2], step_max: f64) -> usize {
     ((end - start) / step_max).ceil() as usize
 }
@@ -416,14 +414,13 @@ fn knot_time([start, end]: [f64; 2], knot: usize, count: Option<usize>) -> f64 {
     start + (end - start) * (knot as f64 / count as f64)
 }
 
-/// Number of pieces of a span whose sixth derivative times its sixth power is at most this [m]; `None` where it
-/// exceeds `most`.
+/// Number of pieces of a span, of which `sixth` bounds the sixth derivative times the sixth power of the length [m]; `None` if it exceeds `most`.
 fn pieces(sixth: f64, most: usize) -> Option<usize> {
     let excess = sixth * QUINTIC_ERROR / ERROR_MAX;
     (1..=most.min(PIECES_MAX)).find(|&count| (count as f64).powi(6) >= excess)
 }
 
-/// Bounds of the derivatives of angles that are cubics over a span [s], times powers of the span [rad].
+/// Bounds of the derivatives of angles that are cubics over a span [s], multiplied by powers of the span [rad].
 fn cubic_turn([before, after]: &[Pose; 2], span: f64) -> [f64; 6] {
     let mut bounds = [0.0; 6];
     for axis in 3..6 {
@@ -436,7 +433,7 @@ fn cubic_turn([before, after]: &[Pose; 2], span: f64) -> [f64; 6] {
     bounds
 }
 
-/// The complete Bell polynomial B₆.
+/// Complete Bell polynomial B₆.
 fn bell([a, b, c, d, e, f]: [f64; 6]) -> f64 {
     let a2 = a * a;
     a2 * a2 * (a2 + 15.0 * b)
@@ -473,7 +470,7 @@ mod tests {
         .model()
     }
 
-    /// Greatest errors of the position [m] and the velocity [m/s] of a bridged point, over steps of a length [s].
+    /// Greatest errors of position [m] and velocity [m/s] of a bridged point, over steps of a given length [s].
     fn misses(point: &str, step: f64) -> [f64; 2] {
         let model = model();
         let inputs = Inputs::new(&model);
@@ -537,6 +534,6 @@ mod tests {
     fn the_bell_polynomial_is_the_sixth_derivative_of_an_exponential() {
         // exp(sin t) at t = 0: derivatives 1, 0, −1, 0, 1, 0 of the sine, sixth derivative −3 of the whole
         assert_eq!(bell([1.0, 0.0, -1.0, 0.0, 1.0, 0.0]), -3.0);
-        assert_eq!(bell([1.0; 6]), 203.0); // partitions of six things
+        assert_eq!(bell([1.0; 6]), 203.0); // number of partitions of a set of six
     }
 }

@@ -35,7 +35,7 @@ pub struct ProfileNode {
     pub z: f64,
     /// Effective tension [N].
     pub tension: f64,
-    /// Curvature and moment, where the line has bending stiffness.
+    /// Curvature and moment, if the line has bending stiffness.
     #[serde(flatten)]
     pub bending: Option<NodeBending>,
 }
@@ -49,7 +49,7 @@ pub struct NodeBending {
     pub moment: f64,
 }
 
-/// Quantities of the present state that several outputs share, each evaluated when the first of them is read.
+/// Quantities of the present state that several outputs share, each evaluated when it is first read.
 #[derive(Debug, Clone)]
 pub(super) struct Reactions {
     /// Stored energy.
@@ -61,7 +61,7 @@ pub(super) struct Reactions {
     pub(super) interface: OnceCell<InterfaceValues>,
 }
 
-/// The same for a line.
+/// Quantities of a line that several outputs share.
 #[derive(Debug, Clone, Default)]
 struct LineReactions {
     /// Force on the points at ends A and B [N].
@@ -98,8 +98,8 @@ impl Reactions {
 }
 
 impl Simulation {
-    /// Force [N] and moment [N m] of the mooring on a body as the scene requests it: with the inertia of the ends or without. A point has no
-    /// moment.
+    /// Force [N] and moment [N m] of the mooring on a body, with or without the inertia of the line ends as the scene requests. The moment on a point
+    /// is zero.
     pub fn host_force(&self, body: Body) -> &[f64; 6] {
         let force = &self.reactions.bodies[self.snapshot.inputs.place(body)];
         force.get_or_init(|| match self.model.force {
@@ -141,15 +141,15 @@ impl Simulation {
         sum.into()
     }
 
-    /// Stiffness of the mooring on a vessel in its present state: minus the change of the static part of [`Simulation::vessel_force`], in [N/m] and [N],
-    /// and of its moment, in [N] and [N m], with displacement along and small rotation about the global axes through the vessel's origin; rows of force.
-    /// `None` where the lines are not stable in this state, or one of them is a beam. See [`statics::stiffness`]. Where a current drags lines, its force
-    /// changes with them: the stiffness is then that of equilibria on both sides of the pose that is set.
+    /// Stiffness of the mooring on a vessel in its present state: minus the change of the static part of [`Simulation::vessel_force`] with
+    /// displacement along and small rotation about the global axes through the vessel's origin. Rows are force [N/m, N] and moment [N, N m]. `None`
+    /// if the lines are not stable in this state or one of them is a beam. See [`statics::stiffness`]. If a current drags lines, its force changes as
+    /// they move: the stiffness is then that of equilibria on both sides of the pose that is set.
     pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
         self.stiffness_with(vessel, &mut self.bare_scratch())
     }
 
-    /// [`Simulation::vessel_stiffness`] of every vessel.
+    /// Returns [`Simulation::vessel_stiffness`] of every vessel.
     pub fn vessel_stiffnesses(&self) -> Vec<Option<[[f64; 6]; 6]>> {
         let mut work = self.bare_scratch();
         let vessels = 0..self.model.vessels.len();
@@ -158,7 +158,7 @@ impl Simulation {
             .collect()
     }
 
-    /// Scratch without room for the nodes of lines.
+    /// Workspace without storage for the nodes of lines.
     fn bare_scratch(&self) -> elements::Workspace {
         elements::Workspace::serving(&self.model, |_| false)
     }
@@ -204,7 +204,7 @@ impl Simulation {
         Some(stiffness)
     }
 
-    /// The mooring in equilibrium with all bodies where they are now, but for a vessel that is moved along, or turned about, a global axis [m, rad].
+    /// Returns the mooring in equilibrium after a vessel is moved along, or turned about, a global axis from the pose that is set [m, rad].
     fn at_rest_aside(&self, vessel: usize, axis: usize, way: f64) -> Option<Simulation> {
         let (mut aside, Snapshot { state, paths, .. }) = (self.clone(), &self.snapshot);
         let inputs = &mut aside.snapshot.inputs;
@@ -231,8 +231,8 @@ impl Simulation {
         Some(aside)
     }
 
-    /// This mooring at rest in its present state, without waves, with every network on its closed-form catenaries where it has them, else on its elements.
-    /// The closed form has seabed friction and no discretisation error.
+    /// Returns this mooring at rest in its present state, without waves. Networks with closed-form catenaries are on these, the others on their
+    /// elements. The closed form has seabed friction and no discretisation error.
     pub fn on_catenaries(mut self) -> Simulation {
         self.snapshot.state.waves = None;
         self.reactions.clear();
@@ -244,14 +244,14 @@ impl Simulation {
         self
     }
 
-    /// Present place of the origin of a vessel [m].
+    /// Present position of a vessel's origin [m].
     pub(super) fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
         let snapshot = &self.snapshot;
         let at = MotionSource::new(&self.model, &snapshot.paths, snapshot.follows_scene);
         at.frame(vessel, snapshot.state.time).origin.position
     }
 
-    /// Moment [N m] of the lines that are clamped to a point on its support, in global axes.
+    /// Moment [N m] that the lines clamped to a point exert on its support, in global axes.
     pub fn end_moment(&self, point: usize) -> Vector3<f64> {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let at = &state.points[point];
@@ -269,8 +269,7 @@ impl Simulation {
         attached.iter().filter_map(moment).sum()
     }
 
-    /// Force of the mooring on a point [N]: the load on a vessel there, from the lines and, where forces do not move
-    /// the point, from its mass.
+    /// Force of the mooring on a point [N]: the load on its support from the lines and, unless forces move the point, from its mass.
     pub fn end_force(&self, point: usize) -> [f64; 3] {
         let lines = self.model.points[point].attached.iter();
         let of_lines: Vector3<f64> = lines.map(|&(line, end)| self.line_end_force(line, end)).sum();
@@ -292,7 +291,7 @@ impl Simulation {
         self.at_end(line, end, &at).nodal_force()
     }
 
-    /// Force of a point itself on its support [N], in the state to which `seen` maps its present one. A free point has none.
+    /// Force of a point itself on its support [N], in the state that `seen` returns for the present one. A free point has none.
     pub(super) fn own_force(&self, point: usize, seen: impl Fn(PointState) -> PointState) -> Vector3<f64> {
         match self.model.points[point].free() {
             Some(_) => Vector3::zeros(),
@@ -353,12 +352,12 @@ impl Simulation {
         }
     }
 
-    /// Size of the force at end A [N].
+    /// Magnitude of the force at end A [N].
     pub fn tension_a(&self, line: usize) -> f64 {
         self.tension_at(line, End::A)
     }
 
-    /// Size of the force at end B [N].
+    /// Magnitude of the force at end B [N].
     pub fn tension_b(&self, line: usize) -> f64 {
         self.tension_at(line, End::B)
     }
@@ -379,7 +378,7 @@ impl Simulation {
             .fold(self.tension_a(line).max(self.tension_b(line)), f64::max)
     }
 
-    /// Unstretched length that the seabed carries [m].
+    /// Unstretched length supported by the seabed [m].
     pub fn laid_length(&self, line: usize) -> f64 {
         self.closed_form(line).map_or_else(
             || laid_length(&self.model.lines[line], &self.snapshot.state.lines[line]),
@@ -407,8 +406,8 @@ impl Simulation {
         self.snapshot.state.lines[line].closed_form.as_ref()
     }
 
-    /// Elastic catenary of the reference configuration, where the line's ends are prescribed, its strain is engineering strain, a seabed
-    /// in reach is level, and it does not come out of the water.
+    /// Elastic catenary of the reference configuration, if the line's ends are prescribed, its strain is engineering strain, any seabed within reach
+    /// is level, and it does not rise out of the water.
     pub fn catenary(&self, line: usize) -> Option<&Catenary> {
         self.catenaries[line].as_ref()
     }
@@ -435,9 +434,9 @@ impl Simulation {
             .collect()
     }
 
-    /// Tension of node `i` of a line as `getNodeTen` of MoorDyn-C returns it [N], damping within the line included: at an end that of the end's segment,
-    /// at an inner node half the magnitude of the vector sum of the two adjacent segments. [`Simulation::tension_a`] and
-    /// [`Simulation::tension_b`] are the forces on the points at the ends, with the half segment's weight, drag and inertia.
+    /// Tension of node `i` of a line as MoorDyn-C writes it [N], including damping within the line: at an end, the tension of the adjacent segment;
+    /// at an inner node, half the magnitude of the vector sum of the tensions of the two adjacent segments. [`Simulation::tension_a`] and
+    /// [`Simulation::tension_b`] are the forces on the points at the ends, with weight, drag and inertia of the half segment.
     pub fn segment_tension(&self, line: usize, i: usize) -> f64 {
         let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
         let n = model.segment_count();
@@ -453,8 +452,8 @@ impl Simulation {
         }
     }
 
-    /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and at pinned ends
-    /// without a moment on them.
+    /// Curvature [1/m] and bending moment [N m] at every node, if the line has bending stiffness; zero at hinges and at pinned ends without an
+    /// applied moment.
     pub fn bending(&self, line: usize) -> Option<&[NodeBending]> {
         let bending = &self.reactions.lines[line].bending;
         bending.get_or_init(|| self.evaluate_bending(line)).as_deref()
@@ -497,7 +496,7 @@ impl Simulation {
         Some(found)
     }
 
-    /// Nodes of a line with their tensions, from end A to end B; those that a winch has not paid out are at the winch.
+    /// Nodes of a line with their tensions, from end A to end B; nodes that a winch has not paid out are placed at the winch.
     pub fn profile(&self, line: usize) -> Vec<ProfileNode> {
         let bending = self.bending(line);
         let arcs = &self.model.lines[line].nodes.arc;
@@ -520,7 +519,7 @@ impl Simulation {
         profile
     }
 
-    /// Momenta of all beams.
+    /// Total momentum of all beams.
     pub fn momentum(&self) -> Momentum {
         let lines = self.model.lines.iter().zip(&self.snapshot.state.lines);
         lines
@@ -534,12 +533,12 @@ impl Simulation {
             })
     }
 
-    /// Internal steps of the last communication step.
+    /// Number of internal steps in the last communication step.
     pub fn substeps(&self) -> usize {
         self.snapshot.counters.substeps
     }
 
-    /// Work of the last communication step.
+    /// Counters of the last communication step.
     pub fn counters(&self) -> Counters {
         self.snapshot.counters
     }
@@ -550,8 +549,7 @@ impl Simulation {
         *energy.get_or_init(|| self.work.energy(&self.model, &self.snapshot.state))
     }
 
-    /// Energy balance since the start, where the scene requests it
-    /// ([`Output::energy_balance`](crate::scene::Output::energy_balance)).
+    /// Energy balance since the start, if the scene requests it ([`Output::energy_balance`](crate::scene::Output::energy_balance)).
     pub fn energy_balance(&self) -> Option<EnergyBalance> {
         let mut balance = self.snapshot.balance?;
         balance.now = self.energy().total();
@@ -561,7 +559,7 @@ impl Simulation {
         Some(balance)
     }
 
-    /// Error of the energy balance over the time since the start [W].
+    /// Error of the energy balance divided by the time since the start [W].
     pub fn power_residual(&self) -> Option<f64> {
         let elapsed = self.time() - self.snapshot.start_time;
         let error = self.energy_balance()?.error();
@@ -580,7 +578,7 @@ fn laid_length(line: &Line, state: &LineState) -> f64 {
         .sum()
 }
 
-/// Greatest vertical distance of the nodes below the chord of the ends, or below the lower end beyond it and where it is vertical [m].
+/// Greatest vertical distance of the nodes below the chord of the ends, or below the lower end where the chord is vertical or does not reach [m].
 fn sag(nodes: &[Vector3<f64>]) -> f64 {
     let (a, b) = (nodes[0], nodes[nodes.len() - 1]);
     let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);

@@ -1,7 +1,7 @@
 //! Size of a scene, and the limits of inputs that follow from it.
 //!
-//! Beyond some thousand times the size of a scene the equations still have solutions, dominated by rounding. Such inputs come from a wrong unit or an
-//! unstable host, and are refused before anything is solved.
+//! Beyond some thousand times the size of a scene, the equations still have solutions, but rounding dominates them. Such inputs come from a wrong
+//! unit or an unstable host, and are refused before anything is solved.
 
 use nalgebra::Vector3;
 
@@ -53,8 +53,7 @@ impl Scale {
         }
     }
 
-    /// Refuses inputs of a step of `length` [s] that exceed the limits, before anything is solved: names the body and
-    /// the fault.
+    /// Refuses inputs that exceed the limits of a step of `length` [s], before anything is solved. The error is the body and a message.
     fn check(&self, model: &Model, inputs: &Inputs, length: f64) -> Result<(), (Body, String)> {
         let reach = REACH * self.size;
         let check = |name: &str, body: Body| {

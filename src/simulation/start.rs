@@ -21,13 +21,13 @@ use crate::statics::{self, StaticsError, catenary_network, equilibrium};
 /// Treatment of lines with an initial shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shapes {
-    /// Lines start on it.
+    /// Lines start in their initial shapes.
     AsGiven,
-    /// Initial shapes from which lines move to rest.
+    /// Lines move from their initial shapes to equilibrium.
     Equilibrium,
 }
 
-/// A simulation at rest at a time [s], with its scratch.
+/// Returns the snapshot of a simulation at rest at a time [s], and its integrators.
 pub(super) fn begin(
     model: &Model,
     time: f64,
@@ -90,7 +90,7 @@ pub(super) fn begin(
     ))
 }
 
-/// Sets the clamp joints of the lines that `rests` selects for their tension in a state of rest; returns whether there are any.
+/// Adapts the clamp joints of the lines that `rests` selects to their tension in a state of rest; returns whether any joint is adapted.
 pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
     let mut any = false;
     for (index, (line, shape)) in model.lines.iter_mut().zip(&state.lines).enumerate() {
@@ -107,8 +107,8 @@ pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(us
     any
 }
 
-/// State with every network in static equilibrium or, if all its lines have given shapes, on these, with its free points at their positions in the scene.
-/// Quasi-static lines start on their catenaries; lines that will move start in the equilibrium of their elements.
+/// Returns the state with every network in static equilibrium or, if all its lines have given shapes, in these shapes with its free points at their
+/// positions in the scene. Quasi-static lines start on their catenaries; lines that will move start in the equilibrium of their elements.
 fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> Result<State, StaticsError> {
     let mut work = elements::Workspace::serving(model, |_| false);
     let mut state = equilibrium::place(model, places, time)?;
@@ -129,7 +129,7 @@ fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> R
     Ok(state)
 }
 
-/// Puts the lines of a network that have given shapes back on these, between the present positions of its points.
+/// Restores the given shapes of the lines of a network, between the present positions of its points.
 fn take_shapes(model: &Model, number: usize, state: &mut State) {
     for &index in &model.networks[number].lines {
         let line = &model.lines[index];
@@ -148,8 +148,8 @@ fn take_shapes(model: &Model, number: usize, state: &mut State) {
     }
 }
 
-/// Gives beams their frames at time `t` [s], and solves their equilibrium if no shape is given or all start at rest; `attitude` returns the rotation of a
-/// point.
+/// Sets the frames of beams at time `t` [s], and solves their equilibrium if no shape is given or all start at rest; `attitude` returns the rotation
+/// of a point.
 fn rest_beams(
     model: &Model,
     state: &mut State,
@@ -175,8 +175,8 @@ fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Closed-form catenary of a line in its reference configuration; none where an end is free, or where the line would
-/// rise out of the water, which the closed form does not model.
+/// Closed-form catenary of a line in its reference configuration. `None` if an end is free, or if the line would rise out of the water, which the
+/// closed form does not model.
 pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
     let ends = line.ends.map(|point| &model.points[point]);
     if ends.iter().any(|point| point.free().is_some()) {

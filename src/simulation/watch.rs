@@ -1,4 +1,4 @@
-//! Notes on likely mistakes in a run: ends that jump, too few inputs, lines strained beyond realistic values, tables whose range is left.
+//! Notes on likely mistakes in a run: ends that jump, too few inputs, unrealistic strains, tables whose range is left.
 
 mod left_tables;
 
@@ -25,11 +25,11 @@ pub struct Watch {
 
 #[derive(Debug, Clone)]
 struct Watched {
-    /// Places of the ends at the last communication point [m].
+    /// Positions of the ends at the last communication point [m].
     ends: [Vector3<f64>; 2],
-    /// Strain above which a note is given [-]; infinite once it was given, or if large strains are intended.
+    /// Strain above which a note is given [-]; infinite after the note, or if large strains are intended.
     strain_max: f64,
-    /// Tension that breaks the line [N], at an end; `None` where it was compared with that of the first state.
+    /// End and tension [N] at which the line breaks; `None` if there is none, or after the comparison with the first state.
     breaks_at: Option<(End, f64)>,
 }
 
@@ -58,7 +58,7 @@ impl Watch {
         }
     }
 
-    /// Notes on the present state that were not given before; nothing is allocated if there are none.
+    /// Returns the notes on the present state that were not given before; nothing is allocated if there are none.
     pub fn look(&mut self, simulation: &Simulation) -> Vec<Note> {
         let mut notes = std::mem::take(&mut self.idle);
         for (index, watched) in self.lines.iter_mut().enumerate() {
@@ -121,7 +121,7 @@ fn jump(
     Some(Note::new(format!("lines[{line}]"), text))
 }
 
-/// End that a tension breaks off its point, and that tension [N]; `None` where no tension does.
+/// End that breaks off its point, and the tension at which it breaks [N]; `None` if no tension breaks an end.
 fn breaking_tension(releases: [Release; 2]) -> Option<(End, f64)> {
     let ends = [End::A, End::B].into_iter().zip(releases);
     ends.filter_map(|(end, release)| Some((end, release.tension?)))
@@ -158,8 +158,8 @@ fn exceeds_strain(simulation: &Simulation, line: usize, limit: f64) -> bool {
     lengths(simulation, line).any(|(square, length)| is_beyond(limit, square, length))
 }
 
-/// Returns whether a segment of a squared stretched length [m²] and an unstretched length [m] is strained beyond a limit [-]. Takes no roots, since all segments
-/// are compared at every communication point.
+/// Returns whether a segment of a squared stretched length [m²] and an unstretched length [m] is strained beyond a limit [-]. Avoids square roots,
+/// since all segments are compared at every communication point.
 fn is_beyond(limit: f64, square: f64, length: f64) -> bool {
     square > ((1.0 + limit) * length).powi(2)
 }

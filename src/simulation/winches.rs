@@ -1,4 +1,4 @@
-//! Paid-out lengths of the winches: their paths between communication points, and lines laid out to these lengths.
+//! Paid-out lengths of the winches: their paths between communication points, and the layout of lines at these lengths.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::dynamics::motion::{AxisPath, Extrapolation};
 use crate::model::{Line, Model, State, Winch};
 use crate::scene::{SceneError, TimeFunction};
 
-/// The length that a winch pays out.
+/// Path of the length that a winch pays out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct WinchPath {
     /// Length change [m] in time.
@@ -18,7 +18,7 @@ pub(super) struct WinchPath {
 }
 
 impl WinchPath {
-    /// Continues by a communication step from a host's length change [m] at a time [s]; a winch with a speed limit [m/s] lags behind faster inputs.
+    /// Continues by a communication step to a host's length change [m] at a time [s]; a winch with a speed limit [m/s] lags behind faster inputs.
     pub(super) fn extend(
         &mut self,
         speed_max: Option<f64>,
@@ -32,7 +32,8 @@ impl WinchPath {
         self.path.extend(extrapolation, position, None);
     }
 
-    /// Continues along the scene's own path from a time [s] by a communication step [s]: through its value there, at its mean rate around it.
+    /// Continues along the scene's own path from a time [s] by a communication step [s]: to its value at the end, with its mean rate over this step
+    /// and the next.
     pub(super) fn follow(&mut self, path: &TimeFunction, time: f64, step: f64) {
         let end = time + step;
         let velocity = (path.at(end + step) - path.at(time)) / (2.0 * step);
@@ -40,7 +41,7 @@ impl WinchPath {
     }
 }
 
-/// Length change [m] of a winch at the start: by the scene's own motion at a time [s] if that is followed, else as given.
+/// Length change [m] of a winch at the start: that of the scene's motion at a time [s] if it is followed, else as given.
 fn start(winch: &Winch, given: f64, follows: Option<f64>) -> f64 {
     match (follows, &winch.path) {
         (Some(time), Some(path)) => path.at(time),
@@ -48,13 +49,13 @@ fn start(winch: &Winch, given: f64, follows: Option<f64>) -> f64 {
     }
 }
 
-/// Fault of a length change [m], where there is one.
+/// Checks that a winch can pay out a length change [m].
 pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
     let Some(winch) = &line.winch else {
         return Ok(());
     };
     let (least, most) = (winch.length_min(), winch.length_max);
-    // rounding of a sum in the host may exceed the bounds
+    // a sum in the host may exceed the bounds by rounding
     let rounding = 1e-9 * (most - least);
     if change >= least - rounding && change <= most + rounding {
         return Ok(());
@@ -64,7 +65,7 @@ pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
     ))
 }
 
-/// Paths at rest from a time on [s], by line; none where there is no winch.
+/// Winch paths at rest from a time [s], by line; empty if there is no winch.
 pub(super) fn paths(model: &Model, given: &[f64], time: f64, follows_scene: bool) -> Vec<WinchPath> {
     if model.lines.iter().all(|line| line.winch.is_none()) {
         return Vec::new();
@@ -84,7 +85,7 @@ pub(super) fn paths(model: &Model, given: &[f64], time: f64, follows_scene: bool
 /// Lays out the lines on winches at their initial lengths.
 ///
 /// # Errors
-/// Lengths that a winch cannot pay out.
+/// A winch cannot pay out its length.
 pub(super) fn lay_out(model: &mut Arc<Model>, given: &[f64], follows: Option<f64>) -> Result<(), SceneError> {
     for (index, &given) in given.iter().enumerate() {
         let Some(winch) = &model.lines[index].winch else {

@@ -1,14 +1,14 @@
 //! Equilibrium of a geometrically exact beam.
 //!
-//! The system of [`crate::elements::beam`] is solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a
-//! fraction of a turn. A beam of many elements starts from the equilibrium of the same beam on half as many (`coarse`), so that
-//! only the coarsest starts far from its equilibrium, and fine meshes follow coarse ones to one of several equilibria.
+//! The system of [`crate::elements::beam`] is solved by Newton's method; spins are applied by the Cayley transform, and steps are limited to a
+//! fraction of a turn. A beam with many elements starts from the equilibrium of the same beam with half as many (`coarse`). Only the coarsest mesh
+//! then starts far from equilibrium, and where there are several equilibria, fine meshes follow the coarse ones.
 //!
-//! The search for the coarsest beam, and for one that is not found from a coarser one, starts from its present sections. Where these are free of
-//! stress, the loads are raised in parts, as few as possible. Elsewhere, and where that fails, the energy is reduced without the moments on the
-//! ends, which have no potential: J + λ D with D the nodes' own stiffness, λ lowered where the energy falls and raised where it does not, on
-//! a beam that is soft in stretch and shear at first. This search ends at a minimum, from which the moments are raised in parts. Clamps begin along
-//! the beam and are turned to their prescribed attitudes. Where all this fails and an end can move, the search starts from the unstressed beam.
+//! The search on the coarsest mesh, and on a mesh for which the coarser one fails, starts from the present sections. If these are free of stress, the
+//! loads are raised in as few parts as possible. Otherwise, or if that fails, the energy is reduced without the end moments, which have no potential.
+//! Its steps use J + λ D, with D the stiffness of the nodes by themselves; λ is lowered when the energy falls and raised when it does not, and the
+//! beam is soft in stretch and shear at first. This search ends at a minimum, from which the moments are raised in parts. Clamps begin along the beam
+//! and are turned to their prescribed attitudes. If all this fails and an end can move, the search starts from the unstressed beam.
 
 mod coarse;
 
@@ -21,31 +21,31 @@ use crate::model::{BeamElement, Model, PointState, State};
 use crate::physics::section::{Section, join, split};
 use crate::statics::StaticsError;
 
-/// Change of position over the beam's length, and spin [rad], that end the search [-].
+/// Convergence tolerance of a step [-]: change of position relative to the beam length, and spin [rad].
 const TOLERANCE: f64 = 1e-11;
-/// Step [-] below which a step that no longer shrinks is rounding.
+/// Step [-] below which a step that no longer shrinks counts as rounding.
 const ROUNDING: f64 = 1e-6;
-/// Longest step: change of position over the beam's length, and spin [rad].
+/// Maximum step: change of position relative to the beam length, and spin [rad].
 const STEP_MAX: [f64; 2] = [0.1, 0.3];
-/// Greatest number of solves for one part of the load [-].
+/// Maximum number of solves for one part of the load [-].
 const NEWTON_SOLVES_MAX: usize = 60;
 /// Numbers of parts in which the load is raised, tried in turn [-].
 const LOAD_PARTS: [usize; 4] = [1, 5, 25, 125];
-/// Greatest number of solves of the search by falling energy, for each stiffness on the way [-].
+/// Maximum number of solves of the energy descent for each intermediate stiffness [-].
 const DESCENT_SOLVES_MAX: usize = 400;
-/// Step of that search [-] below which Newton's method takes over.
+/// Step of the energy descent [-] below which Newton's method takes over.
 const SETTLED: f64 = 1e-4;
-/// Least λ [-].
+/// Minimum λ [-].
 const ANCHORING_MIN: f64 = 1e-12;
-/// Ratio of successive axial and shear stiffnesses on the way [-].
+/// Ratio of successive intermediate axial and shear stiffnesses [-].
 const STIFFENING: f64 = 30.0;
-/// Least axial and shear stiffness on the way, over weight, loads and EI/l² [-].
+/// Minimum intermediate axial and shear stiffness, relative to weight, loads and EI/l² [-].
 const SOFTNESS: f64 = 100.0;
-/// Greatest number of elements of a beam whose search does not start from a coarser one [-].
+/// Maximum number of elements of a beam whose search does not start from a coarser one [-].
 const COARSE_ELEMENTS_MAX: usize = 12;
-/// Linear solves of a search times their nodes: some five seconds [-].
+/// Maximum number of linear solves times nodes in a search [-], about five seconds.
 const WORK_MAX: usize = 4_000_000;
-/// No weight, forces and moments.
+/// No weight, no forces and no moments.
 const UNLOADED: LoadShare = LoadShare {
     force: 0.0,
     moment: 0.0,
@@ -55,15 +55,15 @@ const MOMENT_FREE: LoadShare = LoadShare {
     force: 1.0,
     moment: 0.0,
 };
-/// Part of a moment along a beam that is taken for rounding [-].
+/// Axial part of a moment that counts as rounding [-].
 const TORQUE_MIN: f64 = 1e-6;
-/// Turn of a clamp from one equilibrium to the next on the way to its prescribed attitude [rad].
+/// Turn of a clamp between successive equilibria on the way to its prescribed attitude [rad].
 const CLAMP_TURN: f64 = 0.25;
 
 /// Brings the beam `index` of `state` to rest under the loads of time `t` [s], from its present nodes and frames.
 ///
 /// # Errors
-/// No equilibrium was found; the state is then unchanged.
+/// Fails if no equilibrium is found; the state is then unchanged.
 pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<(), StaticsError> {
     let line = &model.lines[index];
     let (Some(beam), Some(shape)) = (&line.beam, &state.lines[index].beam) else {
@@ -123,7 +123,7 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
     Ok(())
 }
 
-/// Axial and shear stiffness that the search begins with [N].
+/// Initial axial and shear stiffness of the search [N].
 fn softest(case: &BeamCase) -> f64 {
     let weight: f64 = case.weight.iter().map(|w| w.abs()).sum();
     let bodies: f64 = case.bodies.iter().flatten().map(|b| b.weight_max()).sum();
@@ -134,7 +134,7 @@ fn softest(case: &BeamCase) -> f64 {
     SOFTNESS * (weight + bodies + loads.sum::<f64>()).max(bending)
 }
 
-/// Force out of balance that the rounding of positions alone may leave [N].
+/// Out-of-balance force that the rounding of positions alone may leave [N].
 fn rounding(case: &BeamCase, sections: &[Section]) -> f64 {
     let reach = sections.iter().map(|s| s.position.norm()).fold(0.0, f64::max);
     let noise =
@@ -142,8 +142,8 @@ fn rounding(case: &BeamCase, sections: &[Section]) -> f64 {
     f64::EPSILON * case.elements.iter().map(noise).fold(0.0, f64::max)
 }
 
-/// Sections of the beam without stress, from end A on where end B can move, else back from end B where end A can; `None` where both ends are
-/// fixed in place. The end that can move keeps its prescribed unknowns.
+/// Sections of the unstressed beam, laid out from end A if end B can move, else from end B if end A can; `None` if both ends are fixed in place. The
+/// end that can move keeps its prescribed unknowns.
 fn unstressed(case: &BeamCase, start: &[Section]) -> Option<Vec<Section>> {
     let last = start.len() - 1;
     let end = [1, 0]
@@ -174,7 +174,6 @@ fn unstressed(case: &BeamCase, start: &[Section]) -> Option<Vec<Section>> {
 /// Search for an equilibrium: its workspace and the effort so far.
 #[derive(Debug, Clone, Default)]
 struct BeamStatics {
-    /// Name of the line.
     line: String,
     chain: PivotedChain,
     four: Vec<FourElements>,
@@ -193,7 +192,7 @@ impl BeamStatics {
         }
     }
 
-    /// Returns the sections in equilibrium, found from the equilibrium on half as many elements, else from the sections `start`.
+    /// Returns the sections in equilibrium, found from the equilibrium with half as many elements, else from the sections `start`.
     fn solve_from_coarser(
         &mut self,
         case: &BeamCase,
@@ -213,8 +212,8 @@ impl BeamStatics {
         Ok(sections)
     }
 
-    /// Part of the moments on the ends along the beam where it rests without them [N m], where no end is clamped and it is more than rounding.
-    /// Nothing balances it: the torsion of a beam of round section is constant along it, and zero at ends that turn freely.
+    /// Axial part of the end moments [N m], along the beam at rest without them, if no end is clamped and it exceeds rounding. It cannot be balanced:
+    /// the torsion of a beam of round section is constant along it, and zero at ends that turn freely.
     fn torque(case: &BeamCase, start: &[Section]) -> Option<f64> {
         let moments = case.ends.each_ref().map(|end| split(&end.load).1);
         let greatest = moments[0].norm().max(moments[1].norm());
@@ -238,7 +237,7 @@ impl BeamStatics {
         (torque > TORQUE_MIN * greatest).then_some(torque)
     }
 
-    /// Finds the equilibrium with the clamped ends along their neighbours, then turns them step by step to their prescribed attitudes.
+    /// Finds the equilibrium with the clamps aligned with their neighbours, then turns them step by step to their prescribed attitudes.
     fn turn_clamps_in(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), StaticsError> {
         let last = sections.len() - 1;
         let clamps = [(0, 1), (last, last - 1)].map(|(node, next)| {
@@ -272,7 +271,7 @@ impl BeamStatics {
     /// Moves `sections` to equilibrium; prescribed unknowns stay as they are.
     ///
     /// # Errors
-    /// No equilibrium was found; the sections are then unchanged.
+    /// Fails if no equilibrium is found; the sections are then unchanged.
     fn solve(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), StaticsError> {
         self.search(case, sections, |search, case, sections| {
             let start = sections.to_vec();
@@ -340,13 +339,13 @@ impl BeamStatics {
         Err(error)
     }
 
-    /// Search from close to the equilibrium: Newton's method, else reduction of the energy.
+    /// Searches from close to the equilibrium by Newton's method, else by energy descent.
     fn newton_or_settle(&mut self, case: &BeamCase, sections: &mut [Section]) -> bool {
         let start = sections.to_vec();
         self.newton(case, sections, LoadShare::WHOLE) || self.settle(case, sections, &start)
     }
 
-    /// Raises loads in parts from `start`.
+    /// Raises the loads in parts from `start`; returns whether the whole load was reached.
     fn raise(
         &mut self,
         case: &BeamCase,
@@ -360,7 +359,7 @@ impl BeamStatics {
         })
     }
 
-    /// Newton's method under a part of the loads.
+    /// Newton's method under a part of the loads; returns whether it converged.
     fn newton(&mut self, case: &BeamCase, sections: &mut [Section], share: LoadShare) -> bool {
         let (mut last, rounding) = (f64::INFINITY, rounding(case, sections));
         for _ in 0..NEWTON_SOLVES_MAX {
@@ -379,7 +378,7 @@ impl BeamStatics {
         false
     }
 
-    /// Search from `start` by falling energy, on beams stiffened from soft to their actual stiffness; Newton's method ends it and raises
+    /// Searches from `start` by energy descent, on beams stiffened from soft to the actual stiffness. Newton's method completes the search and raises
     /// the moments.
     fn settle(&mut self, case: &BeamCase, sections: &mut [Section], start: &[Section]) -> bool {
         sections.copy_from_slice(start);
@@ -408,8 +407,7 @@ impl BeamStatics {
         found && self.raise(case, sections, &without_moments, turned)
     }
 
-    /// Reduces the energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Returns the last
-    /// λ [-].
+    /// Reduces the energy until steps are short, by J + λ D with λ lowered when the energy falls and raised when it does not. Returns the last λ [-].
     fn descend(&mut self, case: &BeamCase, sections: &mut [Section], from: f64) -> f64 {
         let (mut anchoring, mut last) = (from.max(1e-6), case.energy(sections));
         for _ in 0..DESCENT_SOLVES_MAX {
@@ -447,7 +445,7 @@ impl BeamStatics {
         case.constrain(&mut self.chain, sections);
     }
 
-    /// Adds λ D: a part of the stiffness of its elements, on every node.
+    /// Adds λ D, a fraction of the stiffness of the elements, to the diagonal of every node.
     fn anchor(&mut self, case: &BeamCase, anchoring: f64) {
         for (i, element) in case.elements.iter().enumerate() {
             let (law, l) = (&element.law, element.length);
@@ -462,7 +460,7 @@ impl BeamStatics {
         }
     }
 
-    /// Node and size of the greatest force out of balance [N]; moments are divided by an element's length.
+    /// Node and magnitude of the largest out-of-balance force [N]; moments are divided by the element length.
     fn imbalance(&self, case: &BeamCase) -> (usize, f64) {
         let last = case.elements.len() - 1;
         let size = |i: usize| {
@@ -479,7 +477,7 @@ impl BeamStatics {
             )
     }
 
-    /// Solves and moves the sections by at most STEP_MAX; returns the size of the whole step [-].
+    /// Solves for a step and moves the sections by at most STEP_MAX; returns the size of the whole step [-].
     fn step(&mut self, case: &BeamCase, sections: &mut [Section]) -> Option<f64> {
         self.solves += 1;
         self.work += sections.len();

@@ -1,19 +1,18 @@
 //! Static equilibrium of lines that meet at free points, each line one closed-form elastic catenary.
 //!
-//! Unknowns are the positions of the free points on their free axes only. The residual at a point is
+//! The unknowns are the positions of the free points along their free axes. The residual at a point is
 //!
 //!   R = Σ F_line + F_load(t) − w ẑ,
 //!
-//! with w the weight less the buoyancy of the submerged part and F the end force of a catenary, which lies in the vertical plane through its ends. It is
-//! solved by Newton's method. The stiffness of a line in free flight is exact (see [`catenary::in_flight`]), that of a line on the seabed is a difference
-//! quotient of its closed form; across its plane a line has H/X. Steps are limited, and cut until the power R·δ does not change sign: without friction
-//! the potential energy is convex in the positions of the points, so this finds the unique equilibrium. A point whose lines can touch the seabed rests on it
-//! where it would sink.
+//! with w the weight less the buoyancy of the submerged part and F the end force of a catenary, which lies in the vertical plane through its ends. R
+//! = 0 is solved by Newton's method. The stiffness of a line in free flight is exact (see [`catenary::in_flight`]), that of a line on the seabed is a
+//! difference quotient of its closed form; across its plane a line has H/X. Steps are limited, and cut until the power R·δ does not change sign:
+//! without friction the potential energy is convex in the positions of the points, so this finds the unique equilibrium. A point whose lines can
+//! touch the seabed rests on it where it would otherwise sink.
 //!
-//! Valid for engineering strain, for which the closed form is derived, and where no end lies under the seabed. A
-//! line's friction on the seabed is that of [`super::catenary`]: towards end A, as hauled at B, or the reverse. Where
-//! it leaves no tension at a point on the seabed, any place of the point within a range is an equilibrium, and the
-//! point keeps its place.
+//! Valid for engineering strain, for which the closed form is derived, and where no end lies under the seabed. A line's friction on the seabed is
+//! that of [`super::catenary`]: towards end A, as hauled at B, or the reverse. If it leaves no tension at a point on the seabed, any position of the
+//! point within a range is an equilibrium, and the point keeps its position.
 //!
 //! Source: energy and convexity as for cables under gravity, Irvine (1981), Cable Structures, chapter 2; the rest is derived here.
 
@@ -26,22 +25,22 @@ use crate::elements::{Workspace, free_points, place_ends};
 use crate::math::block_banded::Pivots;
 use crate::model::{ClosedForm, FreePoint, Line, Model, Network, PointState, State};
 
-/// Accepted force out of balance, over the greatest force [-].
+/// Accepted out-of-balance force, relative to the largest force [-].
 const FORCE_TOLERANCE: f64 = 1e-12;
-/// Linear solves of one equilibrium.
+/// Maximum number of linear solves for one equilibrium.
 const NEWTON_SOLVES_MAX: usize = 60;
-/// Cuts of one step.
+/// Maximum number of cuts of one step.
 const CUTS_MAX: usize = 12;
-/// Longest step, over the longest line [-].
+/// Maximum step, relative to the longest line [-].
 const STEP_MAX: f64 = 0.2;
 /// Power of opposite sign that a step may end with, relative to the power at its start [-].
 const TURNED_MAX: f64 = 0.5;
-/// Greatest and least stiffness that is added to every unknown, over forces per length of line [-].
+/// Maximum and minimum stiffness that is added to every unknown, relative to forces per line length [-].
 const RELAXATION: [f64; 2] = [1.0, 1e-13];
-/// Displacement of the difference quotients, over the length of the line [-].
+/// Displacement of the difference quotients, relative to the line length [-].
 const DIFFERENCE: f64 = 1e-9;
 
-/// Returns true where every line of a network has a closed form and no part of the network has drag in a current.
+/// Returns whether every line of a network has a closed form and no part of the network has drag in a current.
 pub fn serves(model: &Model, network: &Network) -> bool {
     let mut lines = model.lines_of(network);
     let points = network.free_points.iter();
@@ -56,7 +55,7 @@ pub fn serves(model: &Model, network: &Network) -> bool {
 /// whose free points have no equilibrium on these is brought to rest on its elements first.
 ///
 /// # Errors
-/// No equilibrium was found, or none exists.
+/// Fails if no equilibrium is found, or none exists.
 pub fn rest(
     model: &Model,
     number: usize,
@@ -71,9 +70,9 @@ pub fn rest(
     Ok(())
 }
 
-/// Moves the free points of a network from their positions in `state` to those at rest at time `t` [s], and puts its lines on
-/// their catenaries. Held points do not move. Returns false, with the state unchanged, where that is not possible: a line
-/// without a closed form, out of the water, or with an end under the seabed, or no equilibrium found in a bounded number of steps.
+/// Moves the free points of a network from their positions in `state` to those at rest at time `t` [s], and puts its lines on their catenaries. Held
+/// points do not move. Returns false, with the state unchanged, if a line has no closed form, comes out of the water or has an end under the seabed,
+/// or if no equilibrium is found in a bounded number of steps.
 pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, work: &mut Workspace) -> bool {
     let network = &model.networks[number];
     if !serves(model, network) {
@@ -98,8 +97,8 @@ pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, wo
     true
 }
 
-/// Finds the catenaries of a network between its points as they are, with their stiffness, and solves the system of its free points for
-/// other right-hand sides to follow; false where a line has no catenary or the points are not stable.
+/// Finds the catenaries of a network between the present positions of its points, with their stiffness, and solves the system of its free points,
+/// ready for other right-hand sides. Returns false if a line has no catenary or the points are not stable.
 pub(crate) fn linearise(model: &Model, number: usize, state: &State, work: &mut Workspace) -> bool {
     let problem = Problem::new(model, number, state.time);
     if !(serves(model, problem.network) && problem.evaluate(state, work)) {
@@ -109,7 +108,7 @@ pub(crate) fn linearise(model: &Model, number: usize, state: &State, work: &mut 
     work.systems[number].solve(Pivots::Positive)
 }
 
-/// Nodes of a line, with its closed-form tensions, from its catenary; the line is at rest.
+/// Sets the nodes and the closed-form tensions of a line at rest from its catenary.
 fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
     let plane = Plane::new(line.ends.map(|point| state.points[point].position));
     let shape = &mut state.lines[index];
@@ -144,7 +143,7 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// Slopes of a line that touches nothing.
+    /// Slopes of a line in free flight.
     fn in_flight(stiffness: &Matrix2<f64>) -> Slopes {
         let both = |column: usize| {
             let [h, v] = [stiffness[(0, column)], stiffness[(1, column)]];
@@ -157,7 +156,7 @@ impl Slopes {
         }
     }
 
-    /// −∂F/∂r of the forces on A and B by the positions of A and B [N/m]; `pulls` are the horizontal tensions [N].
+    /// −∂F/∂r of the forces on A and B with respect to the positions of A and B [N/m]; `pulls` are the horizontal tensions [N].
     fn stiffness(&self, plane: &Plane, pulls: [f64; 2], length: f64) -> [[Matrix3<f64>; 2]; 2] {
         let (e, z) = (plane.along, Vector3::z());
         let sideways = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0)) - e * e.transpose();
@@ -180,7 +179,7 @@ impl Slopes {
     }
 }
 
-/// One network, one time.
+/// Equilibrium of one network at one time.
 struct Problem<'a> {
     model: &'a Model,
     network: &'a Network,
@@ -243,7 +242,7 @@ impl<'a> Problem<'a> {
         false
     }
 
-    /// Catenaries of all lines and residuals at all points; false where a line has none.
+    /// Evaluates the catenaries of all lines and the residuals at all points; returns false if a line has no catenary.
     fn evaluate(&self, state: &State, work: &mut Workspace) -> bool {
         for (index, free) in free_points(self.model, self.network) {
             let weight = free.at(state.points[index].position.z).weight;
@@ -273,7 +272,7 @@ impl<'a> Problem<'a> {
         true
     }
 
-    /// z below which a point that moves vertically does not sink [m].
+    /// Level z below which a point that moves vertically does not sink [m].
     fn seabed_under(&self, point: usize) -> f64 {
         let point = &self.model.points[point];
         let Some(free) = point.free().filter(|free| free.axes[2]) else {
@@ -287,7 +286,7 @@ impl<'a> Problem<'a> {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Axes along which a free point cannot move: not free there, or pressed on the seabed.
+    /// Returns for each axis whether a free point cannot move along it: not free there, or pressed on the seabed.
     fn held(&self, state: &State, work: &Workspace, point: usize, free: &FreePoint) -> [bool; 3] {
         let pressed = work.points[point].residual.z <= 0.0
             && state.points[point].position.z <= self.seabed_under(point);
@@ -295,7 +294,7 @@ impl<'a> Problem<'a> {
         [!x, !y, !z || pressed]
     }
 
-    /// Sets up the stiffness of the lines and the linear system; returns the greatest stiffness [N/m] and the greatest coordinate of a point [m].
+    /// Sets up the stiffness of the lines and the linear system; returns the largest stiffness [N/m] and the largest coordinate of a point [m].
     fn assemble(&self, state: &State, work: &mut Workspace, anchoring: f64) -> (f64, f64) {
         work.systems[self.number].clear();
         let (mut stiffest, mut farthest) = (0.0_f64, 0.0_f64);
@@ -328,7 +327,7 @@ impl<'a> Problem<'a> {
         (stiffest, farthest)
     }
 
-    /// −∂F/∂r of the forces on A and B by the positions of A and B [N/m].
+    /// −∂F/∂r of the forces on A and B with respect to the positions of A and B [N/m].
     fn line_stiffness(&self, state: &State, work: &mut Workspace, index: usize) -> [[Matrix3<f64>; 2]; 2] {
         let line = &self.model.lines[index];
         let Some(solved) = &work.catenaries[index] else {
@@ -369,7 +368,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Returns true where a line on its catenary comes out of the water, which the closed form does not model.
+    /// Returns whether a line on its catenary comes out of the water, which the closed form does not model.
     fn is_pierced(&self, state: &State, work: &Workspace) -> bool {
         self.network.lines.iter().any(|&index| {
             let (line, solved) = (&self.model.lines[index], work.catenaries[index].as_ref());
@@ -424,7 +423,7 @@ impl<'a> Problem<'a> {
         residuals.fold(0.0, f64::max)
     }
 
-    /// Greatest tension, weight or load [N].
+    /// Largest tension, weight or load [N].
     fn greatest_force(&self, work: &Workspace) -> f64 {
         let lines = self.network.lines.iter();
         let solved = lines.filter_map(|&index| work.catenaries[index].as_ref());

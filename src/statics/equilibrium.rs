@@ -7,20 +7,19 @@
 //!   T ← N + dN/dl q·(δ_{i+1} − δ_i), not from the elastic force N of the present shape. That is Newton's method on positions and tensions together with
 //!   the tensions eliminated; a stiff line then converges like an inextensible one. A segment whose predicted tension is
 //!   negative is slack.
-//! * Pseudo-transient relaxation: anchoring springs on every node and a least tension, both of which fade as the
+//! * Pseudo-transient relaxation: anchoring springs on every node and a minimum tension, both of which fade as the
 //!   iteration proceeds. A straight unstressed line has no transverse stiffness without them.
 //!
-//! Where this does not converge, the potential energy, which is convex for all measures that do not soften, is minimised
-//! with axial stiffness limited to a multiple of the loads, by damped Newton steps whose length a directional derivative
-//! checks, and the true stiffness is approached from there. Where a softening measure would be stretched beyond the strain of
-//! its greatest force, the loads are applied in increments instead, and every step must lie close to the one before and
-//! have a positive definite tangent.
+//! If this does not converge, the potential energy is minimised, which is convex for all measures that do not soften. The minimisation limits the
+//! axial stiffness to a multiple of the loads and takes damped Newton steps whose length a directional derivative checks; the true stiffness is
+//! approached from there. Where a softening measure would be stretched beyond the strain of its maximum force, the loads are applied in increments
+//! instead, and every step must lie close to the previous one and have a positive definite tangent.
 //!
 //! Lines with bending stiffness are in `bending`, lines in a current in `current`, slack lines and those that float in `slack`, the friction of
 //! the seabed in `friction`.
 //!
-//! A residual is accepted if it is at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus
-//! the effect of rounding of the positions on the stiffest segment.
+//! A residual is accepted if it is at most 1e-11 of the largest force in the network (tension, nodal weight or load) plus the effect of rounding of
+//! the positions on the stiffest segment.
 //!
 //! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the elimination of
 //! predicted tensions is derived here.
@@ -39,48 +38,48 @@ use crate::elements::{StaticCase, Workspace, copy_network, free_points, place_en
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 use crate::physics::friction::Friction;
 
-/// Accepted force out of balance, over the greatest force [-].
+/// Accepted out-of-balance force, relative to the largest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
-/// Accepted last correction, over the longest line [-], unless three residuals in a row are accepted.
+/// Accepted last correction, relative to the longest line [-], unless three consecutive residuals are accepted.
 const STEP_TOLERANCE: f64 = 1e-12;
-/// Least tension, and least stiffness of the anchoring springs times the length, over the sum of the external forces [-].
+/// Minimum tension, and minimum stiffness of the anchoring springs times the length, relative to the sum of the external forces [-].
 const RELAXATION_MIN: f64 = 1e-12;
-/// Longest correction, over the longest line or, if that is more, the reach of the network [-].
+/// Maximum correction, relative to the longest line or, if that is more, the reach of the network [-].
 const STEP_MAX: f64 = 0.2;
-/// Solves of one Newton iteration with predicted tensions.
+/// Maximum number of solves of one Newton iteration with predicted tensions.
 const NEWTON_SOLVES_MAX: usize = 40;
-/// The same where no segment may turn by much at once.
+/// The same if no segment may turn by much at once.
 const CAUTIOUS_SOLVES_MAX: usize = 200;
-/// Solves of one minimisation.
+/// Maximum number of solves of one minimisation.
 const DESCENT_SOLVES_MAX: usize = 200;
-/// Linear solves of one search times the nodes of the network: some ten seconds [-].
+/// Maximum number of linear solves times nodes in one search [-], about ten seconds.
 const WORK_MAX: usize = 20_000_000;
-/// Force out of balance that a minimisation leaves to Newton's method, over the sum of the loads, and where nodes that stick and nodes that
-/// slide must be distinguished [-].
+/// Out-of-balance force that a minimisation leaves to Newton's method, relative to the sum of the loads; the second value applies where sticking
+/// nodes must be distinguished from sliding ones [-].
 const ROUGH_SHARE: f64 = 1e-6;
 const FINE_SHARE: f64 = 1e-10;
-/// Cuts of one step of a minimisation.
+/// Maximum number of cuts of one step of a minimisation.
 const CUTS_MAX: usize = 12;
-/// EA over the sum of the loads in the soft problem [-].
+/// EA in the soft problem, relative to the sum of the loads [-].
 const SOFT_STIFFNESS: f64 = 50.0;
-/// Negative stiffness that is taken for rounding, over the sum of the loads and the length of the longest line [-].
+/// Negative stiffness that counts as rounding, relative to the sum of the loads per length of the longest line [-].
 const INSTABILITY: f64 = 1e-12;
-/// Load steps on a softening line.
+/// Maximum number of load steps on a softening line.
 const LOAD_STEPS_MAX: usize = 200;
-/// Least growth of a part of a case that is tried [-].
+/// Minimum growth factor that is tried for the part of a case [-].
 const GROWTH_MIN: f64 = 1.1;
-/// Strain over the limit strain from which a failure is attributed to the limit [-].
+/// Ratio of strain to limit strain from which a failure is attributed to the limit [-].
 const NEAR_LIMIT: f64 = 0.5;
-/// Greatest growth of the strain over the limit strain in one load step beyond the limit [-].
+/// Maximum growth of the ratio of strain to limit strain in one load step beyond the limit [-].
 const JUMP_MAX: f64 = 0.1;
-/// Smallest increment of the loads on a softening line [-].
+/// Minimum increment of the loads on a softening line [-].
 const LOAD_INCREMENT_MIN: f64 = 1e-5;
 
-/// Finds the equilibrium of all lines at time `t` [s], for the places of all points: prescribed ones as given, with the orientations that
-/// clamped lines follow, free ones as a guess. Lines start on the shape the scene gives them, else on their catenary.
+/// Finds the equilibrium of all lines at time `t` [s]. `points` contains the positions of prescribed points, with the orientations of clamped lines,
+/// and a guess of those of free points. Lines start from their shape in the scene, else from their catenary.
 ///
 /// # Errors
-/// No equilibrium was found, or there is none.
+/// Fails if no equilibrium is found, or there is none.
 pub fn solve(
     model: &Model,
     points: &[PointState],
@@ -95,10 +94,10 @@ pub fn solve(
     Ok(state)
 }
 
-/// Places all points at time `t` [s], without the nodes of lines.
+/// Returns the state at time `t` [s] with all points, without the nodes of lines.
 ///
 /// # Errors
-/// A place is not finite.
+/// Fails if a position is not finite.
 pub fn place(model: &Model, points: &[PointState], t: f64) -> Result<State, StaticsError> {
     check_finite(model, points)?;
     let lines = model.lines.iter();
@@ -110,7 +109,7 @@ pub fn place(model: &Model, points: &[PointState], t: f64) -> Result<State, Stat
     })
 }
 
-/// Puts the lines of a network between their points on the shape the scene gives them, else on their catenary.
+/// Puts the lines of a network between their points on their shape in the scene, else on their catenary.
 pub fn hang(model: &Model, number: usize, state: &mut State, work: &mut Workspace) {
     for &index in &model.networks[number].lines {
         let line = &model.lines[index];
@@ -124,7 +123,7 @@ pub fn hang(model: &Model, number: usize, state: &mut State, work: &mut Workspac
 /// Brings one network to rest from the shape set by [`hang`]. Beams have a separate equilibrium.
 ///
 /// # Errors
-/// No equilibrium was found, or there is none.
+/// Fails if no equilibrium is found, or there is none.
 pub fn rest(
     model: &Model,
     number: usize,
@@ -141,7 +140,7 @@ pub fn rest(
 /// allocating; velocities and accelerations become zero.
 ///
 /// # Errors
-/// No equilibrium was found, or there is none; the state is then unchanged.
+/// Fails if no equilibrium is found, or there is none; the state is then unchanged.
 pub fn continue_network(
     model: &Model,
     number: usize,
@@ -175,7 +174,7 @@ pub fn continue_network(
     result
 }
 
-/// Carries the nodes of a line along with its ends.
+/// Moves the nodes of a line along with its ends.
 fn shift(state: &mut State, before: &State, model: &Model, index: usize) {
     let line = &model.lines[index];
     let [a, b] = line
@@ -202,14 +201,14 @@ fn check_finite(model: &Model, points: &[PointState]) -> Result<(), StaticsError
     Ok(())
 }
 
-/// Greatest stiffness along the seabed of a node that sticks [N/m].
+/// Largest stiffness along the seabed of a sticking node [N/m].
 fn stiffest_stick(line: &Line) -> f64 {
     let contact = line.nodes.contact.iter();
     let stick = contact.flat_map(|contact| &contact.stick);
     stick.copied().fold(0.0, f64::max)
 }
 
-/// One network, one time.
+/// Equilibrium of one network at one time.
 struct Problem<'a> {
     model: &'a Model,
     network: &'a Network,
@@ -219,9 +218,9 @@ struct Problem<'a> {
     force: f64,
     /// Length of the longest line [m].
     length: f64,
-    /// True where a line has bending stiffness and it is not left out.
+    /// True if a line has bending stiffness that is not left out.
     bends: bool,
-    /// Count of linear solves that ends the search [-].
+    /// Number of linear solves at which the search ends [-].
     solves_end: usize,
 }
 
@@ -254,7 +253,6 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The full problem.
     fn full_case(&self) -> StaticCase {
         StaticCase {
             bends: self.bends,
@@ -262,7 +260,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Returns true once the search has taken its greatest number of solves.
+    /// Returns whether the search has used its maximum number of solves.
     fn is_spent(&self, work: &Workspace) -> bool {
         work.counters.solves >= self.solves_end
     }
@@ -298,8 +296,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Newton's method alone; else, where the loads may be too great, in increments; else from a soft network, or from a taut one, which is
-    /// tried first where lines float.
+    /// Tries Newton's method; then, if a line softens, increments of the loads; then a soft network and a taut one, the taut one first if lines may
+    /// pierce the surface; and finally `thin_gradually`.
     fn solve_from(&self, guess: &State, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         let softens = self.softens();
@@ -341,7 +339,7 @@ impl<'a> Problem<'a> {
         self.remember_shape(state, work);
     }
 
-    /// Sets the predicted tensions to those of a shape.
+    /// Sets the predicted tensions to those of the present shape.
     fn remember_shape(&self, state: &State, work: &mut Workspace) {
         work.assemble_static(self.model, self.network, state, &self.full_case());
         self.remember_tensions(work);
@@ -419,7 +417,7 @@ impl<'a> Problem<'a> {
         false
     }
 
-    /// Counts the assemblies in a row that are in balance, the last one after `balanced` others.
+    /// Counts the consecutive assemblies that are in balance, the last one after `balanced` others.
     fn count_balanced(&self, balanced: usize, state: &State, work: &Workspace, case: &StaticCase) -> usize {
         let (residual, _) = work.greatest_residual(self.network);
         let tolerance = self.tolerance(state, work, case.stiffness_max);
@@ -429,8 +427,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Relaxation at the start of Newton's method: the force out of balance over the sum of the external forces, so that anchoring hardly
-    /// restrains a shape that is close to equilibrium [-]. A power of ten, which rounding of the residual does not change.
+    /// Relaxation at the start of Newton's method [-]: the out-of-balance force relative to the sum of the external forces, so that anchoring hardly
+    /// restrains a shape that is close to equilibrium. It is a power of ten, so that rounding of the residual does not change it.
     fn first_relaxation(&self, state: &State, work: &mut Workspace, case: &StaticCase) -> f64 {
         work.assemble_static(self.model, self.network, state, case);
         let (residual, _) = work.greatest_residual(self.network);
@@ -438,21 +436,21 @@ impl<'a> Problem<'a> {
         10.0_f64.powf(share.log10().ceil())
     }
 
-    /// Returns true where the forces of a shape are in balance by themselves, without predicted tensions.
+    /// Returns whether the forces of a shape are in balance by themselves, without predicted tensions.
     fn is_balanced(&self, state: &State, work: &mut Workspace) -> bool {
         work.assemble_static(self.model, self.network, state, &self.full_case());
         let (residual, _) = work.greatest_residual(self.network);
         residual <= self.tolerance(state, work, f64::INFINITY)
     }
 
-    /// Greatest distance of a node from end A of its line, at least the length of the longest line [m].
+    /// Largest distance of a node from end A of its line, at least the length of the longest line [m].
     fn reach(&self, state: &State) -> f64 {
         let lines = self.network.lines.iter().map(|&line| &state.lines[line].position);
         let distances = lines.flat_map(|nodes| nodes.iter().map(|r| (r - nodes[0]).amax()));
         distances.fold(self.length, f64::max)
     }
 
-    /// Anchoring that lifts pivots above the rounding of the stiffest spring [N/m].
+    /// Anchoring stiffness that raises pivots above the rounding of the stiffest spring [N/m].
     fn rounding_stiffness(&self, case: &StaticCase) -> f64 {
         let spring = |line: &Line| {
             let spring = self.stiffest_spring(line, case.stiffness_max);
@@ -462,7 +460,7 @@ impl<'a> Problem<'a> {
         8.0 * f64::EPSILON * springs.fold(0.0, f64::max)
     }
 
-    /// Greatest stiffness of a segment of at most this EA [N], of the seabed under a node, or of a joint [N/m].
+    /// Largest stiffness of a segment of at most this EA [N], of the seabed under a node, or of a joint [N/m].
     fn stiffest_spring(&self, line: &Line, stiffness_max: f64) -> f64 {
         let segments = line.segments.axial_stiffness.iter().zip(&line.segments.length);
         let axial = segments.map(|(ea, length)| ea.min(stiffness_max) / length);
@@ -475,7 +473,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Accepted force out of balance [N] at the last assembly.
+    /// Accepted out-of-balance force [N] at the last assembly.
     fn tolerance(&self, state: &State, work: &Workspace, stiffness_max: f64) -> f64 {
         let (mut force, mut rounding, mut stuck) = (0.0_f64, 0.0_f64, 0.0_f64);
         for &index in &self.network.lines {
@@ -512,7 +510,7 @@ impl<'a> Problem<'a> {
         FORCE_TOLERANCE * force + rounding.max(stuck)
     }
 
-    /// Returns true where no segment that the last assembly took as taut pushes.
+    /// Returns whether no segment that the last assembly treated as taut is in compression.
     fn no_push(&self, work: &Workspace, tolerance: f64) -> bool {
         self.network.lines.iter().all(|&line| {
             let line = &work.lines[line];
@@ -565,8 +563,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Follows the equilibrium of a case that grows from its `first` part to the whole, by a factor of `growth` or, where that fails, of
-    /// less; returns whether the whole was reached. The state is that of the last part that was found.
+    /// Follows the equilibrium of a case that grows from its `first` part to the whole, by a factor of `growth` or, if that fails, a smaller one.
+    /// Returns whether the whole was reached. The state is that of the last part that was found.
     fn raise(
         &self,
         state: &mut State,
@@ -599,7 +597,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Minimises the potential energy by damped Newton steps, roughly; `case` keeps its stiffness.
+    /// Minimises the potential energy approximately by damped Newton steps; `case` keeps its stiffness.
     fn descend(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) {
         let mut relaxation: f64 = 1.0;
         for _ in 0..DESCENT_SOLVES_MAX {
@@ -632,7 +630,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Moves along the correction as long as the energy falls; returns the part of it that was taken.
+    /// Moves along the correction as long as the energy falls; returns the fraction that was taken.
     fn cut(&self, state: &mut State, work: &mut Workspace, case: &StaticCase, longest: f64) -> f64 {
         let case = StaticCase {
             anchoring: 0.0,
@@ -673,7 +671,7 @@ impl<'a> Problem<'a> {
         laws.any(|law| law.limit_strain().is_some())
     }
 
-    /// Returns true where the tangent of a converged state is positive definite.
+    /// Returns whether the tangent of a converged state is positive definite.
     fn stable(&self, state: &State, work: &mut Workspace, case: StaticCase) -> bool {
         let least = match self.bends {
             true => bending::INSTABILITY,
@@ -689,8 +687,8 @@ impl<'a> Problem<'a> {
         work.solve(self.model, self.number)
     }
 
-    /// Greatest strain over the limit of its measure [-], with line, segment and strain [-]; below the limits of all measures the
-    /// energy is convex and an equilibrium is unique.
+    /// Largest ratio of strain to the limit strain of its measure [-], with line, segment and strain [-]; below the limits of all measures the energy
+    /// is convex and an equilibrium is unique.
     fn strain_over_limit(&self, state: &State) -> (f64, usize, usize, f64) {
         let mut worst = (0.0, self.network.lines[0], 0, 0.0);
         for &index in &self.network.lines {
@@ -709,8 +707,8 @@ impl<'a> Problem<'a> {
         worst
     }
 
-    /// Loads a softening network in increments, from zero; returns the part of the loads that was reached. Beyond the limit strain
-    /// the shape must change little from step to step: a jump is a segment that breaks.
+    /// Loads a softening network in increments, from zero; returns the part of the loads that was reached. Beyond the limit strain the shape must
+    /// change little from step to step: a jump means that a segment breaks.
     fn load_gradually(&self, state: &mut State, work: &mut Workspace) -> f64 {
         let mut increment: f64 = 0.25;
         let mut case = StaticCase {

@@ -52,8 +52,8 @@ impl Plane {
     }
 }
 
-/// Nodes of a line between its ends [m] on its closed-form catenary, with the tensions of its segments [N]. Where there is none, because an end
-/// lies under the seabed, the nodes lie on a parabola of about the right length.
+/// Nodes of a line between its ends [m] on its closed-form catenary, with the tensions of its segments [N]. If there is none because an end lies
+/// under the seabed, the nodes lie on a parabola of about the right length.
 pub(crate) fn hang(
     model: &Model,
     line: &Line,
@@ -78,7 +78,7 @@ pub(crate) fn hang(
     ending_at(ends, nodes)
 }
 
-/// Nodes [m] of the shape that the scene gives a line at the start, between its ends [m]; `None` for the static one.
+/// Nodes [m] of the initial shape of a line in the scene, between its ends [m]; `None` for the static shape.
 pub(crate) fn start_shape(model: &Model, line: &Line, ends: [Vector3<f64>; 2]) -> Option<Vec<Vector3<f64>>> {
     if line.initial != InitialShape::Catenary {
         return line.given_shape(ends);
@@ -91,14 +91,13 @@ pub(crate) fn start_shape(model: &Model, line: &Line, ends: [Vector3<f64>; 2]) -
     ))
 }
 
-/// Nodes [m] whose first and last lie at the ends, without rounding.
+/// Nodes [m] with the first and the last exactly at the ends.
 fn ending_at([a, b]: [Vector3<f64>; 2], mut nodes: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
     let last = nodes.len() - 1;
     (nodes[0], nodes[last]) = (a, b);
     nodes
 }
 
-/// The catenary of a line.
 pub(crate) fn closed_form(model: &Model, line: &Line, plane: &Plane) -> Option<Catenary> {
     let seabed = line.nodes.contact.as_ref().map(|contact| FlatSeabed {
         height: contact.height_under(plane.a) - plane.a.z,
@@ -107,7 +106,7 @@ pub(crate) fn closed_form(model: &Model, line: &Line, plane: &Plane) -> Option<C
     catenary::solve(&line.sections, plane.span, plane.rise, seabed).ok()
 }
 
-/// Returns true where a line on a catenary from end A at `a` [m] comes out of the water, which the closed form does not model.
+/// Returns whether a line on a catenary from end A at `a` [m] comes out of the water, which the closed form does not model.
 pub(crate) fn is_pierced(line: &Line, solved: &Catenary, a: Vector3<f64>) -> bool {
     let height = |&s: &f64| (a.z + solved.at(s).z) * Vector3::z();
     let heights = || line.nodes.arc.iter().map(height).collect::<Vec<_>>();

@@ -8,7 +8,7 @@ pub(crate) mod guess;
 pub mod modes;
 pub mod stiffness;
 
-/// Reason for which no equilibrium was found.
+/// Reason why no equilibrium was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
     /// A softening strain measure carries no more load.
@@ -23,11 +23,11 @@ pub enum StaticsError {
         line: String,
         /// Most stretched segment, from 0 at end A.
         segment: usize,
-        /// Strain of that segment at the greatest load that has an equilibrium [-].
+        /// Strain of that segment at the maximum load with an equilibrium [-].
         strain: f64,
-        /// Strain at which the measure's force is greatest [-].
+        /// Strain at which the force of the measure is largest [-].
         limit_strain: f64,
-        /// The greatest load that has an equilibrium, over the full load [-].
+        /// Maximum load with an equilibrium, relative to the full load [-].
         load_fraction: f64,
     },
     /// The iteration ended without an equilibrium.
@@ -36,11 +36,11 @@ pub enum StaticsError {
          allowed; {advice}"
     )]
     NotConverged {
-        /// Place of the greatest imbalance: line and node, or point.
+        /// Location of the largest imbalance: line and node, or point.
         place: String,
-        /// Force out of balance there [N].
+        /// Out-of-balance force there [N].
         residual: f64,
-        /// Accepted force out of balance [N].
+        /// Accepted out-of-balance force [N].
         tolerance: f64,
         /// Linear solves spent [-].
         iterations: usize,
@@ -55,14 +55,14 @@ pub enum StaticsError {
     BeamNotConverged {
         /// Name of the line.
         line: String,
-        /// Node where the imbalance is greatest, from 0 at end A.
+        /// Node with the largest imbalance, from 0 at end A.
         node: usize,
-        /// Force out of balance there [N].
+        /// Out-of-balance force there [N].
         residual: f64,
         /// Linear solves spent [-].
         iterations: usize,
     },
-    /// Nothing holds a beam, and forces act on it.
+    /// Forces act on a beam that is not held.
     #[error(
         "line \"{line}\": no equilibrium: nothing holds this beam, and {residual:.3e} N are out of balance; hold an end of it, or `run` it \
          from its `initial` shape"
@@ -70,10 +70,10 @@ pub enum StaticsError {
     BeamFlies {
         /// Name of the line.
         line: String,
-        /// Greatest force out of balance [N].
+        /// Largest out-of-balance force [N].
         residual: f64,
     },
-    /// A moment on the end of a beam has a part along it, and no end is clamped.
+    /// A moment on the end of a beam has an axial part, and no end is clamped.
     #[error(
         "line \"{line}\": no equilibrium was found: the moment on its ends has a part of {torque:.3e} N m along the beam, which turns it about its axis, since \
          neither end is clamped; clamp one, give a moment across the beam, or `run` it from its `initial` shape"
@@ -81,10 +81,10 @@ pub enum StaticsError {
     BeamSpins {
         /// Name of the line.
         line: String,
-        /// Part of the moments along the beam [N m].
+        /// Axial part of the moments [N m].
         torque: f64,
     },
-    /// The equilibrium of a beam bends or twists an element beyond the angle that its ends resolve.
+    /// The equilibrium of a beam bends or twists an element beyond the angle that an element resolves.
     #[error(
         "line \"{line}\", node {node}: at rest the beam turns by more than 60 degrees from this node to the next; use more elements \
          there, or a greater bending or torsional stiffness"

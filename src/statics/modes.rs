@@ -1,9 +1,9 @@
 //! Natural frequencies and mode shapes of a network of lines about a state at rest.
 //!
-//! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent
-//! of statics: axial, geometric and bending stiffness of the lines, the seabed's springs where they touch, and the surface's where it is pierced. M
-//! is that of dynamics: lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. M couples the axes of a node only, so that with the Cholesky factors
-//! M = L Lᵀ of its blocks L⁻¹ K L⁻ᵀ y = ω² y is as sparse as K, φ = L⁻ᵀ y. Damping and drag are left out.
+//! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent of statics: axial,
+//! geometric and bending stiffness of the lines, and the springs of the seabed and of the water surface where lines touch or pierce them. M is that
+//! of dynamics: lumped, including added mass, M_n I + (M_t − M_n) t tᵀ at a node. M couples the axes of a node only, so that with the Cholesky
+//! factors M = L Lᵀ of its blocks L⁻¹ K L⁻ᵀ y = ω² y is as sparse as K, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
 //! Source: the linearised equation of motion of `elements`, reduced here; `tests/dynamics/analytic.rs` compares it with closed forms.
 //! Valid for motion small enough that no segment slackens and no node lands or lifts off. A slack segment has no stiffness and
@@ -18,10 +18,10 @@ use crate::math::eigen::{Eigen, Entry};
 use crate::model::{Line, Model, Network, State};
 use crate::physics::slender::Slender;
 
-/// Unknowns up to which the dense solver is used, for any number of modes [-].
+/// Maximum number of unknowns for which the dense solver is used, for any number of modes [-].
 const DENSE_MAX: usize = 300;
 
-/// Reason for which a network has no modes.
+/// Reason why a network has no modes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModesError {
     /// A line is a beam.
@@ -42,7 +42,7 @@ pub enum ModesError {
         /// Node, from 0 at end A.
         node: usize,
     },
-    /// The stiffness is not positive semidefinite.
+    /// The stiffness is not positive semi-definite.
     #[error(
         "line \"{line}\": no natural modes: the equilibrium of this line and the lines joined to it is not stable"
     )]
@@ -52,7 +52,7 @@ pub enum ModesError {
     },
 }
 
-/// The modes of a network, lowest first.
+/// Modes of a network, lowest first.
 #[derive(Debug, Clone)]
 pub struct Modes {
     /// Circular natural frequencies [rad/s]; 0 without a restoring force.
@@ -61,22 +61,22 @@ pub struct Modes {
     eigen: Eigen,
 }
 
-/// The nodes of a network that move.
+/// Moving nodes of a network.
 #[derive(Debug, Clone)]
 struct Nodes {
-    /// Place of every node, by line of the network and node; `None` where it is prescribed.
+    /// Index of every moving node, by line of the network and node; `None` if its motion is prescribed.
     places: Vec<Vec<Option<usize>>>,
-    /// Unknown of every axis of every place; `None` where it is prescribed.
+    /// Unknown of every axis of every moving node; `None` if its motion is prescribed.
     unknowns: Vec<[Option<usize>; 3]>,
-    /// L⁻¹ of every place [1/√kg].
+    /// L⁻¹ of every moving node [1/√kg].
     scale: Vec<Matrix3<f64>>,
 }
 
 impl Modes {
-    /// The `count` lowest modes of a network about `state`, or all where there are fewer.
+    /// The `count` lowest modes of a network about `state`, or all if there are fewer.
     ///
     /// # Errors
-    /// A beam, a node that moves without mass, or an equilibrium that is not stable.
+    /// Fails for a beam, a moving node without mass, or an unstable equilibrium.
     pub fn lowest(
         model: &Model,
         network: usize,
@@ -108,7 +108,7 @@ impl Modes {
         })
     }
 
-    /// Mass-normalised displacements [1/√kg] of every node of a line in a mode; `line` counts the lines of the network.
+    /// Mass-normalised displacements [1/√kg] of every node of a line in a mode; `line` is an index among the lines of the network.
     pub fn shape(&self, mode: usize, line: usize) -> Vec<Vector3<f64>> {
         let Nodes {
             places,
@@ -210,7 +210,7 @@ impl Nodes {
     }
 }
 
-/// L⁻¹ of the mass of a node on its free axes [1/√kg]; `None` where it has none.
+/// L⁻¹ of the mass of a node on its free axes [1/√kg]; `None` if it has no mass.
 fn inverse_factor(mass: &Matrix3<f64>, axes: [bool; 3]) -> Option<Matrix3<f64>> {
     let moves = |i: usize, k: usize| axes[i] && axes[k];
     let own = Matrix3::from_fn(|i, k| {
@@ -223,7 +223,7 @@ fn inverse_factor(mass: &Matrix3<f64>, axes: [bool; 3]) -> Option<Matrix3<f64>> 
     own.cholesky()?.l().try_inverse()
 }
 
-/// Error for a place without mass.
+/// Error for a moving node without mass.
 fn without_mass(model: &Model, network: &Network, places: &[Vec<Option<usize>>], place: usize) -> ModesError {
     let lines = network.lines.iter().zip(places);
     let mut found =

@@ -1,25 +1,23 @@
-//! Stiffness of the mooring on a vessel: the 6×6 slope of its force with the vessel's displacements.
+//! Stiffness of the mooring on a vessel: the 6×6 slope of its force with respect to the displacements of the vessel.
 //!
-//! The vessel moves by x, y and z [m] and by small rotations about the global axes through its origin [rad]. A point
-//! on it at the arm r [m] from the origin follows by u = δ + ω × r, clamps turn by ω × d, and all free nodes and
-//! points move to their new equilibrium. With J the exact tangent of the residual R at rest, x the unknowns and c the
-//! contribution of the turned clamps to R,
+//! The vessel moves by x, y and z [m] and by small rotations about the global axes through its origin [rad]. A point on it at the arm r [m] from the
+//! origin moves by u = δ + ω × r, clamps turn by ω × d, and all free nodes and points move to their new equilibrium. With J the exact tangent of the
+//! residual R at rest, x the unknowns and c the contribution of the turned clamps to R,
 //!
 //!   J (u − x) + c = 0 at every node between the ends and every free point,   δR = J (u − x) + c at the ends on the vessel,
 //!
-//! which takes six solves for the free points. Every line is condensed on its ends once; a clamp that turns is a right-hand side. The force of the
+//! which takes six solves for the free points. Every line is condensed on its ends once; a turning clamp adds a right-hand side. The force of the
 //! mooring is F = −R and its moment M = Σ r × F + m, so that
 //!
 //!   K δ = −δF = Σ δR,   −δM = Σ r × δR + (ω × r) × R − δm,
 //!
-//! the second term because the arms rotate. The moment on a clamp of direction d is m = −d × g with g the slope of the energy of its
-//! joint with d, and −δm = (ω × d) × g + d × δg.
+//! where the second term arises because the arms rotate. The moment on a clamp of direction d is m = −d × g with g the slope of the energy of its
+//! joint with respect to d, and −δm = (ω × d) × g + d × δg.
 //!
-//! A network whose lines lie on closed-form catenaries has the stiffness of those, including seabed friction, in
-//! place of J. Others have that of their elements: springs, weight, bending and the springs of the seabed; nodes that
-//! stick to it are held by friction, and sliding nodes continue to slide. Drag, inertia and dampers are not
-//! included. Without friction the mooring is conservative: the parts of K that concern displacements are symmetric,
-//! and K − Kᵀ of the rotations is ω ↦ M × ω, since finite rotations do not commute.
+//! In a network whose lines lie on closed-form catenaries, the stiffness of the catenaries, including seabed friction, replaces J. Other networks
+//! have the stiffness of their elements: springs, weight, bending and the springs of the seabed; nodes that stick to it are held by friction, and
+//! sliding nodes continue to slide. Drag, inertia and dampers are not included. Without friction the mooring is conservative: the parts of K that
+//! concern displacements are symmetric, and K − Kᵀ of the rotations is ω ↦ M × ω, since finite rotations do not commute.
 //!
 //! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the seabed has no lateral
 //! stiffness; anchoring springs of 10⁻¹⁵ to 10⁻⁹ of its axial stiffness then keep it in place. Beams have
@@ -33,12 +31,11 @@ use crate::math::block_banded::Pivots;
 use crate::model::{Body, End, Line, Model, Network, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
 
-/// Springs on every unknown, over the greatest axial stiffness of a segment [-]; each is tried if the previous one did not suffice.
+/// Springs on every unknown, relative to the largest axial stiffness of a segment [-]; each is tried if the previous one did not suffice.
 const ANCHORING: [f64; 4] = [0.0, 1e-15, 1e-12, 1e-9];
 
-/// Minus the change of force [N/m, N] and moment [N, N m] of the mooring on a vessel, about its `origin` [m], with displacement and
-/// rotation along and about the global axes. `None` where the present state is not stable, a beam is attached, or a line
-/// is released from a point.
+/// Negative slope of the force [N/m, N] and moment [N, N m] of the mooring on a vessel, about its `origin` [m], with respect to displacements along
+/// and rotations about the global axes. `None` if the present state is not stable, a beam is attached, or a line is released from a point.
 pub fn of_vessel(
     model: &Model,
     state: &State,
@@ -72,7 +69,7 @@ pub fn of_vessel(
     Some(sum)
 }
 
-/// The same for the points that move with it: their loads, and their weight less buoyancy.
+/// The same for the points that move with the vessel: their loads, and their weight less buoyancy.
 fn of_own_weights(model: &Model, state: &State, vessel: usize, origin: Vector3<f64>) -> Matrix6<f64> {
     let mut sum = Matrix6::zeros();
     for &index in &model.vessels[vessel].points {
@@ -105,7 +102,6 @@ struct Motion {
 }
 
 impl Motion {
-    /// Axes of all motions.
     const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
     fn along(axis: usize) -> Motion {
@@ -121,28 +117,28 @@ impl Motion {
         self.shift + self.spin.cross(&arm)
     }
 
-    /// Change of force [N] and moment [N m] about the origin, for that of a force at an arm [m].
+    /// Change of force [N] and moment [N m] about the origin, due to the `change` of a `force` at an arm [m].
     fn at_origin(&self, arm: Vector3<f64>, force: Vector3<f64>, change: Vector3<f64>) -> Vector6<f64> {
         joined(change, arm.cross(&change) + self.spin.cross(&arm).cross(&force))
     }
 }
 
-/// A clamp on the vessel, and how the energy of its joint changes.
+/// Clamp on the vessel, with the derivatives of the energy of its joint.
 struct Clamp {
     /// Direction d from end A to end B [-].
     direction: Vector3<f64>,
-    /// Slope g of the energy with the direction [N m].
+    /// Slope g of the energy with respect to the direction [N m].
     slope: Vector3<f64>,
-    /// Second derivatives with the direction and the end's segment.
+    /// Second derivatives with respect to the direction and the segment at this end.
     hessian: Hessian,
-    /// The end it holds, 0 for A and 1 for B.
+    /// End that it holds, 0 for A and 1 for B.
     side: usize,
-    /// The end's segment.
+    /// Segment at this end.
     segment: usize,
 }
 
 impl Clamp {
-    /// Clamp of an end of a line; `None` where that is pinned.
+    /// Clamp of an end of a line; `None` if that end is pinned.
     fn new(line: &Line, state: &State, index: usize, end: End) -> Option<Clamp> {
         let bending = line.bending.as_ref()?;
         let (node, side) = (line.end_node(end), usize::from(end == End::B));
@@ -170,7 +166,7 @@ impl Clamp {
         })
     }
 
-    /// Changes of the slopes of the energy with the clamp and with the segment, for those of the clamp [-] and of the segment [m].
+    /// Changes of the slopes of the energy with respect to the clamp and to the segment, due to changes of the clamp [-] and of the segment [m].
     fn slopes(&self, turned: Vector3<f64>, growth: Vector3<f64>) -> [Vector3<f64>; 2] {
         let mut changes = [growth; 2];
         changes[self.side] = turned;
@@ -178,7 +174,7 @@ impl Clamp {
         [slopes[self.side], slopes[1 - self.side]]
     }
 
-    /// Adds c of a turn ω of the clamp alone to the change of a line's residual.
+    /// Adds c, for a turn ω of the clamp alone, to the change of a line's residual.
     fn add_push(&self, spin: &Vector3<f64>, change: &mut [Vector3<f64>]) {
         let [_, push] = self.slopes(spin.cross(&self.direction), Vector3::zeros());
         change[self.segment] -= push;
@@ -194,24 +190,24 @@ impl Clamp {
     }
 }
 
-/// A line condensed on its ends, both of them free.
+/// Line condensed on its ends, both of them free.
 struct CondensedLine {
     index: usize,
     /// Residual of the ends at rest [N].
     residual: [Vector3<f64>; 2],
-    /// Slopes of these with the positions of the ends [N/m].
+    /// Slopes of the residual with respect to the positions of the ends [N/m].
     stiffness: [[Matrix3<f64>; 2]; 2],
     /// Clamps on the vessel.
     clamps: Vec<Clamp>,
 }
 
 impl CondensedLine {
-    /// Change of the residual of the ends by displacements of these [m].
+    /// Change of the residual of the ends due to their displacements [m].
     fn change(&self, moved: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
         self.stiffness.map(|[a, b]| a * moved[0] + b * moved[1])
     }
 
-    /// Change of the residual of the ends by the turned clamps [N].
+    /// Change of the residual of the ends due to the turned clamps [N].
     fn pushed(&self, motion: &Motion, work: &mut Workspace) -> [Vector3<f64>; 2] {
         if self.clamps.is_empty() {
             return [Vector3::zeros(); 2];
@@ -244,7 +240,7 @@ impl Problem<'_> {
         self.state.points[point].position - self.origin
     }
 
-    /// Displacement of a point with the vessel [m]; zero where it is not on it.
+    /// Displacement of a point with the vessel [m]; zero if it is not on the vessel.
     fn moved(&self, point: usize, motion: &Motion) -> Vector3<f64> {
         match self.rides(point) {
             true => motion.of(self.arm(point)),
@@ -252,7 +248,7 @@ impl Problem<'_> {
         }
     }
 
-    /// The lines on their catenaries, with the system of the free points solved.
+    /// Condenses the lines on their catenaries and solves the system of the free points.
     fn of_catenaries(&self, work: &mut Workspace) -> Option<Vec<CondensedLine>> {
         if !catenary_network::linearise(self.model, self.number, self.state, work) {
             return None;
@@ -269,8 +265,8 @@ impl Problem<'_> {
         self.network.lines.iter().map(condensed).collect()
     }
 
-    /// The lines on their elements, with springs of a `part` of their greatest axial stiffness [-] on every unknown, and the system of the free
-    /// points solved.
+    /// Condenses the lines on their elements, with springs on every unknown of a `part` of the largest axial stiffness [-], and solves the system of
+    /// the free points.
     fn of_elements(&self, part: f64, work: &mut Workspace) -> Option<Vec<CondensedLine>> {
         let mut lines = self.model.lines_of(self.network);
         let springs = lines.clone().flat_map(|line| {
@@ -297,7 +293,7 @@ impl Problem<'_> {
         solved.then_some(lines)
     }
 
-    /// A line condensed on its ends, after an assembly, and added to the system of the free points.
+    /// Condenses a line on its ends, after an assembly, and adds it to the system of the free points.
     fn condensed(&self, index: usize, work: &mut Workspace) -> Option<CondensedLine> {
         let (line, line_work) = (&self.model.lines[index], &mut work.lines[index]);
         let residual = [End::A, End::B].map(|end| line_work.residual[line.end_node(end)]);

@@ -1,4 +1,4 @@
-//! Base and CASES -> cases, all of them checked as scenes before any runs.
+//! Reads cases from a base and a file CASES, and checks all of them as scenes before any runs.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -16,11 +16,11 @@ use crate::key::Place;
 use crate::kind::{Kind, Severity, ramp, severity, system};
 use crate::sheet::{Column, Draft, Entry, Sheet, mistake};
 
-/// Most mistakes of CASES that are reported [-].
+/// Maximum number of mistakes of CASES that are reported [-].
 const MISTAKES_MAX: usize = 20;
-/// Column of a motion file that moves what its columns name, as `run --motion` does.
+/// Column with motion files, which move bodies as those of `run --motion` do.
 const MOTION: &str = "motion";
-/// Key of the duration, which takes precedence over that of a motion file.
+/// Key of the duration, which takes precedence over the duration of a motion file.
 const DURATION: &str = "output.duration";
 
 /// Scene or deck whose keys the cases set.
@@ -48,7 +48,7 @@ impl Base {
         Ok(Base { loaded, document })
     }
 
-    /// Remarks on the base as it is.
+    /// Remarks on the base itself.
     pub fn notes(&self) -> &[Note] {
         &self.loaded.notes
     }
@@ -57,11 +57,11 @@ impl Base {
 /// Input of one simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Input {
-    /// The base, in whose folder its files stand.
+    /// The base, whose folder contains its files.
     pub base: Arc<PathBuf>,
     /// The scene as TOML.
     pub document: String,
-    /// Motion file in place of the scene's motion, with the duration where the case sets it.
+    /// Motion file instead of the scene's motion, with the duration if the case sets it.
     pub drive: Drive,
 }
 
@@ -89,13 +89,13 @@ impl Input {
 pub struct Case {
     /// Number, from 1 in the order of CASES.
     pub number: usize,
-    /// Keys as CASES has them, each with its unit and its value; `None` where the case leaves that of the base.
+    /// Keys as in CASES, each with its unit and its value; `None` if the case keeps the value of the base.
     pub values: Vec<(Arc<Key>, Option<Value>)>,
     /// Line of CASES [-], from 1.
     pub line: usize,
-    /// Time from which results count [s]: the end of the ramps.
+    /// Time from which results count [s]; by default the end of the ramps.
     pub from: f64,
-    /// Remarks on the scene that do not hold for the base.
+    /// Remarks on the scene that do not apply to the base.
     pub notes: Vec<Note>,
     pub(crate) input: Input,
     pub(crate) kind: Arc<Kind>,
@@ -106,7 +106,7 @@ pub struct Case {
 pub struct Key {
     /// Path as written.
     pub path: String,
-    /// Unit of the values that cases hold, where the key has one.
+    /// Unit of the values in cases, if the key has one.
     pub unit: Option<String>,
 }
 
@@ -137,7 +137,7 @@ impl Case {
     }
 }
 
-/// Texts under keys named `file`.
+/// Collects the texts under keys named `file`.
 fn file_names(value: &Value, found: &mut Vec<String>) {
     match value {
         Value::Table(table) => {
@@ -156,9 +156,9 @@ fn file_names(value: &Value, found: &mut Vec<String>) {
 /// Column of CASES and its place in the scene.
 struct Target {
     key: Arc<Key>,
-    /// None of the column `motion`.
+    /// Place in the scene; `None` for the column `motion`.
     place: Option<Place>,
-    /// Factor to SI units, where the heading gives a unit [-].
+    /// Factor to SI units [-], if the heading gives a unit.
     factor: Option<f64>,
 }
 
@@ -173,11 +173,11 @@ impl Target {
     }
 }
 
-/// Reads the cases of a file and checks each of them as a scene. `from` is the time from which results count [s], in place of the end of the
+/// Reads the cases of a file and checks each of them as a scene. `from` is the time from which results count [s], instead of the end of the
 /// ramps.
 ///
 /// # Errors
-/// All mistakes in the file, with their places: keys that lead nowhere, units, values that the scene refuses, files that are missing.
+/// All mistakes in the file, with their places: paths without a key, units, values that the scene refuses, files that are missing.
 pub fn cases(base: &Base, path: &Path, from: Option<f64>) -> Result<Arc<[Case]>, LoadError> {
     let sheet = Sheet::read(path)?;
     let builder = Builder::new(base, &sheet, from)?;
@@ -199,7 +199,7 @@ pub fn cases(base: &Base, path: &Path, from: Option<f64>) -> Result<Arc<[Case]>,
     Ok(with_kinds(good))
 }
 
-/// The mistakes in the order of the text, each once.
+/// The mistakes in the order of the text, without duplicates.
 fn refused(sheet: &Sheet, mut mistakes: Vec<SceneError>) -> LoadError {
     mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
     mistakes.dedup();
@@ -219,7 +219,7 @@ struct Checked {
     severity: Severity,
 }
 
-/// Gives cases of one kind of system the same discretisation.
+/// Assigns the same discretisation to cases of one kind of system.
 fn with_kinds(checked: Vec<Checked>) -> Arc<[Case]> {
     let mut members: BTreeMap<[u8; 32], Vec<usize>> = BTreeMap::new();
     for (index, case) in checked.iter().enumerate() {
@@ -245,7 +245,7 @@ fn with_kinds(checked: Vec<Checked>) -> Arc<[Case]> {
         .collect()
 }
 
-/// Maker of cases from the rows of CASES.
+/// Builder of cases from the rows of CASES.
 struct Builder<'b> {
     base: &'b Base,
     sheet: &'b Sheet,
@@ -320,7 +320,7 @@ impl<'b> Builder<'b> {
         })
     }
 
-    /// Mistakes in a case: values that another of its keys replaces.
+    /// Mistakes in a case: values that are replaced by another key of the case.
     fn replaced(&self, draft: &Draft) -> Vec<SceneError> {
         let target = |entry: &Entry| &self.targets[entry.column];
         let mut mistakes = Vec::new();
@@ -373,7 +373,7 @@ impl<'b> Builder<'b> {
         })
     }
 
-    /// A file that CASES names, relative to it.
+    /// A file that CASES names, relative to the folder of CASES.
     fn beside(&self, file: &str) -> PathBuf {
         let path = folder_of(&self.sheet.path).join(file);
         std::path::absolute(&path).unwrap_or(path)
@@ -429,13 +429,13 @@ impl<'b> Builder<'b> {
     }
 }
 
-/// Returns whether a key path is another one or continues it.
+/// Returns whether a key path is equal to another one or below it.
 fn is_within(path: &str, holder: &str) -> bool {
     let rest = path.strip_prefix(holder);
     rest.is_some_and(|rest| holder.is_empty() || rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// The place of a column in the scene.
+/// Place of a column in the scene.
 fn target(base: &Base, column: &Column) -> Result<Target, SceneError> {
     let refuse = |problem: String| mistake(&column.path, problem, &column.span);
     let place = match column.path.as_str() {

@@ -1,8 +1,8 @@
-//! Rows of a sweep as they come, so that it can be killed at any moment.
+//! Rows of a sweep, stored as cases end, so that the sweep can be killed at any moment.
 //!
-//! Bytes: a mark with the version, then records, each sealed ([`moorline::output::sealed`]) after its length. The first record identifies the
-//! sweep. A record is appended in one write; one that is truncated or damaged, and all after it, is removed when the journal is opened, and its cases run
-//! again.
+//! Format: a mark with the version, then records, each sealed ([`moorline::output::sealed`]) and preceded by its length. The first record identifies the
+//! sweep. A record is appended in one write. When the journal is opened, a truncated or damaged record and all records after it are removed, and their
+//! cases run again.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -24,7 +24,7 @@ pub const JOURNAL: &str = "sweep.journal";
 const MARK: &str = concat!("moorline sweep 2 ", env!("CARGO_PKG_VERSION"), "\n");
 /// Bytes of the length of a record.
 const LENGTH: usize = 4;
-/// Bytes of a check sum.
+/// Bytes of a checksum.
 const SUM: usize = 32;
 
 /// Fingerprint of the input of a sweep.
@@ -32,22 +32,22 @@ const SUM: usize = 32;
 pub(crate) struct Identity {
     /// Number of cases [-].
     pub cases: usize,
-    /// Of the scenes of all cases, in their order, as the base and CASES give them.
+    /// Hash of the scenes of all cases, in their order, as the base and CASES give them.
     pub scenes: [u8; SUM],
-    /// Of the files that they name.
+    /// Hash of the files that they name.
     pub files: [u8; SUM],
-    /// Of the times from which results count, and of the choice of series.
+    /// Hash of the times from which results count, and of the choice of series.
     pub options: [u8; SUM],
 }
 
 impl Identity {
-    /// One hash of all of them.
+    /// Hash of the scenes, files and options together.
     pub(crate) fn fingerprint(&self) -> [u8; SUM] {
         let parts = [&self.scenes[..], &self.files, &self.options].concat();
         Sha256::digest(parts).into()
     }
 
-    /// The difference of another sweep, in words that follow "it holds".
+    /// Difference from another sweep, in words that follow "it holds".
     fn difference(&self, other: &Identity) -> Option<String> {
         if self.scenes != other.scenes {
             return Some(match self.cases == other.cases {
@@ -71,7 +71,7 @@ enum Record {
     Case(usize, Result<(usize, Vec<Figures>), String>, Vec<String>),
 }
 
-/// A journal that is open for this process alone.
+/// A journal that is open for this process only.
 #[derive(Debug)]
 pub(crate) struct Journal {
     path: PathBuf,
@@ -80,10 +80,10 @@ pub(crate) struct Journal {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, or begins one; returns the rows of the cases that have ended.
+    /// Opens the journal of a folder, or creates one; returns the rows of the cases that have ended.
     ///
     /// # Errors
-    /// The journal of another sweep or version, or one that another process has open.
+    /// The journal belongs to another sweep or version, is open in another process, or cannot be read or written.
     pub(crate) fn open(
         folder: &Path,
         identity: &Identity,
@@ -155,7 +155,7 @@ impl Journal {
             .map_err(|error| self.failure(error))
     }
 
-    /// Rows of the whole records; `rest` is then the bytes after them.
+    /// Rows of the complete records; `rest` is then the bytes after them.
     fn rows(&mut self, rest: &mut &[u8], cases: &[Case]) -> Vec<Row> {
         let mut lists: Vec<Arc<Vec<Quantity>>> = Vec::new();
         let mut rows: Vec<Row> = Vec::new();
@@ -200,7 +200,7 @@ impl Journal {
         self.file.write_all(&text).map_err(|error| self.failure(error))
     }
 
-    /// Number of the list of quantities of results, which is shared with that of other rows; a new one is written.
+    /// Number of the list of quantities of some results, which is shared with other rows; a new list is written.
     fn list(&mut self, results: &mut Results, text: &mut Vec<u8>) -> usize {
         if let Some((known, number)) = self.quantities.get_key_value(&results.quantities) {
             results.quantities = known.clone();
@@ -218,14 +218,14 @@ impl Journal {
     }
 }
 
-/// A record with its length and check sum.
+/// A record with its length and checksum.
 fn framed(record: &impl Serialize) -> Vec<u8> {
     let sealed = sealed::seal(&[], record);
     let length = u32::try_from(sealed.len()).expect("a record is shorter than 4 GiB");
     [&length.to_le_bytes()[..], &sealed].concat()
 }
 
-/// The first record, and the bytes after it; `None` if it is not whole.
+/// The first record, and the bytes after it; `None` if the record is incomplete or damaged.
 fn first<T: DeserializeOwned>(bytes: &[u8]) -> Option<(T, &[u8])> {
     let (length, rest) = bytes.split_at_checked(LENGTH)?;
     let length = u32::from_le_bytes(length.try_into().ok()?) as usize;

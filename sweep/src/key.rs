@@ -1,8 +1,8 @@
-//! Setting a key of a scene by its path: the one home of paths such as `lines.line1.length`.
+//! Setting a key of a scene by its path, such as `lines.line1.length`.
 //!
-//! A path has the keys of the scene format from the top. Lines, points and vessels are addressed by name, other lists by `[0]`; a list of one
-//! part is passed through, as the one sea of `water.waves` or the one section of a line. `lines.line1.length` is the length of its
-//! section, `seed` that of `water.waves`.
+//! A path consists of the keys of the scene format from the top. Lines, points and vessels are addressed by name, parts of other lists by `[0]`.
+//! The index of a list with a single part may be left out, as for the only sea of `water.waves` or the only section of a line:
+//! `lines.line1.length` is the length of its section. `seed` is short for `water.waves.seed`.
 
 use std::fmt::Write;
 
@@ -23,20 +23,20 @@ enum Step {
 const SHORT: [(&str, &[&str]); 1] = [("seed", &["water", "waves", "seed"])];
 /// Lists whose keys may be written without the name of the list.
 const PASSED: &str = "sections";
-/// Levels of tables that a misplaced key is looked for in [-].
+/// Levels of tables in which a misplaced key is looked up [-].
 const DEPTH: usize = 4;
 
 /// Place of a value in the document of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Place {
     steps: Vec<Step>,
-    /// A second name of the key, which must not be given with it.
+    /// Second name of the key, which must not be given together with it.
     alias: Option<&'static str>,
     /// Unit of the number.
     pub unit: Option<&'static str>,
 }
 
-/// Value kinds on the way down.
+/// Kinds of values on the way down a path.
 #[derive(Clone, Copy)]
 enum At {
     /// A table, or a list of tables.
@@ -59,10 +59,10 @@ impl At {
 }
 
 impl Place {
-    /// Finds the place that a path means in a document.
+    /// Finds the place of a path in a document.
     ///
     /// # Errors
-    /// The step that leads nowhere, and what would be right.
+    /// The step that leads nowhere, and its correction.
     pub(crate) fn find(document: &Value, path: &str) -> Result<Place, String> {
         let steps = match SHORT.iter().find(|(short, _)| *short == path) {
             Some((_, long)) => long.iter().map(|key| Step::Key((*key).to_string())).collect(),
@@ -84,7 +84,7 @@ impl Place {
         Ok(walk.place)
     }
 
-    /// The path as the reader of scenes writes it.
+    /// Path as the reader of scenes writes it.
     pub(crate) fn path(&self) -> String {
         rendered(&self.steps)
     }
@@ -99,8 +99,8 @@ impl Place {
         self.steps.first() == Some(&Step::Key("motion".to_string()))
     }
 
-    /// Returns whether only one of two places can have a value in a case: one holds the other, or one is the file of a motion that the other
-    /// belongs to.
+    /// Returns whether only one of two places can have a value in a case: one contains the other, or one is the file of a motion to which the other
+    /// belongs.
     pub(crate) fn excludes(&self, other: &Place) -> bool {
         let holds =
             |one: &Place, other: &Place| other.steps.starts_with(one.replaced().unwrap_or(&one.steps));
@@ -114,7 +114,7 @@ impl Place {
         (is_motion && self.is_file()).then_some(above)
     }
 
-    /// Sets the value in a document of the same lists; tables that are missing are made. A motion that becomes a file loses its other keys.
+    /// Sets the value in a document with the same lists; missing tables are created. If a motion becomes a file, its other keys are removed.
     pub(crate) fn set(&self, document: &mut Value, new: Value) {
         let Some((last, above)) = self.steps.split_last() else {
             return;
@@ -145,7 +145,7 @@ impl Place {
     }
 }
 
-/// The table that a value is; another value is replaced by an empty table.
+/// Returns a value as a table; a value of another type is replaced by an empty table.
 fn as_table(value: &mut Value) -> &mut toml::Table {
     if !value.is_table() {
         *value = Value::Table(toml::Table::new());
@@ -156,7 +156,7 @@ fn as_table(value: &mut Value) -> &mut toml::Table {
     }
 }
 
-/// The way down a path.
+/// State of the way down a path.
 struct Walk<'d> {
     document: &'d Value,
     value: Option<&'d Value>,
@@ -205,7 +205,7 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// A part of a list of tables, by name or number; or a key of its only part.
+    /// Enters a part of a list of tables, by name or index; or a key of its only part.
     fn part(&mut self, schema: Schema, list: &'d [Value], step: &Step) -> Result<(), String> {
         let name = match step {
             Step::Index(index) => return self.index(list, *index),
@@ -265,7 +265,7 @@ impl<'d> Walk<'d> {
         })
     }
 
-    /// A table by its name. A motion may be new; a line type is not.
+    /// Enters a table by its name. A motion may be new, a line type may not.
     fn named(&mut self, schema: Schema, name: &str) -> Result<(), String> {
         let of = self.place.path();
         let value = self.value.and_then(|value| value.get(name));
@@ -300,7 +300,7 @@ fn names<'d>(document: &'d Value, list: &str) -> impl Iterator<Item = &'d str> {
         .filter_map(|part| part.get("name").and_then(Value::as_str))
 }
 
-/// Path of the first key with this name, here or in other programs, in the tables below one.
+/// Path of the first key with this name, here or in other programs, in a table and those below it.
 fn below(schema: &Schema, above: &str, name: &str, depth: usize) -> Option<String> {
     let lower = name.to_lowercase();
     let is_called = |key: &&moorline::scene::table::Key| {

@@ -1,10 +1,10 @@
 //! Kinds of systems: cases that share a discretisation.
 //!
-//! Trials select elements, integrator and step ([`moorline::discretisation`]); they cost about a second, as much as many cases do. Cases are of one kind if
-//! their scenes differ in nothing but seas, current, motions (of the same bodies) and title: lines, types, depth, solver, duration and interval are the
-//! same. The error of a mesh depends on the motion too, so the choice of a kind is made for the extremes of its cases: those of the greatest displacement,
-//! speed and acceleration of supports and water, at most three and often one. For each network the greatest number of elements is taken ([`finest`]). Cases
-//! that differ in seeds alone are equally severe, and the first one represents all.
+//! Trials select elements, integrator and step ([`moorline::discretisation`]). They take about a second, as long as the runs of many cases. Cases are of
+//! one kind if their scenes differ only in seas, current, motions (of the same bodies) and title: lines, types, depth, solver, duration and interval
+//! are the same. The error of a mesh also depends on the motion, so the discretisation of a kind is selected for its extreme cases, those with the greatest
+//! displacement, speed and acceleration of supports and water: at most three and often one. For each network the greatest number of elements is taken
+//! ([`finest`]). Cases that differ only in seeds are equally severe, and the first one represents all.
 
 use std::sync::OnceLock;
 
@@ -15,25 +15,25 @@ use moorline::scene::{
 
 use crate::case::Input;
 
-/// Greatest displacement [m], speed [m/s] and acceleration [m/s²] of supports and water, to compare cases by.
+/// Maximum displacement [m], speed [m/s] and acceleration [m/s²] of supports and water, by which cases are compared.
 pub(crate) type Severity = [f64; 3];
 
 /// A kind of system.
 #[derive(Debug, Default)]
 pub(crate) struct Kind {
-    /// The cases that the trials are made on.
+    /// Cases on which the trials are run.
     extremes: Vec<Input>,
     choice: OnceLock<Choice>,
 }
 
-/// Discretisation of a kind; where nothing was open or found, only the notes are without effect.
+/// Discretisation of a kind, with remarks; without a discretisation, scenes remain as they are.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Choice {
     found: Option<Found>,
     notes: Vec<String>,
 }
 
-/// Keys of a scene that a discretisation sets.
+/// Keys of a scene that are set by a discretisation.
 #[derive(Debug, Clone, PartialEq)]
 struct Found {
     elements: Option<usize>,
@@ -43,7 +43,6 @@ struct Found {
 }
 
 impl Kind {
-    /// The kind of these cases.
     pub(crate) fn of(cases: &[(Severity, &Input)]) -> Kind {
         let mut places: Vec<usize> = (0..3).filter_map(|measure| extreme(cases, measure)).collect();
         places.sort_unstable();
@@ -54,7 +53,7 @@ impl Kind {
         }
     }
 
-    /// Gives a scene of this kind its discretisation, which is selected at the first call.
+    /// Sets the discretisation of a scene of this kind, which is selected at the first call.
     pub(crate) fn discretise(&self, scene: &mut Scene) {
         let Some(found) = &self.choice().found else {
             return;
@@ -67,7 +66,7 @@ impl Kind {
         }
     }
 
-    /// Remarks on the discretisation, once it was selected: errors that are expected to exceed the tolerance.
+    /// Remarks on the discretisation after its selection: errors that are expected to exceed the tolerance.
     pub(crate) fn notes(&self) -> &[String] {
         self.choice.get().map_or(&[], |choice| &choice.notes)
     }
@@ -93,13 +92,13 @@ impl Kind {
     }
 }
 
-/// A scene whose lines share no threads: the cases do.
+/// Scene whose lines are computed on one thread, since the cases run in parallel.
 pub(crate) fn on_one_thread(mut scene: Scene) -> Scene {
     scene.solver.threads = Threads::Number(1);
     scene
 }
 
-/// Index of the case with the greatest value of a measure; among equal ones, of the next measure, and then the first.
+/// Index of the case with the greatest value of a measure; among equal ones, that with the greatest next measure, then the first.
 fn extreme(cases: &[(Severity, &Input)], measure: usize) -> Option<usize> {
     let order = |place: &usize| [0, 1, 2].map(|i| cases[*place].0[(measure + i) % 3]);
     let later = |a: &usize, b: &usize| {
@@ -111,7 +110,7 @@ fn extreme(cases: &[(Severity, &Input)], measure: usize) -> Option<usize> {
     (0..cases.len()).max_by(later)
 }
 
-/// Text that is the same of scenes of one kind.
+/// Text that is equal for scenes of one kind.
 pub(crate) fn system(scene: &Scene) -> String {
     let mut scene = scene.clone();
     scene.title.clear();
@@ -137,7 +136,7 @@ pub(crate) fn ramp(scene: &Scene) -> f64 {
     of_motions.chain(of_waves).fold(0.0, f64::max)
 }
 
-/// Motions of a scene, each with the lever of its rotations [m].
+/// Motions of a scene, each with the lever arm of its rotations [m].
 fn motions(scene: &Scene) -> impl Iterator<Item = (&MotionPath, f64)> {
     let lever = |body: &str| {
         let points = scene
@@ -198,7 +197,7 @@ fn of_sine(amplitude: f64, period: f64) -> Severity {
     [amplitude, amplitude * rate, amplitude * rate * rate].map(f64::abs)
 }
 
-/// Severity of a motion whose rotations act on a lever [m].
+/// Severity of a motion whose rotations act on a lever arm [m].
 fn of_motion(path: &MotionPath, lever: f64) -> Severity {
     let scale = |axis: usize| if axis < 3 { 1.0 } else { lever };
     let mut sum = [0.0; 3];

@@ -1,8 +1,8 @@
-//! Load cases: a scene with other values of its keys, case by case, on all cores.
+//! Load cases: a scene with other values of its keys in every case, run on all cores.
 //!
-//! [`cases`] reads a file of cases and checks each as a scene, [`run_case`] runs one, [`table()`] makes a table of rows; another
-//! scheduler needs no more. [`Sweep`] runs all of them on this machine into a folder, with a journal: it can be
-//! killed at any moment, and goes on from there to the same table, bit for bit.
+//! [`cases`] reads a file of cases and checks each as a scene, [`run_case`] runs one, [`table()`] makes a table of rows; this is all that
+//! another scheduler needs. [`Sweep`] runs all cases on this machine into a folder, with a journal: it can be killed at any moment, and a
+//! later run continues to the same table, bit for bit.
 //!
 //! ```no_run
 //! use moorline_decks::Supplement;
@@ -35,7 +35,7 @@ pub use row::{Figures, Quantity, Results, Row, TABLE, Table, table};
 pub use run::{SERIES, run_case, run_case_until};
 pub use sweep::{Progress, Sweep, fingerprint, remarks, shortfalls};
 
-/// Reason why a sweep does not run in a folder.
+/// Reason why a sweep cannot run in a folder.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// The folder holds another sweep.
@@ -43,7 +43,7 @@ pub enum SweepError {
     Other {
         /// The journal.
         path: PathBuf,
-        /// The difference.
+        /// The difference, in words.
         problem: String,
     },
     /// Another process runs a sweep in the folder.

@@ -1,4 +1,4 @@
-//! Result of a case, and the table of all.
+//! Result of a case, and the table of all results.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -13,7 +13,7 @@ use toml::Value;
 
 use crate::case::{Case, Key};
 
-/// Name of the table, without its ending.
+/// File name of the table, without its extension.
 pub const TABLE: &str = "cases";
 
 /// A column of the results of a run.
@@ -25,9 +25,9 @@ pub struct Quantity {
     pub unit: String,
 }
 
-/// Mean, standard deviation, least and greatest value of a quantity after the ramp, in its unit.
+/// Mean, standard deviation, minimum and maximum of a quantity after the ramp, in its unit.
 pub type Figures = [f64; 4];
-/// Endings of the columns of [`Figures`], with words for their descriptions.
+/// Endings of the names of the columns of [`Figures`], with their descriptions.
 const FIGURES: [(&str, &str); 4] = [
     ("mean", "mean over time"),
     ("std", "standard deviation over time"),
@@ -40,11 +40,11 @@ const FIGURES: [(&str, &str); 4] = [
 pub struct Results {
     /// The quantities.
     pub quantities: Arc<Vec<Quantity>>,
-    /// Figures of each.
+    /// Figures of each quantity.
     pub figures: Vec<Figures>,
 }
 
-/// Quantities and the figures of each, as they are sent.
+/// Quantities and the figures of each, as sent to another process.
 type Listed = (Vec<Quantity>, Vec<Figures>);
 
 /// Result of a case.
@@ -61,7 +61,6 @@ pub struct Row {
 }
 
 impl Row {
-    /// Row of a case.
     pub(crate) fn of(case: &Case, results: Result<Results, String>, notes: Vec<String>) -> Row {
         Row {
             case: case.number,
@@ -79,7 +78,7 @@ impl Row {
         postcard::to_stdvec(&ended).expect("every row can be written")
     }
 
-    /// Reads the row of one of these cases; `None` where the bytes are no such row.
+    /// Reads the row of one of these cases; `None` if the bytes are not such a row.
     pub fn of_bytes(bytes: &[u8], cases: &[Case]) -> Option<Row> {
         let (number, results, notes): (usize, Result<Listed, String>, Vec<String>) =
             postcard::from_bytes(bytes).ok()?;
@@ -97,7 +96,7 @@ impl Row {
 pub struct Table {
     /// The columns: number of the case, keys, reason of a failure, remarks, figures.
     pub columns: Vec<Column>,
-    /// A value for every column, in its form and unit [N, m, …]: not a number where there is none.
+    /// Rows with a value for every column, in its form and unit [N, m, …]: not a number if there is none.
     pub rows: Vec<Vec<f64>>,
 }
 
@@ -157,7 +156,7 @@ pub fn table(rows: &[Row]) -> Table {
     Table { columns, rows }
 }
 
-/// Quantities of all rows in the order of their first appearance, with their places.
+/// Quantities of all rows in the order of their first appearance, with their indices.
 fn quantities<'r>(rows: &[&'r Row]) -> (Vec<&'r Quantity>, HashMap<&'r Quantity, usize>) {
     let (mut list, mut places) = (Vec::new(), HashMap::new());
     let mut seen: Vec<&Arc<Vec<Quantity>>> = Vec::new();
@@ -176,7 +175,7 @@ fn quantities<'r>(rows: &[&'r Row]) -> (Vec<&'r Quantity>, HashMap<&'r Quantity,
     (list, places)
 }
 
-/// Form and values of the column of a key: numbers, or texts where any value is not a number.
+/// Form and values of the column of a key: numbers, or texts if any value is not a number.
 fn of_values<'v>(values: impl Iterator<Item = Option<&'v Value>> + Clone) -> (Form, Vec<f64>) {
     let number = |value: &Value| {
         value
@@ -219,7 +218,7 @@ impl Table {
     /// Writes the table into a folder: `cases.csv` and `cases.parquet`, with `cases.units.csv` next to them.
     ///
     /// # Errors
-    /// A file that the operating system refuses; the old one then stays.
+    /// A file that cannot be written; the old file is then kept.
     pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
         for (format, ending) in [(Format::Csv, "csv"), (Format::Parquet, "parquet")] {
             let path = folder.join(TABLE).with_extension(ending);

@@ -1,4 +1,4 @@
-//! One case from its input to its row.
+//! Runs one case, from its input to its row.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,14 +19,14 @@ use crate::case::Case;
 use crate::kind::on_one_thread;
 use crate::row::{Quantity, Results, Row};
 
-/// Folder of the series of all cases, within that of the sweep.
+/// Folder of the series of all cases, within the folder of the sweep.
 pub const SERIES: &str = "series";
 
 /// A case that was run.
 #[derive(Debug)]
 pub(crate) struct Done {
     pub row: Row,
-    /// Time in steps of the simulation.
+    /// Time spent in steps of the simulation.
     pub stepping: Duration,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct Done {
 enum Ended {
     /// It was stopped.
     Stopped,
-    /// It failed, for this reason.
+    /// It failed, with the reason.
     Failed(String),
     /// Its series could not be written.
     Unwritten(OutputError),
@@ -50,14 +50,14 @@ fn failed(error: impl ToString) -> Ended {
     Ended::Failed(error.to_string())
 }
 
-/// Runs a case. A case that fails is a row with the reason. The row depends on nothing but the case, to the last bit.
+/// Runs a case. If it fails, the row holds the reason. The row depends only on the case, to the last bit.
 pub fn run_case(case: &Case) -> Row {
     let done = run(case, None, &|| false).ok().flatten();
     done.expect("a case that nothing stops ends, and it writes nothing")
         .row
 }
 
-/// Runs a case as [`run_case`], with all results in time in a folder where one is given; `None` where `stops` becomes true.
+/// Runs a case as [`run_case`], and writes all results in time into the folder `series`, if given; `None` if `stops` returns true.
 ///
 /// # Errors
 /// The series cannot be written.
@@ -108,13 +108,13 @@ fn bug(panic: &(dyn Any + Send)) -> String {
     )
 }
 
-/// A case between two rows of its results.
+/// State of a case between two rows of its results.
 struct Run {
     from: f64,
     times: Times,
     simulation: Simulation,
     recorder: Recorder,
-    /// Places of the outputs in a row.
+    /// Indices of the outputs in a row.
     places: Vec<usize>,
     sums: Vec<RangeSum>,
     table: Option<WholeTable>,
@@ -128,7 +128,7 @@ impl Run {
         let mut simulation = Simulation::new(scene).map_err(failed)?;
         simulation.follow_scene().map_err(failed)?;
         let outputs = Recorder::of_outputs(scene, simulation.model()).map_err(failed)?;
-        // inputs and the elevation of the waves stand in series only
+        // series also contain inputs and the wave elevation
         let recorder = match series {
             Some(_) => Recorder::new(scene, simulation.model()).map_err(failed)?,
             None => outputs.clone(),
@@ -198,7 +198,7 @@ impl Run {
         Ok(())
     }
 
-    /// The statistics; the series gets its name.
+    /// Returns the statistics; the file of the series gets its final name.
     fn results(mut self) -> Result<Results, Ended> {
         if let Some(table) = self.table.take() {
             table.finish()?;

@@ -1,8 +1,8 @@
-//! CASES, CSV or TOML -> a list of values for every case, each with its place in the text.
+//! Reads CASES, CSV or TOML: a list of values for every case, each with its place in the text.
 //!
-//! In CSV a row is a case and its header names the keys, perhaps with units: `lines.line1.length [km]`. Empty cells leave the value of the
-//! base. In TOML every list is a list of values, and lists multiply, the last one fastest; `[[cases]]` are blocks of cases next to one another,
-//! each with the values above the blocks.
+//! In CSV a row is a case, and the header names the keys, optionally with units: `lines.line1.length [km]`. Empty cells keep the value of the
+//! base. In TOML every list is a list of values, and the cases are all combinations of the lists, the last list varying fastest; `[[cases]]`
+//! are separate blocks of cases, each with the values above the blocks.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use moorline::scene::{LoadError, SceneError, is_toml, read_text};
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-/// Greatest number of cases of a sweep [-].
+/// Maximum number of cases of a sweep [-].
 const CASES_MAX: usize = 1_000_000;
 /// Key of the blocks of cases in TOML.
 const BLOCKS: &str = "cases";
@@ -20,11 +20,11 @@ const BLOCKS: &str = "cases";
 /// A value for a key in a case.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
-    /// Number of the column.
+    /// Index of the column.
     pub column: usize,
     /// The value.
     pub value: Value,
-    /// Bytes of the value.
+    /// Bytes of the value in the text.
     pub span: Range<usize>,
 }
 
@@ -33,7 +33,7 @@ pub(crate) struct Entry {
 pub(crate) struct Column {
     /// Key path as written.
     pub path: String,
-    /// Unit of the heading.
+    /// Unit in the heading.
     pub unit: Option<String>,
     /// Bytes of the key.
     pub span: Range<usize>,
@@ -44,7 +44,7 @@ pub(crate) struct Column {
 pub(crate) struct Draft {
     /// Values in the order of the text.
     pub entries: Vec<Entry>,
-    /// Bytes that a mistake in the case as a whole refers to.
+    /// Bytes to which a mistake in the case as a whole refers.
     pub span: Range<usize>,
 }
 
@@ -58,7 +58,6 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// Reads a file.
     pub(crate) fn read(path: &Path) -> Result<Sheet, LoadError> {
         let text = read_text(path, |_| false)?;
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
@@ -137,7 +136,7 @@ fn of_csv(text: &str) -> Content {
     }
 }
 
-/// The key and the unit of a heading such as `output.duration [min]`.
+/// Key and unit of a heading such as `output.duration [min]`.
 fn heading(text: &str, span: Range<usize>) -> Column {
     let split = text
         .trim()
@@ -179,7 +178,7 @@ fn draft(row: &Row<'_>, separator: char, columns: &[Column]) -> Result<Draft, Sc
     })
 }
 
-/// The cells of a row without blanks around them, each with its bytes; quotes may contain separators, and a doubled quote is one.
+/// Cells of a row without surrounding blanks, each with its bytes; quotes may contain separators, and a doubled quote is a quote.
 fn cells(row: &Row<'_>, separator: char) -> Result<Vec<(String, Range<usize>)>, SceneError> {
     let mut cells = Vec::new();
     let (mut cell, mut is_quoted, mut begin) = (String::new(), false, 0);
@@ -216,7 +215,7 @@ fn cells(row: &Row<'_>, separator: char) -> Result<Vec<(String, Range<usize>)>, 
     Ok(cells.into_iter().map(placed).collect())
 }
 
-/// Value of a cell: as TOML has it, else a number in another form, else text.
+/// Value of a cell: a TOML value, otherwise a number in another form, otherwise text.
 fn value_of(text: &str, separator: char) -> Value {
     let begins = text.starts_with(|c: char| c.is_ascii_digit() || "+-.[{\"'".contains(c));
     let is_truth = text == "true" || text == "false";
@@ -233,7 +232,7 @@ fn value_of(text: &str, separator: char) -> Value {
     }
 }
 
-/// A value as TOML has it.
+/// Parses a TOML value.
 fn parsed(text: &str) -> Option<Value> {
     let mut table: toml::Table = format!("value = {text}").parse().ok()?;
     let value = table.remove("value")?;
@@ -353,7 +352,7 @@ impl TomlReader<'_> {
         (read.unwrap_or_else(as_text), span.clone())
     }
 
-    /// Number of the column of a path.
+    /// Index of the column of a path, which is added if it is new.
     fn column(&mut self, path: String, span: Range<usize>) -> usize {
         let known = self.columns.iter().position(|column| column.path == path);
         known.unwrap_or_else(|| {

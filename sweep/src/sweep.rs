@@ -18,7 +18,7 @@ use crate::journal::{Identity, Journal};
 use crate::row::{Row, table};
 use crate::run::{SERIES, run};
 
-/// Time between tables of the cases that have ended.
+/// Time between tables during a run.
 const TABLE_EVERY: Duration = Duration::from_secs(60);
 
 /// Sweep into a folder, with the rows of earlier calls.
@@ -33,20 +33,20 @@ pub struct Sweep {
     written: Instant,
 }
 
-/// State of a sweep, for its progress.
+/// Progress of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
-    /// Cases that have ended [-].
+    /// Number of cases that have ended [-].
     pub done: usize,
-    /// Those of them that failed [-].
+    /// Number of these that failed [-].
     pub failed: usize,
-    /// Time in steps of simulations, of the cases of this call.
+    /// Time spent in steps of simulations, in the cases of this call.
     pub stepping: Duration,
 }
 
 impl Sweep {
-    /// Opens the folder, which is made where it is missing, and reads the rows of the cases that have ended there. With `series` all results in
-    /// time of every case are kept too.
+    /// Opens the folder, which is created if it is missing, and reads the rows of the cases that have ended there. With `series`, all results in
+    /// time of every case are also kept.
     ///
     /// # Errors
     /// The folder belongs to another sweep, is in use, or cannot be written into.
@@ -65,12 +65,12 @@ impl Sweep {
         })
     }
 
-    /// Rows of the cases that have ended, in the order of their ends.
+    /// Rows of the cases that have ended, in the order in which they ended.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
 
-    /// Folder of the series, where they are kept.
+    /// Folder of the series, if they are kept.
     pub fn series(&self) -> Option<&Path> {
         self.series.as_deref()
     }
@@ -82,10 +82,10 @@ impl Sweep {
         numbers.filter(|number| !done.contains(number)).collect()
     }
 
-    /// Keeps the row of a case that has ended, in the journal and, once a minute, in the table.
+    /// Keeps the row of a case that has ended: in the journal and, once a minute, in the table.
     ///
     /// # Errors
-    /// A file that the operating system refuses.
+    /// A file that cannot be written.
     pub fn add(&mut self, mut row: Row) -> Result<(), SweepError> {
         self.journal.add(&mut row)?;
         self.rows.push(row);
@@ -95,11 +95,11 @@ impl Sweep {
         Ok(())
     }
 
-    /// Runs the cases that are left, until `stops` is true, and writes the table. `ended` is called at the end of each case. Returns the
+    /// Runs the remaining cases until `stops` returns true, and writes the table. `ended` is called at the end of each case. Returns the
     /// final state; the sweep is complete if all cases are done.
     ///
     /// # Errors
-    /// A file that the operating system refuses.
+    /// A file that cannot be written.
     pub fn run(
         &mut self,
         stops: &(dyn Fn() -> bool + Sync),
@@ -110,7 +110,7 @@ impl Sweep {
         let is_broken = AtomicBool::new(false);
         let ends = || stops() || is_broken.load(Ordering::Relaxed);
         let state = Mutex::new(State::new(self));
-        // one by one from a queue, so that a free core takes the next case
+        // from a queue, so that a free core takes the next case
         left.into_iter().par_bridge().for_each(|number| {
             let case = &cases[number - 1];
             let outcome = match ends() {
@@ -139,7 +139,7 @@ impl Sweep {
     /// Writes the table of the cases that have ended.
     ///
     /// # Errors
-    /// A file that the operating system refuses.
+    /// A file that cannot be written.
     pub fn write_table(&mut self) -> Result<(), SweepError> {
         table(&self.rows).write(&self.folder)?;
         self.written = Instant::now();
@@ -168,7 +168,6 @@ impl<'s> State<'s> {
         }
     }
 
-    /// Keeps the row of a case that has ended.
     fn add(
         &mut self,
         row: Row,
@@ -186,7 +185,7 @@ impl<'s> State<'s> {
     }
 }
 
-/// Fingerprint of cases with all files that they name: the same on two machines if these read the same.
+/// Fingerprint of cases with all files that they name; it is the same on two machines if both read the same content.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -194,7 +193,6 @@ pub fn fingerprint(cases: &[Case]) -> Result<[u8; 32], OutputError> {
     Ok(identity(cases, false)?.fingerprint())
 }
 
-/// Fingerprint of a sweep.
 fn identity(cases: &[Case], series: bool) -> Result<Identity, OutputError> {
     let (mut scenes, mut options) = (Sha256::new(), Sha256::new());
     let mut files: BTreeSet<PathBuf> = BTreeSet::new();
@@ -235,7 +233,7 @@ fn content(files: &BTreeSet<PathBuf>) -> Result<[u8; 32], OutputError> {
     Ok(sum.finalize().into())
 }
 
-/// Remarks on the scenes of the cases that do not hold for the base, each once with its first case.
+/// Remarks on the scenes of the cases that do not apply to the base, each once with its first case.
 pub fn remarks(cases: &[Case]) -> Vec<(&Case, &Note)> {
     let notes = cases
         .iter()

@@ -44,7 +44,7 @@ impl Folder {
         cases(&self.base(), &self.path(&format!("cases/{name}")), None)
     }
 
-    /// Mistakes of a file of cases, one a line.
+    /// Mistakes in a file of cases, one on a line.
     fn refusal(&self, name: &str) -> String {
         self.cases(name).unwrap_err().list()
     }
@@ -73,7 +73,7 @@ fn tables(folder: &Path) -> [Vec<u8>; 3] {
     ["cases.csv", "cases.parquet", "cases.units.csv"].map(|name| fs::read(folder.join(name)).unwrap())
 }
 
-/// Cases of the rope: lengths times periods of its motion.
+/// Cases of the rope: all combinations of lengths and periods of its motion.
 const ROPES: &str =
     "lines.line1.length = [14.2, 14.3, 14.4]\n\"motion.fairlead.x[0][1]\" = [2.0, 3.0, 4.0, 5.0]\n";
 

@@ -1,8 +1,8 @@
-//! Choices from a seed, and files that a disk or an editor has spoilt.
+//! Random choices from a seed, and files damaged by a disk or an editor.
 
 use moorline::math::random::Random;
 
-/// Choices from a seed: the same ones every time.
+/// Random choices from a seed, the same every time.
 pub struct Chance(Random);
 
 impl Chance {
@@ -10,17 +10,17 @@ impl Chance {
         Chance(Random::new(seed))
     }
 
-    /// A number below `count`.
+    /// Returns a number below `count`.
     pub fn below(&mut self, count: usize) -> usize {
         (self.0.bits() >> 33) as usize % count.max(1)
     }
 
-    /// An element of a list.
+    /// Returns an element of a list.
     pub fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
         &list[self.below(list.len())]
     }
 
-    /// A file cut off, scrambled or with a stray byte.
+    /// Returns a file truncated, scrambled or with a stray byte.
     pub fn damaged(&mut self, mut bytes: Vec<u8>) -> Vec<u8> {
         let at = self.below(bytes.len());
         match self.below(3) {
@@ -36,7 +36,7 @@ impl Chance {
         bytes
     }
 
-    /// The lines of a text with two of them swapped.
+    /// Returns a text with two of its lines swapped.
     pub fn swapped(&mut self, text: &str) -> String {
         let mut lines: Vec<&str> = text.lines().collect();
         let (a, b) = (self.below(lines.len()), self.below(lines.len()));

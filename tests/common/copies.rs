@@ -2,7 +2,7 @@
 
 use moorline::scene::Scene;
 
-/// `count` copies of a scene that have nothing in common, each farther from the first along an axis by a distance [m].
+/// `count` separate copies of a scene, spaced along an axis by a distance [m].
 pub fn copies(one: &Scene, count: usize, axis: usize, distance: f64) -> Scene {
     let mut scene = one.clone();
     (scene.vessels, scene.points, scene.lines) = (Vec::new(), Vec::new(), Vec::new());

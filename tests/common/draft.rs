@@ -1,12 +1,12 @@
-//! Scenes in the making: points and lines one to a row, all else as TOML, read as a user's scene is.
+//! Scenes under construction: points and lines one per row, everything else as TOML, read like a user's scene.
 
-#![allow(dead_code)] // each test binary uses a part
+#![allow(dead_code)] // each test binary uses some of it
 
 use moorline::model::Model;
 use moorline::scene::Scene;
 use moorline::simulation::Simulation;
 
-/// A scene in the making.
+/// Scene under construction.
 #[derive(Clone)]
 pub struct Draft {
     keys: String,
@@ -15,7 +15,7 @@ pub struct Draft {
     last: Last,
 }
 
-/// The entry that [`Draft::with`] adds keys to.
+/// Entry to which [`Draft::with`] adds keys.
 #[derive(Clone, Copy)]
 enum Last {
     Point,
@@ -47,7 +47,7 @@ impl Draft {
         self.point("fixed", name, position)
     }
 
-    /// Adds a point at a position [m] that a host moves.
+    /// Adds a coupled point at a position [m].
     pub fn coupled(self, name: &str, position: [f64; 3]) -> Draft {
         self.point("coupled", name, position)
     }
@@ -57,7 +57,7 @@ impl Draft {
         self.point("free", name, position)
     }
 
-    /// Adds a line of one section: its type, its length [m] and its elements, or none where they are left open.
+    /// Adds a line of one section: its type, length [m] and number of elements, or `None` to leave it open.
     pub fn line(
         self,
         name: &str,
@@ -69,7 +69,7 @@ impl Draft {
         self.sections(name, ends, &[(line_type, length, elements.into())])
     }
 
-    /// Adds a line of sections: type, length [m] and elements of each.
+    /// Adds a line with sections: type, length [m] and number of elements of each.
     pub fn sections(mut self, name: &str, ends: [&str; 2], sections: &[(&str, f64, Option<usize>)]) -> Draft {
         let section = |(kind, length, elements): &(&str, f64, Option<usize>)| {
             let elements = elements.map_or(String::new(), |count| format!(", elements = {count}"));
@@ -104,7 +104,7 @@ impl Draft {
         self
     }
 
-    /// The scene as TOML.
+    /// Returns the scene as TOML.
     pub fn text(&self) -> String {
         let array = |name: &str, entries: &[String]| {
             let entries: Vec<String> = entries
@@ -121,17 +121,17 @@ impl Draft {
         )
     }
 
-    /// The scene, read.
+    /// Returns the scene, read from its TOML.
     pub fn scene(&self) -> Scene {
         Scene::from_toml(&self.text()).unwrap_or_else(|error| panic!("{error}\n{}", self.text()))
     }
 
-    /// The model of the scene.
+    /// Returns the model of the scene.
     pub fn model(&self) -> Model {
         Model::new(&self.scene()).unwrap()
     }
 
-    /// A simulation of the scene at its start.
+    /// Returns a simulation of the scene at its start.
     pub fn start(&self) -> Simulation {
         Simulation::new(&self.scene()).unwrap()
     }

@@ -1,5 +1,5 @@
-//! Scenes, runs, histories, measures of error and claims that many tests make.
-#![allow(dead_code, unused_imports)] // each test binary uses a part
+//! Scenes, runs, histories, error measures and assertions shared by many tests.
+#![allow(dead_code, unused_imports)] // each test binary uses some of it
 
 mod chance;
 pub mod draft;
@@ -23,23 +23,23 @@ pub const RHO: f64 = 1025.0;
 /// Gravity [m/s²].
 pub const G: f64 = 9.80665;
 
-/// The integrators of single lines and of networks.
+/// Integrators of single lines and of networks.
 pub const INTEGRATORS: [Integrator; 3] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
     Integrator::GeneralisedAlpha,
 ];
-/// The integrators of lines that meet at free points.
+/// Integrators of lines joined at free points.
 pub const JOINED: [Integrator; 3] = INTEGRATORS;
 
-/// Coarse steps [s] of the three integrators at which errors fall by their order.
+/// Coarse steps [s] of the three integrators, from which errors decrease with the full order.
 pub const COARSE_STEPS: [(Integrator, f64); 3] = [
     (Integrator::Leapfrog, 4e-3),
     (Integrator::AxialImplicit, 4e-2),
     (Integrator::GeneralisedAlpha, 4e-2),
 ];
 
-/// The five public scenes: name, duration of the window that errors are taken over [s].
+/// The five public scenes: name, and duration of the window in which errors are evaluated [s].
 pub const PUBLIC_SCENES: [(&str, f64); 5] = [
     ("oc3_catenary", 60.0),
     ("oc4_chain", 60.0),
@@ -63,18 +63,18 @@ pub fn at_reference(model: &Model) -> Vec<Vector3<f64>> {
     model.points.iter().map(|point| point.reference).collect()
 }
 
-/// Points at rest at places [m].
+/// Points at rest at these positions [m].
 pub fn resting(places: &[Vector3<f64>]) -> Vec<PointState> {
     places.iter().copied().map(PointState::at_rest).collect()
 }
 
-/// Equilibrium with the points where the scene puts them.
+/// Equilibrium with the points at their positions in the scene.
 pub fn statics(model: &Model) -> State {
     let points = resting(&at_reference(model));
     equilibrium::solve(model, &points, 0.0, &mut Workspace::new(model)).unwrap()
 }
 
-/// Moves the prescribed points of the first network to places [m] and finds the equilibrium at time `t` [s] closest to a state.
+/// Moves the prescribed points of the first network to positions [m] and finds the equilibrium at time `t` [s] closest to a state.
 pub fn continue_from(
     model: &Model,
     state: &mut State,
@@ -91,13 +91,13 @@ pub fn continue_from(
     Ok(())
 }
 
-/// A scene of the folder `scenes`.
+/// A scene from the folder `scenes`.
 pub fn shipped(name: &str) -> Scene {
     let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     scene(&std::fs::read_to_string(path).unwrap())
 }
 
-/// The same scene with `count` elements on every section.
+/// The scene with `count` elements in every section.
 pub fn with_elements(mut scene: Scene, count: usize) -> Scene {
     for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
         section.elements = Some(count);
@@ -105,7 +105,7 @@ pub fn with_elements(mut scene: Scene, count: usize) -> Scene {
     scene
 }
 
-/// The same scene with the elements of its lines left open.
+/// The scene with the elements of its lines left open.
 pub fn open(mut scene: Scene) -> Scene {
     for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
         section.elements = None;
@@ -113,14 +113,14 @@ pub fn open(mut scene: Scene) -> Scene {
     scene
 }
 
-/// The same scene with an integrator and an upper limit of its step [s].
+/// The scene with an integrator and an upper limit of its time step [s].
 pub fn with_integrator(mut scene: Scene, integrator: Integrator, time_step_max: f64) -> Scene {
     scene.solver.integrator = integrator;
     scene.solver.time_step_max = time_step_max;
     scene
 }
 
-/// The same scene with its first line released from the given nodes.
+/// The scene with its first line starting from the given nodes.
 pub fn released_from(mut scene: Scene, nodes: &[Vector3<f64>]) -> Scene {
     scene.lines[0].initial = InitialShape::Nodes(nodes.iter().map(|node| (*node).into()).collect());
     scene
@@ -133,7 +133,7 @@ pub fn following(scene: &Scene) -> Simulation {
     simulation
 }
 
-/// Sets every body to where the scene moves it at a time [s], with or without velocities.
+/// Sets the pose of every body to that of the scene's motion at a time [s], with or without velocities.
 pub fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
     for moving in simulation.model().moving(time) {
         let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
@@ -161,18 +161,18 @@ pub fn place(simulation: &Simulation, name: &str) -> Vector3<f64> {
     simulation.state().points[simulation.model().point_index(name).unwrap()].position
 }
 
-/// Greatest distance of the nodes of a line from those of another [m].
+/// Greatest distance between corresponding nodes of two lines [m].
 pub fn gap(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
     assert_eq!(a.len(), b.len());
     greatest(a.iter().zip(b).map(|(a, b)| (a - b).norm()))
 }
 
-/// The greatest of some numbers, 0 at least.
+/// The greatest of several numbers, at least 0.
 pub fn greatest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, f64::max)
 }
 
-/// Distance of the first line's nodes from where they are now [m], the greatest after any of `count` steps of `step` [s].
+/// Greatest distance of the first line's nodes from their current positions [m] after any of `count` steps of `step` [s].
 pub fn drift(simulation: &mut Simulation, step: f64, count: usize) -> f64 {
     let start = nodes(simulation).to_vec();
     greatest((0..count).map(|_| {
@@ -181,7 +181,7 @@ pub fn drift(simulation: &mut Simulation, step: f64, count: usize) -> f64 {
     }))
 }
 
-/// Greatest distance of a node of any line from where it was after `count` steps of a second, over the length of its line [-].
+/// Greatest displacement of a node of any line after `count` steps of 1 s, relative to the length of its line [-].
 pub fn relative_drift(scene: &Scene, count: usize) -> f64 {
     let mut simulation = start(scene);
     let first = simulation.state().clone();
@@ -192,7 +192,7 @@ pub fn relative_drift(scene: &Scene, count: usize) -> f64 {
     }))
 }
 
-/// Scene that requests the energy balance.
+/// The scene with the energy balance enabled.
 pub fn balanced(mut scene: Scene) -> Scene {
     scene.output.energy_balance = true;
     scene
@@ -203,22 +203,22 @@ pub fn balance_error(simulation: &Simulation) -> f64 {
     simulation.energy_balance().unwrap().error()
 }
 
-/// Energy that has entered and left the lines since the start [J].
+/// External work and dissipation of the lines since the start [J].
 pub fn flow(simulation: &Simulation) -> Flow {
     simulation.energy_balance().unwrap().flow
 }
 
-/// Error of the energy balance over the external work [-].
+/// Error of the energy balance relative to the external work [-].
 pub fn error_of_given(simulation: &Simulation) -> f64 {
     balance_error(simulation).abs() / flow(simulation).external_work
 }
 
-/// Error of the energy balance over the dissipation [-].
+/// Error of the energy balance relative to the dissipation [-].
 pub fn error_of_lost(simulation: &Simulation) -> f64 {
     balance_error(simulation).abs() / flow(simulation).dissipation
 }
 
-/// Claims that a simulation continues bit for bit from its restored snapshot, and another simulation of the scene
+/// Asserts that a simulation continues bit for bit from its restored snapshot, and so does another simulation of the scene
 /// from the snapshot's bytes.
 pub fn assert_replays(mut simulation: Simulation, mut other: Simulation, go_on: impl Fn(&mut Simulation)) {
     let saved = simulation.snapshot().clone();
@@ -243,7 +243,7 @@ pub fn assert_replays(mut simulation: Simulation, mut other: Simulation, go_on: 
     }
 }
 
-/// Claims that halving a step quarters the error of a place [m], from a coarse step [s] on, against a 32nd of that step.
+/// Asserts that halving a step quarters the error of a position [m], from a coarse step [s] on, against a 32nd of that step.
 pub fn assert_second_order_in_time(coarse: f64, place: impl Fn(f64) -> Vector3<f64>) {
     let steps = [1.0, 0.5, 0.25, 0.125, 1.0 / 32.0].map(|part| part * coarse);
     let places = steps.map(place);
@@ -251,8 +251,8 @@ pub fn assert_second_order_in_time(coarse: f64, place: impl Fn(f64) -> Vector3<f
     assert_order(2.0, &steps[..4], &errors);
 }
 
-/// Claims that the error of the energy balance over the external work is below `bound` [-] in 0.125 of the coarse step, falls by its order by the axial-implicit
-/// integrator, and is that of Newton's method by generalised-α.
+/// Asserts that the error of the energy balance relative to the external work is below `bound` [-] at 0.125 of the coarse step; that it decreases at second
+/// order for the axial-implicit integrator; and that it is that of Newton's method for generalised-α.
 pub fn assert_balance_order(integrator: Integrator, coarse: f64, bound: f64, error: impl Fn(f64) -> f64) {
     let steps = [1.0, 0.5, 0.25, 0.125].map(|part| part * coarse);
     let errors = steps.map(error);
@@ -264,18 +264,18 @@ pub fn assert_balance_order(integrator: Integrator, coarse: f64, bound: f64, err
     }
 }
 
-/// Claims that a scene written as TOML is read back the same.
+/// Asserts that a scene written as TOML is read back unchanged.
 pub fn assert_written_and_read(scene: &Scene) {
     let text = scene.to_toml();
     assert_eq!(Scene::from_toml(&text).unwrap(), *scene, "{text}");
 }
 
-/// The words of `check` on a scene, in one line.
+/// Returns the sentences of `check` on a scene, in one line.
 pub fn in_words(scene: &Scene) -> String {
     scene.in_words().split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Modes of the first network about the present state.
+/// Modes of the first network about the current state.
 pub fn modes(simulation: &Simulation) -> Modes {
     let model: &Model = simulation.model();
     let mut work = Workspace::new(model);
@@ -287,16 +287,16 @@ pub fn modes(simulation: &Simulation) -> Modes {
 pub struct History {
     /// Tension at end B [N].
     pub tension: Vec<f64>,
-    /// Position of the node in the middle [m].
+    /// Position of the middle node [m].
     pub middle: Vec<Vector3<f64>>,
-    /// Internal steps, of all communication steps.
+    /// Number of internal steps in all communication steps [-].
     pub substeps: usize,
-    /// Force evaluations or linear solves, of all communication steps.
+    /// Number of force evaluations or linear solves in all communication steps [-].
     pub solves: usize,
 }
 
 impl History {
-    /// Steps a simulation `count` times by `step` [s], the start included as the first sample.
+    /// Makes `count` steps of `step` [s]; the start is the first sample.
     pub fn record(simulation: &mut Simulation, step: f64, count: usize) -> History {
         let mut history = History::default();
         history.sample(simulation);
@@ -309,7 +309,7 @@ impl History {
         history
     }
 
-    /// A sample of the present.
+    /// Samples the current state.
     pub fn sample(&mut self, simulation: &Simulation) {
         let nodes = &simulation.state().lines[0].position;
         self.tension.push(simulation.tension_b(0));
@@ -323,7 +323,7 @@ impl History {
         relative_rms(&vectors(self), &vectors(reference))
     }
 
-    /// The same of the middle node's position, as a vector [-].
+    /// The same error for the position of the middle node, a vector [-].
     pub fn middle_error(&self, reference: &History, count: usize) -> f64 {
         relative_rms(last(&self.middle, count), last(&reference.middle, count))
     }
@@ -334,7 +334,7 @@ pub fn last<T>(values: &[T], count: usize) -> &[T] {
     &values[values.len() - count..]
 }
 
-/// RMS of the difference over the standard deviation of the reference [-].
+/// RMS of the difference, relative to the standard deviation of the reference [-].
 pub fn relative_rms(values: &[Vector3<f64>], reference: &[Vector3<f64>]) -> f64 {
     let mean = reference.iter().sum::<Vector3<f64>>() / reference.len() as f64;
     let spread: f64 = reference.iter().map(|r| (r - mean).norm_squared()).sum();
@@ -343,7 +343,7 @@ pub fn relative_rms(values: &[Vector3<f64>], reference: &[Vector3<f64>]) -> f64 
     (error / spread).sqrt()
 }
 
-/// Slope of log(error) over log(size), by least squares [-].
+/// Slope of log(error) against log(size), by least squares [-].
 pub fn order(sizes: &[f64], errors: &[f64]) -> f64 {
     assert!(sizes.len() >= 4 && sizes.len() == errors.len());
     let pairs = sizes.iter().zip(errors);
@@ -363,7 +363,7 @@ pub fn order_of(pairs: &[(f64, f64)]) -> f64 {
     order(&sizes, &errors)
 }
 
-/// Claims that errors fall with the resolution at an order ± 0.1.
+/// Asserts that errors decrease with the resolution at an order ± 0.1.
 pub fn assert_order(claimed: f64, sizes: &[f64], errors: &[f64]) {
     let fitted = order(sizes, errors);
     assert!(
@@ -378,7 +378,7 @@ pub fn assert_orders(claimed: f64, pairs: &[(f64, f64)]) {
     assert_order(claimed, &sizes, &errors);
 }
 
-/// Claims that errors fall with the resolution at an order − 0.1 or a higher one.
+/// Asserts that errors decrease with the resolution at an order of at least the claimed one − 0.1.
 pub fn assert_order_at_least(claimed: f64, sizes: &[f64], errors: &[f64]) {
     let fitted = order(sizes, errors);
     assert!(
@@ -397,7 +397,7 @@ pub fn sampled_frequency(samples: &[f64], step: f64) -> f64 {
     (0.5 * product / square).acos() / step
 }
 
-/// Gives the nodes of the first line, and the points at its ends, velocities [m/s].
+/// Sets velocities [m/s] of the nodes of the first line and of the points at its ends.
 pub fn set_node_velocities(simulation: &mut Simulation, velocities: &[Vector3<f64>]) {
     let [a, b] = simulation.model().lines[0].ends;
     let mut snapshot = serde_json::to_value(simulation.snapshot()).unwrap();
@@ -410,14 +410,14 @@ pub fn set_node_velocities(simulation: &mut Simulation, velocities: &[Vector3<f6
     simulation.restore(serde_json::from_value(snapshot).unwrap());
 }
 
-/// Mean time between changes of sign of samples taken every `step` [s], from the first to the last [s].
+/// Mean time between sign changes of samples taken every `step` [s], from the first change to the last [s].
 pub fn half_period(samples: &[f64], step: f64) -> f64 {
     let crossings = zero_crossings(samples, step);
     (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
 }
 
-/// Cosine and sine of the angle from the horizontal [-] at which a cable of a weight [N/m], diameter [m] and drag coefficients along and across
-/// streams behind its upper end, and the slope of its tension [N/m], in a flow of a speed [m/s].
+/// Cosine and sine of the angle from the horizontal [-] of a cable of a weight [N/m], diameter [m] and normal and tangential drag coefficients that
+/// trails behind its upper end, and the slope of its tension [N/m], in a flow of a speed [m/s].
 ///
 ///   w cos φ = R_n sin²φ: cos φ = ½(√(a² + 4) − a), a = w/R_n; dT/ds = w sin φ + R_t cos²φ
 pub fn streaming_cable([w, d, normal, tangential]: [f64; 4], speed: f64) -> [f64; 3] {
@@ -436,7 +436,7 @@ pub fn agm(mut a: f64, mut b: f64) -> f64 {
     a
 }
 
-/// Root of a function that grows, in a range, by bisection.
+/// Root of an increasing function in a range, by bisection.
 pub fn bisect([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -448,7 +448,7 @@ pub fn bisect([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 
     low
 }
 
-/// Times [s] at which samples taken every `step` [s] from 0 change sign, by linear interpolation.
+/// Times [s] of sign changes of samples taken every `step` [s] from 0, by linear interpolation.
 pub fn zero_crossings(samples: &[f64], step: f64) -> Vec<f64> {
     let pairs = samples.windows(2).enumerate();
     let crossing = |(k, pair): (usize, &[f64])| {
@@ -457,7 +457,7 @@ pub fn zero_crossings(samples: &[f64], step: f64) -> Vec<f64> {
     pairs.filter_map(crossing).collect()
 }
 
-/// A number in 0 … 1, and the next seed: the upper bits of a linear congruential generator with Knuth's multiplier and increment.
+/// Returns a number in 0 … 1 and advances the seed: upper bits of a linear congruential generator with Knuth's multiplier and increment.
 pub fn random(seed: &mut u64) -> f64 {
     let multiplied = seed.wrapping_mul(6_364_136_223_846_793_005);
     *seed = multiplied.wrapping_add(1_442_695_040_888_963_407);

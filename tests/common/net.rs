@@ -1,4 +1,4 @@
-//! A net hung from its rim: networks of any size for tests and benches.
+//! A net suspended from its rim: networks of any size for tests and benches.
 
 use moorline::scene::Scene;
 
@@ -7,8 +7,8 @@ use super::draft::draft;
 /// Mesh width of the net [m].
 const WIDTH: f64 = 10.0;
 
-/// A square net of `count` by `count` free points, 10 m apart and 50 m under water. Neighbours are joined by ropes 2 % longer than that,
-/// of `elements` elements each; the outermost points hang on fixed anchors, those of the first column on coupled points that sway.
+/// A square net of `count` by `count` free points, 10 m apart and 50 m below the surface. Neighbours are joined by ropes that are 2 % longer,
+/// with `elements` elements each; the outermost points are attached to fixed anchors, those of the first column to coupled points that sway.
 pub fn net(count: usize, elements: usize) -> Scene {
     let mut net = draft(
         "water.density = 1025.0

@@ -1,6 +1,6 @@
-//! Claims on texts: parts that they have, and tables of cases.
+//! Assertions on texts: parts that they contain, and tables of cases.
 //!
-//! A table has changes of a base text, each `old => new`, and below them, indented, the words that answer them:
+//! A table lists changes of a base text, each `old => new`, and below them, indented, the expected answer:
 //!
 //! ```text
 //! # Claim of the cases below.
@@ -9,10 +9,11 @@
 //!     11:8: line_types.chain.mass: -100 kg/m is negative
 //! ```
 //!
-//! A line without `=>` is put before the base text: all of the text where that is empty. `\n` stands for a line break. Words that go on over several lines are joined by blanks.
-#![allow(dead_code)] // each test binary uses a part
+//! A line without `=>` is inserted before the base text; it is the whole text if the base is empty. `\n` means a line break. Answers that continue over
+//! several lines are joined by blanks.
+#![allow(dead_code)] // each test binary uses some of it
 
-/// Claims that a text has all of these parts.
+/// Asserts that a text contains all of these parts.
 pub fn assert_says(text: &str, parts: &[&str]) {
     for part in parts {
         assert!(text.contains(part), "`{part}` is not in: {text}");
@@ -21,7 +22,7 @@ pub fn assert_says(text: &str, parts: &[&str]) {
 
 /// A case of a table.
 struct Case {
-    /// The heading above it.
+    /// Heading above the case.
     claim: String,
     changes: Vec<[String; 2]>,
     words: String,
@@ -54,13 +55,13 @@ fn cases(table: &str) -> Vec<Case> {
     found
 }
 
-/// Claims that the answer to each case of a table begins with the words in the table.
+/// Asserts that the answer to each case of a table begins with the expected words.
 pub fn assert_answers(base: &str, table: &str, answer: impl Fn(&str) -> String) {
     let wrong = wrong_answers(base, table, answer);
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-/// Cases of a table that are answered by other words than the table has, with both.
+/// Returns the cases of a table with a different answer, with the expected and the actual words.
 pub fn wrong_answers(base: &str, table: &str, answer: impl Fn(&str) -> String) -> String {
     let mut wrong = String::new();
     for Case {

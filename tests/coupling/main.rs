@@ -1,4 +1,4 @@
-//! Coupling of a body with its mooring: mass of the ends, impedance of the coming step, derivatives of the forces.
+//! Coupling of a body with its mooring: mass of the ends, impedance of the next step, derivatives of the forces.
 
 #[path = "../../examples/body_on_spring/host.rs"]
 #[expect(dead_code, reason = "the example runs more masters")]
@@ -25,7 +25,7 @@ fn case(mass: f64, step: f64) -> Case {
     }
 }
 
-/// RMS of the difference of two runs over the RMS of the second, sampled at the steps of the first.
+/// RMS of the difference of two runs relative to the RMS of the second, sampled at the steps of the first [-].
 fn difference(run: &[Vector3<f64>], truth: &[Vector3<f64>]) -> f64 {
     let each = (truth.len() - 1) / (run.len() - 1);
     let truth: Vec<_> = truth.iter().step_by(each).collect();
@@ -34,7 +34,7 @@ fn difference(run: &[Vector3<f64>], truth: &[Vector3<f64>]) -> f64 {
     (sum / whole).sqrt()
 }
 
-/// Error of a body with the force of the coming step, against a step of 1/80 s [-].
+/// Error of a body driven by the force of the next step, compared with steps of 1/80 s [-].
 fn error_of_one_pass(mass: f64, step: f64) -> f64 {
     let motion = |step: f64| {
         run(&oc3(), "fairlead", Master::Impedance, case(mass, step))
@@ -59,7 +59,7 @@ fn with_the_impedance_of_the_coming_step_bodies_of_any_mass_are_stable_and_accur
 #[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn with_the_force_of_the_coming_step_the_error_is_of_second_order() {
     for mass in [1e5, 1e7] {
-        // against 1/80 s: a factor of (64 − 1)/(16 − 1) = 4.2, and (8 − 1)/(4 − 1) = 2.3 if it were of first order
+        // compared with steps of 1/80 s: a ratio of (64 − 1)/(16 − 1) = 4.2, or (8 − 1)/(4 − 1) = 2.3 for first order
         let ratio = error_of_one_pass(mass, 0.1) / error_of_one_pass(mass, 0.05);
         assert!((3.7..4.7).contains(&ratio), "{mass} kg: {ratio}");
     }
@@ -95,7 +95,7 @@ fn chain(integrator: &str, span: f64) -> Scene {
     Scene::from_toml(&text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Displacement [m] and velocity [m/s] of the fairlead, which starts smoothly.
+/// Displacement [m] and velocity [m/s] of the fairlead, with a smooth start.
 fn motion(t: f64) -> [[f64; 3]; 2] {
     let (sin, cos) = (2.0 * t).sin_cos();
     [
@@ -191,7 +191,7 @@ fn derivatives_leave_a_run_as_it_is_to_the_last_bit() {
 
 #[test]
 fn the_mass_of_the_end_is_what_its_acceleration_costs() {
-    // without waves in the line the force of a short line is its inertia: F' is free of the acceleration
+    // without waves in the line, the force of a short line is its inertia: F' does not depend on the acceleration
     let mut scene = chain("leapfrog", 31.0);
     scene.output.force = ForceOutput::WithoutInertia;
     let mut simulation = Simulation::new(&scene).unwrap();
@@ -207,7 +207,7 @@ fn the_mass_of_the_end_is_what_its_acceleration_costs() {
     let inertia = mass.fixed_view::<3, 3>(0, 0) * acceleration;
     assert!((without - total - inertia).norm() < 1e-12 * total.norm());
     assert_eq!(simulation.host_force(body)[..3], without.as_slice()[..]);
-    // half an element of chain with added mass across it, at least two thirds of it
+    // half an element of chain with normal added mass, at least two thirds of it
     let half = 0.5 * 33.0 / 20.0 * 0.0818;
     assert!(mass[(0, 0)] > 0.6 * half && mass[(1, 1)] < 4.0 * half, "{mass}");
     assert!((mass - mass.transpose()).norm() < 1e-15 * mass.norm());
@@ -228,7 +228,7 @@ fn the_rate_of_a_force_is_that_of_its_history() {
     assert!((rate - central).abs() < 0.01 * central.abs(), "{rate} {central}");
 }
 
-/// A vessel with two chains, turned.
+/// A vessel with two chains, at a rotated attitude.
 fn barge() -> Scene {
     let mut scene = chain("leapfrog", 31.0);
     let text = "line_types.chain = { mass = 0.0818, diameter = 0.0022, axial_stiffness = 1e4, damping_ratio = 0.5, drag_normal = 2.5, added_mass_normal = 3.8 }
@@ -314,7 +314,7 @@ fn the_derivatives_of_a_vessel_are_those_of_its_inputs() {
     }
 }
 
-/// Force range and RMS error of the force [N] in the last 60 s, with noise of an amplitude [m] on the displacements every 0.05 s.
+/// Force range and RMS error of the force [N] in the last 60 s, with noise of an amplitude [m] in the displacements every 0.05 s.
 fn noise_of_force(reconstruction: Reconstruction, noise: f64) -> [f64; 2] {
     let text = "line_types.chain = { mass = 685.0, diameter = 0.333, axial_stiffness = 3.27e9, damping_ratio = 0.8, drag_normal = 1.1, drag_tangential = 0.2, added_mass_normal = 0.82, added_mass_tangential = 0.27 }
         water = { density = 1025.0 }

@@ -8,7 +8,7 @@ use moorline::model::End;
 use moorline::scene::{InitialShape, Integrator, Scene};
 use nalgebra::Vector3;
 
-/// A string of `n` elements pulled from its unstretched length to 100 m by 50 kN, without gravity.
+/// A string of `n` elements stretched from its unstretched length to 100 m by 50 kN, without gravity.
 ///
 ///   EA = 10 MN, m = 5 kg per unstretched metre
 fn taut_string(n: usize) -> Scene {
@@ -26,13 +26,13 @@ const STRING_TENSION: f64 = 5e4; // [N]
 /// L/(1 + T/EA) [m].
 const STRING_LENGTH: f64 = STRING_SPAN / (1.0 + STRING_TENSION / STRING_EA);
 
-/// ω of mode k of the lumped taut string: 2 √(T/(l m h)) sin(kπ/2n), l and h the stretched and unstretched segment [rad/s].
+/// Circular frequency of mode k of the lumped taut string: 2 √(T/(l m h)) sin(kπ/2n), with stretched segment l and unstretched segment h [rad/s].
 fn lumped_transverse(n: usize, k: usize) -> f64 {
     let (l, h) = (STRING_SPAN / n as f64, STRING_LENGTH / n as f64);
     2.0 * (STRING_TENSION / (l * STRING_MASS * h)).sqrt() * (k as f64 * PI / (2 * n) as f64).sin()
 }
 
-/// The same along the string: 2 √(EA/m)/h sin(kπ/2n) [rad/s].
+/// Circular frequency of axial mode k: 2 √(EA/m)/h sin(kπ/2n) [rad/s].
 fn lumped_axial(n: usize, k: usize) -> f64 {
     let h = STRING_LENGTH / n as f64;
     2.0 * (STRING_EA / STRING_MASS).sqrt() / h * (k as f64 * PI / (2 * n) as f64).sin()
@@ -58,7 +58,7 @@ fn a_taut_string_has_the_frequencies_of_its_lumped_masses() {
     }
 }
 
-/// Shape sin(kπs/L) of amplitude `a` [m] on the straight taut string, along `axis`.
+/// Shape sin(kπs/L) with amplitude vector `a` [m] on the straight taut string.
 fn string_mode(n: usize, k: usize, a: Vector3<f64>) -> Vec<Vector3<f64>> {
     let node = |i: usize| {
         let u = i as f64 / n as f64;
@@ -67,7 +67,7 @@ fn string_mode(n: usize, k: usize, a: Vector3<f64>) -> Vec<Vector3<f64>> {
     (0..=n).map(node).collect()
 }
 
-/// Frequency [rad/s] at which mode k, released with amplitude `a` [m], oscillates in steps of `step` [s].
+/// Circular frequency [rad/s] of mode k after release with amplitude `a` [m], in steps of `step` [s].
 fn released_frequency(integrator: Integrator, n: usize, k: usize, a: Vector3<f64>, step: f64) -> f64 {
     let scene = with_integrator(taut_string(n), integrator, step);
     let mut scene = released_from(scene, &string_mode(n, k, a));
@@ -111,7 +111,7 @@ fn the_leapfrog_oscillates_at_its_own_frequency() {
 
 #[test]
 fn the_axial_implicit_leapfrog_keeps_axial_waves_by_the_share_of_tension_that_it_averages() {
-    // with ρ = 1 a share σ of the tension is ¼, ½, ¼ of three times: 4 sin²(ω̃Δt/2) = (ωΔt)²(1 − σ sin²(ω̃Δt/2)), for any step
+    // with ρ = 1 a share σ of the tension is averaged over three times with ¼, ½, ¼: 4 sin²(ω̃Δt/2) = (ωΔt)²(1 − σ sin²(ω̃Δt/2)), for any step
     let shortest = lumped_axial(20, 19);
     for (k, step) in [(1, 5e-4), (1, 2e-3), (2, 5e-3), (5, 5e-3)] {
         let found = released_frequency(Integrator::AxialImplicit, 20, k, 1e-3 * Vector3::x(), step);
@@ -153,9 +153,9 @@ fn frequencies_converge_at_second_order_in_the_time_step_and_axial_implicit_ones
     }
 }
 
-/// A bar held at one end under a sudden force, in discrete modes and steps of the leapfrog.
+/// A bar fixed at one end under a sudden force, in discrete modes and leapfrog steps.
 ///
-///   ┃━━━━━━━━━━━━━●→ P      E A = 21 MN, 0.785 kg/m, 10 m, P = 1 kN on 1.1 kN that keep it taut
+///   ┃━━━━━━━━━━━━━●→ P      E A = 21 MN, 0.785 kg/m, 10 m, P = 1 kN on 2.5 kN that keep it taut
 fn loaded_bar(n: usize) -> Scene {
     let nodes: Vec<Vector3<f64>> = (0..=n)
         .map(|i| 10.0 * (i as f64 / n as f64) * (1.0 + BAR_TENSION / BAR_EA) * Vector3::x())
@@ -177,7 +177,7 @@ const BAR_LENGTH: f64 = 10.0; // [m]
 const BAR_LOAD: f64 = 1000.0; // [N]
 const BAR_TENSION: f64 = 2500.0; // [N], keeps the bar taut
 
-/// ω of mode k = 1 … n of the lumped bar: 2c/h sin((2k−1)π/4n) [rad/s].
+/// Circular frequency of mode k = 1 … n of the lumped bar: 2c/h sin((2k−1)π/4n) [rad/s].
 fn lumped_bar(n: usize, k: usize) -> f64 {
     let h = BAR_LENGTH / n as f64;
     2.0 * (BAR_EA / BAR_MASS).sqrt() / h * ((2 * k - 1) as f64 * PI / (4 * n) as f64).sin()
@@ -197,7 +197,7 @@ fn a_bar_held_at_one_end_has_the_frequencies_of_its_lumped_masses() {
     }
 }
 
-/// Displacement of the bar's tip from where it was, every `step` [s].
+/// Displacement of the bar's tip from its initial position, every `step` [s].
 fn tip_history(n: usize, step: f64, count: usize) -> Vec<f64> {
     let scene = with_integrator(loaded_bar(n), Integrator::Leapfrog, step);
     let mut simulation = start(&scene);
@@ -213,7 +213,7 @@ fn tip_history(n: usize, step: f64, count: usize) -> Vec<f64> {
 
 #[test]
 fn a_bar_under_a_sudden_load_moves_as_the_sum_of_its_modes() {
-    // u_tip = Σ φ_k² P/ω_k² (1 − cos ω̃_k t), φ_k² = 2/(mL) at the tip, ω̃ of the leapfrog
+    // u_tip = Σ φ_k² P/ω_k² (1 − cos ω̃_k t), φ_k² = 2/(mL) at the tip, ω̃ the frequency of the leapfrog
     let (n, step) = (20, 3e-5);
     let tip = tip_history(n, step, 800);
     for (j, found) in tip.iter().enumerate() {
@@ -229,7 +229,7 @@ fn a_bar_under_a_sudden_load_moves_as_the_sum_of_its_modes() {
 
 #[test]
 fn a_sudden_load_stretches_a_bar_twice_as_far_as_a_slow_one() {
-    // a triangle between 0 and 2PL/EA of period 4L/c; at its corners the mesh leaves a ripple
+    // a triangular wave between 0 and 2PL/EA with period 4L/c; at its corners the mesh causes a ripple
     let u_static = BAR_LOAD * BAR_LENGTH / BAR_EA;
     let period = 4.0 * BAR_LENGTH * (BAR_MASS / BAR_EA).sqrt();
     let (n, count) = (200, 2400);
@@ -243,7 +243,7 @@ fn a_sudden_load_stretches_a_bar_twice_as_far_as_a_slow_one() {
     }
 }
 
-/// J0 by its power series [-], for arguments up to about 15.
+/// J0 from its power series [-], for arguments up to about 15.
 fn bessel_j0(x: f64) -> f64 {
     let mut term = 1.0;
     let mut sum = 1.0;
@@ -261,7 +261,7 @@ fn bessel_zero(k: usize) -> f64 {
     bisect([guess - 0.3, guess + 0.3], |x| sign * bessel_j0(x))
 }
 
-/// A chain of 10 m that hangs from a wall, with a mass [kg] at its lower end.
+/// A 10 m chain that hangs from a wall, with a mass [kg] at its lower end.
 fn hanging_chain(n: usize, tip_mass: f64) -> Scene {
     draft("line_types.chain = { mass = 2.0, axial_stiffness = 1e9, axial_damping = 0.0 }")
         .fixed("top", [0.0; 3])
@@ -277,7 +277,7 @@ fn sizes() -> [f64; 4] {
     RESOLUTIONS.map(|n| 1.0 / n as f64)
 }
 
-/// Claims that frequencies of the plane modes k of a hanging chain with a mass [kg] at its end tend to exact ones [rad/s] at second order.
+/// Asserts that frequencies of in-plane modes k of a hanging chain with a mass [kg] at its end converge to exact ones [rad/s] at second order.
 fn assert_hanging(elements: usize, tip_mass: f64, exact: &[(usize, f64)]) {
     let found = RESOLUTIONS.map(|n| modes(&start(&hanging_chain(elements * n, tip_mass))).frequencies);
     for (k, exact) in exact {
@@ -301,7 +301,7 @@ fn a_hanging_chain_has_frequencies_by_the_zeros_of_j0() {
 
 #[test]
 fn a_hanging_chain_with_a_mass_at_its_end_has_frequencies_by_j0_and_y0() {
-    // y = A J0(2ω√((x + μL)/g)) + B Y0(…), held above, −ω²y = g y' at the mass; L = 10 m, g = 9.80665 m/s²
+    // y = A J0(2ω√((x + μL)/g)) + B Y0(…), fixed at the top, −ω²y = g y' at the mass; L = 10 m, g = 9.80665 m/s²
     for (ratio, exact) in [
         (
             0.1,
@@ -325,7 +325,7 @@ fn a_hanging_chain_with_a_mass_at_its_end_has_frequencies_by_j0_and_y0() {
     }
 }
 
-/// A sagged cable between two ends at one height, and its frequencies [rad/s].
+/// A sagging cable between two ends at the same height, and its frequencies [rad/s].
 struct SaggedCable {
     /// Span [m], length [m], axial stiffness [N], weight [N/m] and mass [kg/m].
     cable: [f64; 5],
@@ -333,8 +333,8 @@ struct SaggedCable {
     out_of_plane: [f64; 3],
 }
 
-/// Linear vibration about the true elastic catenary, converged to 1e-8 or better by a solution of the differential
-/// equations that shares nothing with this program.
+/// Linear vibration about the exact elastic catenary, converged to 1e-8 or better by an independent solution of the differential
+/// equations.
 const SAGGED_CABLES: [SaggedCable; 4] = [
     SaggedCable {
         cable: [14.1421, 14.1421, 2505.0, 0.49, 0.049966094435918484],
@@ -359,7 +359,7 @@ const SAGGED_CABLES: [SaggedCable; 4] = [
 ];
 
 impl SaggedCable {
-    /// Frequencies [rad/s] of the lowest modes in the plane of the cable and out of it.
+    /// Frequencies [rad/s] of the lowest in-plane and out-of-plane modes of the cable.
     fn frequencies(&self, n: usize) -> [Vec<f64>; 2] {
         let [span, length, stiffness, weight, mass] = self.cable;
         let cable = format!("{{ mass = {mass}, weight = {weight}, axial_stiffness = {stiffness} }}");
@@ -399,7 +399,7 @@ fn a_sagged_cable_has_the_frequencies_of_its_elastic_catenary() {
 fn a_line_sinks_by_the_hyperbolic_tangent() {
     // m_eff v' = w − ½ρdC v²: v = v_t tanh(t/τ), depth v_t τ ln cosh(t/τ), v_t = √(2w/(ρdC)), τ = m_eff v_t/w
     let (rho, d, m, g, drag) = (1025.0, 0.1, 20.0, 9.80665, 1.2);
-    let displaced = rho * PI / 4.0 * d * d; // [kg/m], with an added mass of once this
+    let displaced = rho * PI / 4.0 * d * d; // [kg/m], equal to the added mass
     let weight = (m - displaced) * g;
     let terminal = (2.0 * weight / (rho * d * drag)).sqrt();
     let tau = (m + displaced) * terminal / weight;
@@ -434,7 +434,7 @@ fn a_line_sinks_by_the_hyperbolic_tangent() {
     assert_order(2.0, &steps, &errors);
 }
 
-/// A mass of 1 kg on a light line of 10 m of one element, released from rest at an angle [rad].
+/// A mass of 1 kg on a light 10 m line of one element, released from rest at an angle [rad].
 fn pendulum(angle: f64) -> Scene {
     let tension = 9.80665 * angle.cos().max(0.0);
     let radius = 10.0 * (1.0 + tension / PENDULUM_EA);
@@ -472,11 +472,11 @@ fn a_pendulum_swings_with_the_period_of_the_elliptic_integral() {
     }
 }
 
-/// Tension at the root [N] and radius of the tip [m] of an elastic string in steady rotation at `omega` [rad/s], after a turn.
+/// Tension at the root [N] and radius of the tip [m] of an elastic string in steady rotation at `omega` [rad/s], after one revolution.
 fn whirl(omega: f64, n: usize) -> [f64; 2] {
     let (ea, h) = (1e4_f64, 1.0 / n as f64);
     let kappa = 2.0 * (0.5 * omega * h / ea.sqrt()).asin();
-    // r_i = A sin(κi); A by the half mass at the tip: EA((r_n − r_{n−1})/h − 1) = ½ h ω² r_n
+    // r_i = A sin(κi); A from the half mass at the tip: EA((r_n − r_{n−1})/h − 1) = ½ h ω² r_n
     let sin = |i: usize| (kappa * i as f64).sin();
     let scale = ea / (ea * (sin(n) - sin(n - 1)) / h - 0.5 * h * omega * omega * sin(n));
     let radii: Vec<Vector3<f64>> = (0..=n).map(|i| scale * sin(i) * Vector3::x()).collect();
@@ -546,7 +546,7 @@ fn a_towed_cable_streams_straight_at_the_angle_of_balance() {
 
 #[test]
 fn a_bump_on_a_taut_string_splits_and_travels_as_dalembert_says() {
-    // w(x, t) = ½f(x − ct) + ½f(x + ct), c² = TL/(m L₀) per stretched length
+    // w(x, t) = ½f(x − ct) + ½f(x + ct), c² = TL/(m L₀) for stretched lengths
     let speed = (STRING_TENSION * STRING_SPAN / (STRING_MASS * STRING_LENGTH)).sqrt();
     let bump = |x: f64| 1e-3 * (-((x - 50.0) / 6.0_f64).powi(2)).exp();
     let time = 25.0 / speed;
@@ -572,7 +572,7 @@ fn a_bump_on_a_taut_string_splits_and_travels_as_dalembert_says() {
 
 #[test]
 fn a_cable_released_from_a_parabola_or_without_tension_settles_into_its_discrete_catenary() {
-    // SeaFEM validation case 11 with 22 elements; each end carries half the weight for any mesh
+    // SeaFEM validation case 11 with 22 elements; on any mesh each end carries half the weight
     for integrator in [Integrator::Auto, Integrator::Leapfrog, Integrator::AxialImplicit] {
         for initial in [InitialShape::Parabola(0.72), InitialShape::Straight] {
             let mut scene = shipped("seafem11");

@@ -6,32 +6,32 @@ use moorline::scene::{Integrator, MotionPath, Scene};
 
 const LEAPFROGS: [Integrator; 2] = [Integrator::Leapfrog, Integrator::AxialImplicit];
 
-/// Interval of samples [s].
+/// Sampling interval [s].
 const SAMPLE: f64 = 0.05;
 
-/// Runs a scene for `duration` [s] with its own motion, sampled every [`SAMPLE`].
+/// Runs a scene with its own motion for `duration` [s], sampled every [`SAMPLE`].
 fn recorded(scene: &Scene, duration: f64) -> History {
     History::record(&mut following(scene), SAMPLE, samples(duration))
 }
 
-/// Samples in a window of `duration` [s].
+/// Number of samples in a window of `duration` [s].
 fn samples(duration: f64) -> usize {
     (duration / SAMPLE).round() as usize
 }
 
-/// A taut line without axial damping, which the leapfrogs take lagged.
+/// A taut line without axial damping, which the leapfrogs evaluate with lagged velocities.
 fn undamped(integrator: Integrator, n: usize, step: f64) -> Scene {
     let mut scene = with_integrator(with_elements(shipped("taut_polyester"), n), integrator, step);
     for line_type in scene.line_types.values_mut() {
         line_type.axial_damping = Some(0.0);
     }
     if integrator == Integrator::GeneralisedAlpha {
-        scene.solver.spectral_radius = Some(0.5); // less dissipation than the default: order two from coarser steps on
+        scene.solver.spectral_radius = Some(0.5); // less dissipation than the default: second order already at coarser steps
     }
     scene
 }
 
-/// Errors of tension and of the middle's position over the last third of 30 s.
+/// Errors of the tension and of the middle node's position over the last third of 30 s.
 fn errors(histories: &[History], reference: &History) -> [Vec<f64>; 2] {
     let window = samples(10.0);
     let tension = histories
@@ -62,12 +62,12 @@ fn five_elements_keep_all_but_seven_thousandths_of_the_tension_of_a_taut_rope() 
         let scene = with_elements(shipped("taut_polyester"), n);
         recorded(&with_integrator(scene, Integrator::AxialImplicit, SAMPLE), 90.0)
     };
-    // 0.025 with the load on the end's half node as it is at the end, 0.009 with one that is linear
+    // 0.025 if the load on the end's half element is that at the end, 0.009 if the load is linear
     let error = taut(5).tension_error(&taut(160), samples(60.0));
     assert!(error < 0.007, "{error}");
 }
 
-/// The OC3 line with a fifth of its motion, so that it stays taut, while the nodes of its touchdown land and rise.
+/// The OC3 line with a fifth of its motion, so that it stays taut while nodes touch down and lift off.
 fn calm(step: f64) -> Scene {
     let mut scene = with_integrator(shipped("oc3_catenary"), Integrator::AxialImplicit, step);
     if let Some(MotionPath::Harmonic(motion)) = scene.motion.get_mut("fairlead") {
@@ -84,13 +84,13 @@ fn halving_the_axial_implicit_step_of_a_line_that_lands_quarters_the_error_at_le
     let reference = recorded(&calm(SAMPLE / 256.0), 60.0);
     let found = steps.map(|step| recorded(&calm(step), 60.0));
     for errors in errors(&found, &reference) {
-        assert_order_at_least(2.0, &steps, &errors); // more, as less and less of the tension is averaged
+        assert_order_at_least(2.0, &steps, &errors); // higher, since a decreasing share of the tension is averaged
     }
 }
 
 #[test]
 fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
-    // first order in the step, in addition to the second order of all else
+    // first order in the step, in addition to the second order of all other terms
     let fine = with_elements(shipped("taut_polyester"), 10);
     for integrator in LEAPFROGS {
         let reference = recorded(&with_integrator(fine.clone(), integrator, SAMPLE / 256.0), 30.0);
@@ -103,7 +103,7 @@ fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
 
 #[test]
 fn halving_the_elements_quarters_the_error() {
-    let resolutions = [40, 80, 160, 320]; // coarser meshes miss the second transverse mode
+    let resolutions = [40, 80, 160, 320]; // coarser meshes do not resolve the second transverse mode
     let sizes = resolutions.map(|n| 1.0 / n as f64);
     let scene = |n| undamped(Integrator::Leapfrog, n, 5e-4);
     let reference = recorded(&scene(1280), 30.0);
@@ -128,7 +128,7 @@ fn the_public_scenes_run_at_default_settings() {
     }
 }
 
-/// Errors of tension and of the middle's position [-] over a window [s] of one integrator with its step [s] against the explicit leapfrog with another.
+/// Errors of tension and of the middle node's position [-] over a window [s], for one integrator and step [s] against the explicit leapfrog.
 fn apart(scene: &Scene, other: (Integrator, f64), explicit: f64, [duration, window]: [f64; 2]) -> [f64; 2] {
     let [other, explicit] = [other, (Integrator::Leapfrog, explicit)]
         .map(|(integrator, step)| recorded(&with_integrator(scene.clone(), integrator, step), duration));
@@ -154,7 +154,7 @@ fn the_implicit_integrator_agrees_with_the_leapfrog_on_a_taut_line_and_on_a_chai
     }
 }
 
-/// The peers' law on fine meshes: damping acts in compression too.
+/// With the law of other codes, in which damping acts in compression too, on fine meshes.
 fn leapfrogs_agree(scenes: &[(&str, f64)], implicit_step: f64) {
     for (name, window) in scenes {
         let mut scene = with_elements(shipped(name), 160);
@@ -180,17 +180,17 @@ fn the_leapfrogs_agree_on_snapping_chains_under_the_peers_law() {
     leapfrogs_agree(&PUBLIC_SCENES[3..], 5e-4);
 }
 
-/// Inputs that a host gives.
+/// Inputs set by a host.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Gives {
     Displacements,
     VelocitiesToo,
 }
 
-/// RMS error of tension [-] where a host moves the fairlead every `step` [s], against exact motion at the same internal step.
+/// RMS error of tension [-] for a host that moves the fairlead every `step` [s], against exact motion with the same internal step.
 fn host_error(step: f64, gives: Gives) -> f64 {
     let scene = with_integrator(shipped("oc3_catenary"), Integrator::Leapfrog, 0.00625);
-    let sampled = 0.4; // common to all communication steps
+    let sampled = 0.4; // a multiple of all communication steps
     let (count, every) = ((120.0 / sampled) as usize, (sampled / step).round() as usize);
     let motion = Motion::new(&scene.motion["fairlead"]);
     let mut host = start(&scene);

@@ -1,11 +1,11 @@
-//! Networks of lines joined at free points whose axial tension is implicit.
+//! Networks of lines joined at free points, with implicit axial tension.
 
 use crate::common::*;
 use moorline::scene::{Integrator, MotionPath, Scene};
 
 const IMPLICIT: Integrator = Integrator::AxialImplicit;
 
-/// A dry rope of 40 m between a fixed point and one that sways, whole or cut in its middle by a free point without mass.
+/// A 40 m rope in air between a fixed and a swaying point, whole or divided in the middle by a massless free point.
 fn rope(cut: bool) -> Draft {
     let rope = draft(
         "line_types.rope = { mass = 20.0, axial_stiffness = 1e6, axial_damping = 2e3 }
@@ -33,15 +33,15 @@ fn a_dry_rope_cut_by_a_free_point_without_mass_moves_as_the_whole() {
         let [one, other] = [whole.tension_b(0), cut.tension_b(1)];
         (apart, peak) = (apart.max((one - other).abs()), peak.max(one));
     }
-    // passes end where the tension changes by less than a thousandth of the greatest one of a line
+    // iterations end if the tension changes by less than a thousandth of the greatest tension of a line
     assert!(apart < 1e-5 * peak, "{apart} N of {peak} N");
 }
 
-/// The clump weight on its line without a seabed, in a fifth of its motion.
+/// The clump weight on its lines without a seabed, with a fifth of its motion.
 fn clump(step: f64) -> Scene {
     let mut scene = with_integrator(with_elements(shipped("clump_weight"), 10), IMPLICIT, step);
     scene.seabed = None;
-    scene.lines.swap(0, 1); // a history has the tension of the first line, at its fairlead
+    scene.lines.swap(0, 1); // a history records the tension of the first line, at its fairlead
     if let Some(MotionPath::Harmonic(motion)) = scene.motion.get_mut("fairlead") {
         for sine in motion.x.iter_mut().chain(&mut motion.z) {
             sine[0] *= 0.2;

@@ -9,12 +9,12 @@ use moorline::elements::{Counters, Workspace};
 use moorline::model::{Kinematics, Model, State};
 use nalgebra::Vector3;
 
-/// All held points stay where the scene puts them.
+/// All prescribed points stay at their positions in the scene.
 fn at_rest(model: &Model) -> impl Fn(usize, f64) -> Kinematics {
     swing(model, Vector3::zeros(), 1.0)
 }
 
-/// Point "fairlead" moves by `amplitude`·sin⁴(πt/period) [m], which starts with no velocity and no acceleration; all others stay.
+/// Point "fairlead" moves by `amplitude`·sin⁴(πt/period) [m], with zero initial velocity and acceleration; all others stay.
 fn swing(model: &Model, amplitude: Vector3<f64>, period: f64) -> impl Fn(usize, f64) -> Kinematics {
     let reference = at_reference(model);
     let fairlead = model.point_index("fairlead");
@@ -61,7 +61,7 @@ fn run(
     (state, total)
 }
 
-/// Greatest distance of nodes of two states [m].
+/// Greatest distance between corresponding nodes of two states [m].
 fn apart(a: &State, b: &State) -> f64 {
     greatest(
         a.lines
@@ -73,7 +73,7 @@ fn apart(a: &State, b: &State) -> f64 {
 
 // ------------------------------------------------------------------ order in time
 
-/// A 902 m chain in water, hanging free of any seabed, from an anchor to a fairlead.
+/// A 902 m chain in water, clear of any seabed, from an anchor to a fairlead.
 fn chain() -> Model {
     draft(
         "water.density = 1025.0
@@ -142,7 +142,7 @@ fn a_pendulum_of_large_amplitude_has_its_period() {
 
 // ------------------------------------------------------------------ snapping and slack
 
-/// A 33 m model chain over a seabed, whose fairlead slackens and snaps it.
+/// A 33 m model chain over a seabed; the motion of its fairlead slackens and snaps it.
 fn snapping(axial_stiffness: f64, contact: &str) -> Model {
     draft(format!(
         "water.density = 1000.0
@@ -175,7 +175,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
     }
 }
 
-/// A dry undamped cable, longer than its span, that falls from a straight line through its two ends.
+/// An undamped cable in air, longer than its span, that falls from a straight line between its ends.
 fn falling(axial_stiffness: f64) -> Model {
     draft(format!(
         "line_types.cable = {{ mass = 1.0, axial_stiffness = {axial_stiffness:e} }}"
@@ -206,15 +206,15 @@ fn energy(model: &Model, state: &State) -> f64 {
 
 /// Energies of a falling cable [J].
 struct Fall {
-    /// At rest in the end.
+    /// At rest at the end.
     lowest: f64,
-    /// In a straight line through the ends, where it sets out.
+    /// In the straight initial shape.
     first: f64,
     /// After every step.
     then: Vec<f64>,
 }
 
-/// Lets a cable fall for a number of steps of 10 ms.
+/// Lets a cable fall for `steps` steps of 10 ms.
 fn fall(model: &Model, scheme: Scheme, steps: usize) -> Fall {
     let held = at_rest(model);
     let mut state = statics(model);
@@ -316,7 +316,7 @@ fn released_from_a_straight_line_a_damped_cable_tends_to_its_equilibrium() {
 
 #[test]
 fn splitting_a_line_at_a_free_point_changes_nothing() {
-    // a dry line with a seabed below, in one piece or in two that meet in a free point
+    // a line in air above a seabed, in one piece or in two joined at a free point
     let ends = draft(
         "seabed = { depth = 3.0, stiffness = 2.0e5, damping = 4.0e4, contact = 'as_given' }
         line_types.cable = { mass = 30.0, diameter = 0.05, axial_stiffness = 1.0e6, axial_damping = 1.0e4 }",

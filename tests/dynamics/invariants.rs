@@ -1,4 +1,4 @@
-//! Changes of a scene that must not change a result, and quantities that a result must keep.
+//! Changes of a scene that must not change a result, and quantities that a result must conserve.
 
 use crate::common::*;
 use approx::assert_relative_eq;
@@ -8,7 +8,7 @@ use moorline::scene::{Current, Integrator, MotionPath, Reconstruction, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::{Rotation3, Vector3};
 
-/// The OC4 chain moved along all three axes, coarse, by one integrator.
+/// The OC4 chain on a coarse mesh, moved along all three axes, with one integrator.
 fn chain(integrator: Integrator) -> Scene {
     let mut scene = with_integrator(with_elements(shipped("oc4_chain"), 20), integrator, 0.01);
     if let Some(MotionPath::Harmonic(motion)) = scene.motion.get_mut("fairlead") {
@@ -50,7 +50,7 @@ fn the_energy_balance_changes_no_bit_of_the_motion() {
     }
 }
 
-/// Error of the energy balance over all the energy that it has counted, of a scene whose host moves the vessel or the
+/// Error of the energy balance, relative to all the energy that it counts, for a scene whose host moves the vessel or the
 /// second point abruptly every 0.1 s for 10 s.
 fn jumping_balance(mut scene: Scene) -> f64 {
     scene.solver.input_reconstruction = Reconstruction::Jump;
@@ -85,11 +85,11 @@ fn the_energy_balance_closes_where_held_points_jump() {
     .coupled("fairlead", [40.0, 0.0, 8.0])
     .line("line1", ["anchor", "fairlead"], "rope", 66.0, None)
     .scene();
-    // a jump makes waves as short as elements are, which explicit steps resolve least
+    // a jump makes waves as short as an element, which explicit steps resolve worst
     for (name, scene, explicit, axial_step) in [
         ("a chain on its seabed", shipped("oc4_chain"), 5e-3, 0.01),
         ("a rope", shipped("taut_polyester"), 1e-5, 0.01),
-        // 4e-3 at 5 ms, where the two ropes are not resolved, 6e-4 at 2.5 ms
+        // 4e-3 at 5 ms, where the two ropes are not resolved; 6e-4 at 2.5 ms
         ("lines at a free point", shipped("bridle"), 2e-3, 0.0025),
         ("a viscoelastic rope through the surface", pierces, 0.1, 0.01),
     ] {
@@ -112,13 +112,13 @@ fn the_energy_balance_closes_where_held_points_jump() {
     }
 }
 
-/// Greatest distance of the first line's nodes in two states [m], the second mapped.
+/// Greatest distance between the first line's nodes in two states [m], after mapping the second.
 fn distance(found: &State, other: &State, image: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
     let images: Vec<Vector3<f64>> = other.lines[0].position.iter().map(|r| image(*r)).collect();
     gap(&found.lines[0].position, &images)
 }
 
-/// The scene in another frame: all points and harmonic motions, whose components must be alike in period, mapped linearly.
+/// The scene in another frame: a linear map of all points and harmonic motions, whose components must have the same periods.
 fn mapped(mut scene: Scene, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Scene {
     for point in &mut scene.points {
         point.position = map(Vector3::from(point.position)).into();
@@ -239,7 +239,7 @@ fn a_snapshot_put_back_replays_bit_for_bit() {
         let fairlead = simulation.model().point_index("fairlead").unwrap();
         let drive = |simulation: &mut Simulation, steps: std::ops::Range<usize>| {
             for k in steps {
-                let step = [0.05, 0.08, 0.02][k % 3]; // uneven on purpose
+                let step = [0.05, 0.08, 0.02][k % 3]; // deliberately irregular
                 simulation.set_displacement(fairlead, motion.at(simulation.time()).position.into());
                 simulation.advance(step).unwrap();
             }
@@ -251,7 +251,7 @@ fn a_snapshot_put_back_replays_bit_for_bit() {
     }
 }
 
-/// Where the nodes fill the lanes, the segment beyond the free end has no length: the logarithm of its stretch must not reach the line.
+/// If the nodes fill all lanes, the segment beyond the free end has zero length: the logarithm of its stretch must not affect the line.
 #[test]
 fn a_rope_of_logarithmic_strain_that_snaps_replays_whatever_its_elements() {
     for elements in 5..10 {
@@ -335,7 +335,7 @@ fn one_long_communication_step_is_many_short_ones() {
     }
 }
 
-/// Energy of the first line [J]: of motion, in the field of gravity, and of stretch.
+/// Energy of the first line [J]: kinetic, gravitational and elastic.
 fn energy(simulation: &Simulation) -> f64 {
     let (model, state) = (simulation.model(), &simulation.state().lines[0]);
     let line = &model.lines[0];

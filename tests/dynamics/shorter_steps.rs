@@ -1,4 +1,4 @@
-//! Communication steps in which the motion outruns the internal steps are repeated in shorter ones, and a failed
+//! Communication steps whose internal steps are too long for the motion are repeated with shorter ones; a failed
 //! attempt leaves no trace.
 
 use crate::common::*;
@@ -6,7 +6,7 @@ use moorline::model::Body;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 
-/// A light rope in water over a seabed that slopes, from an anchor to a buoy at the surface.
+/// A light rope in water over a sloping seabed, from an anchor to a buoy at the surface.
 fn light_rope(integrator: Integrator) -> Simulation {
     let rope = draft(
         "water.density = 1025.0
@@ -20,13 +20,13 @@ fn light_rope(integrator: Integrator) -> Simulation {
     start(&with_integrator(rope.scene(), integrator, 0.05))
 }
 
-/// Puts the buoy at a height [m], where it rises with a velocity [m/s].
+/// Moves the buoy to a height [m] with a vertical velocity [m/s].
 fn put_buoy(simulation: &mut Simulation, height: f64, rise: f64) {
     let rates = [0.0, 0.0, rise, 0.0, 0.0, 0.0].map(Some);
     simulation.set_body(Body::Point(1), [0.0, 0.0, height, 0.0, 0.0, 0.0], rates);
 }
 
-/// Speed of the fastest node [m/s] of the rope where the buoy is jerked up to 40 m/s, over three communication steps of a length [s].
+/// Greatest nodal speed [m/s] of the rope if the buoy is accelerated abruptly to 40 m/s, over three communication steps of `step` [s].
 fn fastest(step: f64) -> f64 {
     let mut simulation = light_rope(Integrator::Leapfrog);
     put_buoy(&mut simulation, 0.0, 0.0);
@@ -41,8 +41,8 @@ fn fastest(step: f64) -> f64 {
     greatest
 }
 
-/// The host's path overshoots, and the rope with it: 119 m/s are the most in steps 16 times shorter. Where only the drag at the start of a
-/// communication step limits the internal ones, 700 to 6000 m/s are left at the end of some.
+/// The path of the buoy overshoots, and the rope with it: in steps 16 times shorter, the greatest speed is 119 m/s. If only the drag at the start
+/// of a communication step limits the internal steps, 700 to 6000 m/s remain at the end of some.
 #[test]
 fn a_jerked_rope_does_not_outrun_its_drag_whatever_the_communication_step() {
     for number in 0..40 {
@@ -75,7 +75,7 @@ fn a_step_that_failed_leaves_nothing_to_those_after_it() {
     }
 }
 
-/// A fat light hose upright in the water that is drawn up and down along itself.
+/// A thick light hose, vertical in the water, that is moved up and down along its axis.
 fn hose(integrator: Integrator) -> Scene {
     let hose = draft(
         "water = { density = 1025.0, surface = false }
@@ -103,7 +103,7 @@ fn drag_along_a_line_that_is_light_beside_the_water_it_displaces_shortens_the_st
     assert!(rms(&error) < 0.02 * rms(&swing), "{} N", rms(&error));
 }
 
-/// Internal steps of the communication steps of a light rope in deep water, over a level seabed or one with a slope, whose buoy heaves.
+/// Internal steps per communication step of a light rope in deep water, over a level or sloping seabed, with a heaving buoy.
 fn steps_of_a_heave(seabed: &str, ends: [&str; 2]) -> Vec<usize> {
     let rope = draft(format!(
         "water = {{ density = 1025.0, surface = false }}

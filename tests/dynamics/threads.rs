@@ -1,4 +1,4 @@
-//! Threads share the networks of a system; results must not depend on their number.
+//! Networks of a system are distributed over threads; results must not depend on the number of threads.
 
 use crate::common::*;
 use crate::copies::copies;
@@ -6,7 +6,7 @@ use moorline::model::Body;
 use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::{Simulation, Snapshot};
 
-/// Twelve lines of a semi-submersible with a number of elements each, in waves or not.
+/// Twelve lines of a semi-submersible with `elements` elements each, with or without waves.
 fn semi(elements: usize, waves: bool, integrator: Integrator) -> Scene {
     let mut scene = with_integrator(shipped("storm_moored_semi"), integrator, 0.05);
     scene.solver.elements = Some(elements);
@@ -17,14 +17,14 @@ fn semi(elements: usize, waves: bool, integrator: Integrator) -> Scene {
     scene
 }
 
-/// A simulation of the scene on a number of threads that follows its motion.
+/// A simulation that follows the scene's motion on `threads` threads.
 fn on_threads(scene: &Scene, threads: usize) -> Simulation {
     let mut scene = scene.clone();
     scene.solver.threads = Threads::Number(threads);
     following(&scene)
 }
 
-/// The state after irregular communication steps on a number of threads.
+/// State after irregular communication steps on `threads` threads.
 fn stepped(scene: &Scene, threads: usize) -> Snapshot {
     let mut simulation = on_threads(scene, threads);
     for step in [0.05, 0.05, 0.3, 0.01, 1.3, 0.05, 0.2, 0.05] {
@@ -47,7 +47,7 @@ fn any_number_of_threads_gives_the_same_state_bit_for_bit() {
             0.05,
         ),
     ];
-    // one network by one integrator, the other by another
+    // networks with different integrators
     let mut mixed = semi(8, true, Integrator::Auto);
     mixed.line_types.get_mut("rope").expect("a rope").axial_stiffness = Some(1.6e11);
     mixed.lines[3]

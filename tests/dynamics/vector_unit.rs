@@ -1,4 +1,4 @@
-//! The kernels run with the best vectors of the machine; the results must not depend on it.
+//! The kernels use the widest vector instructions of the machine; the results must not depend on them.
 
 use crate::common::*;
 use moorline::dynamics::leapfrog::step::Step;
@@ -7,7 +7,7 @@ use moorline::model::{Kinematics, LineState};
 use moorline::scene::{Integrator, Scene};
 use nalgebra::Vector3;
 
-/// Lines after `steps` steps of `size` [s] of the first network of a scene, whose prescribed points sway by a metre.
+/// Lines of the first network of a scene after `steps` steps of `size` [s], in which prescribed points sway by a metre.
 fn swayed<K: Kernel>(scene: &Scene, size: f64, steps: usize, portable: bool) -> Vec<LineState> {
     let simulation = start(scene);
     let (model, mut state) = (simulation.model(), simulation.state().clone());

@@ -1,6 +1,6 @@
 //! No key of the scene format is silently ignored: for every key of the reader, and every kind of object that may
-//! have it, another value changes a result, or is refused by name, or a note names the key and states that it changes
-//! nothing.
+//! have it, another value changes a result, or is refused by name, or a note names the key and states that it has
+//! no effect.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -18,7 +18,7 @@ use toml::{Table, Value};
 const VALUES: &str = include_str!("values.toml");
 const SCENES: &str = include_str!("scenes.toml");
 
-/// Tables of the format, by the last name in the path of an object that is no number.
+/// Tables of the format, by the last name in an object's path that is not a number.
 const PLACES: &[(&str, &str)] = &[
     ("water", "Water"),
     ("current", "Current"),
@@ -49,7 +49,7 @@ const PLACES: &[(&str, &str)] = &[
     ("z", "FunctionText"),
 ];
 
-/// Every table of the format with the names of its keys, second names included.
+/// Every table of the format with the names of its keys, including aliases.
 fn tables() -> Vec<(&'static str, Vec<&'static str>)> {
     let names = |table: keys::Schema| {
         let keys = table.keys.iter();
@@ -59,7 +59,7 @@ fn tables() -> Vec<(&'static str, Vec<&'static str>)> {
     keys::tables().into_iter().map(names).collect()
 }
 
-/// Table of the format that an object at a path is; `None` of a map of names.
+/// Table of the format to which the object at a path belongs; `None` for a map of names.
 fn table_of(path: &[String]) -> Option<&'static str> {
     match path {
         [] => return Some("Scene"),
@@ -105,7 +105,7 @@ fn object<'s>(scene: &'s mut Value, path: &[String]) -> &'s mut Table {
     at.as_table_mut().unwrap()
 }
 
-/// Path in the form of mistakes and notes: `lines[1].sections[0]`.
+/// Path in the form used by mistakes and notes: `lines[1].sections[0]`.
 fn rendered(path: &[String]) -> String {
     let steps = path.iter().map(|step| match step.parse::<usize>() {
         Ok(_) => format!("[{step}]"),
@@ -127,7 +127,7 @@ struct Outcome {
 enum Refusal {
     /// Mistakes with their places.
     Mistakes(Vec<SceneError>),
-    /// A computation that fails.
+    /// A failed computation.
     Failure(String),
 }
 
@@ -146,7 +146,7 @@ impl From<SceneError> for Refusal {
     }
 }
 
-/// Names and values of all results of a run that follows the scene and of one that a host drives, and the notes of `check`.
+/// Names and values of all results of a run that follows the scene and of one driven by a host, and the notes of `check`.
 fn outcome(folder: &Path, scene: &Value) -> Result<Outcome, Refusal> {
     let path = folder.join("scene.toml");
     fs::write(&path, toml::to_string(scene).unwrap()).unwrap();
@@ -181,7 +181,7 @@ fn outcome(folder: &Path, scene: &Value) -> Result<Outcome, Refusal> {
     Ok(found)
 }
 
-/// Moves, releases and pays out everything that a host can, in a flow that it gives.
+/// Moves, releases and pays out everything that a host can, and sets the water flow.
 fn drive(simulation: &mut Simulation, t: f64) {
     let model = simulation.model().clone();
     let mut flow = WaterFlow::still(&model);
@@ -212,7 +212,7 @@ fn drive(simulation: &mut Simulation, t: f64) {
 fn collect(simulation: &Simulation, interface: &Interface, channels: &Channels, found: &mut Outcome) {
     let (names, numbers) = (&mut found.names, &mut found.numbers);
     for variable in interface.outputs() {
-        // steps are how results are found, and no result
+        // the number of steps is not a result
         if !matches!(variable.binding, Binding::Solver(SolverResult::Substeps)) {
             let mut values = vec![f64::NAN; variable.size()];
             let _ = Interface::read(variable, simulation, &mut values);
@@ -242,7 +242,7 @@ fn differ(a: &Outcome, b: &Outcome) -> bool {
     a.names != b.names || a.numbers.len() != b.numbers.len() || pairs.any(apart)
 }
 
-/// Folder with the files that scenes may name.
+/// Folder with the files that scenes may refer to.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in [
@@ -262,14 +262,14 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Outcome of another value of a key.
+/// Effect of another value of a key.
 enum Fate {
     Acts,
     Told(String),
     Silent(String),
 }
 
-/// Returns true where a text names one of these, as a key or in words.
+/// Returns whether a text contains one of these names, as a key or in words.
 fn names(text: &str, known: &[&str]) -> bool {
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     known.iter().filter(|name| !name.is_empty()).any(|name| {
@@ -278,7 +278,7 @@ fn names(text: &str, known: &[&str]) -> bool {
     })
 }
 
-/// Compares a changed key of an object of a name with the unchanged one.
+/// Compares the outcome with a changed key of a named object with the unchanged outcome.
 fn fate(found: Result<Outcome, Refusal>, at: &str, [name, key]: [&str; 2], before: &Outcome) -> Fate {
     let after = match found {
         Ok(after) => after,
@@ -298,7 +298,7 @@ fn fate(found: Result<Outcome, Refusal>, at: &str, [name, key]: [&str; 2], befor
         let here = note.at == at || note.at == format!("{at}.{key}");
         here && note.text.contains(&format!("`{key}`")) && note.text.contains("nothing")
     };
-    // they act on files alone
+    // these keys act only on files
     let is_of_files = ["title", "format", "digits", "frames", "derivatives"].contains(&key);
     let written = is_of_files && after.loaded.scene.in_words() != before.loaded.scene.in_words();
     match (after.notes.iter().find(about), differ(&after, before) || written) {
@@ -309,7 +309,7 @@ fn fate(found: Result<Outcome, Refusal>, at: &str, [name, key]: [&str; 2], befor
     }
 }
 
-/// Gives a key of an object another value; returns the object's name before.
+/// Sets a key of an object to another value; returns the previous name of the object.
 fn change(scene: &mut Value, path: &[String], key: &str, value: &Value) -> String {
     let object = object(scene, path);
     let name = object
@@ -328,8 +328,8 @@ fn change(scene: &mut Value, path: &[String], key: &str, value: &Value) -> Strin
     name
 }
 
-/// Outcomes of the keys of the objects of all scenes: those that act, and changes that are refused or noted or that pass in silence, each
-/// after the scene's name.
+/// Outcomes of the keys of the objects of all scenes, each after the scene's name: keys that act, changes that are refused or noted, and changes
+/// that are silently ignored.
 #[derive(Default)]
 struct Found {
     acting: BTreeSet<String>,
@@ -337,7 +337,7 @@ struct Found {
     silent: Vec<String>,
 }
 
-/// Scene of the list: its text, and the beginnings of the paths of the objects under test.
+/// Scene of the list: its text, and the first parts of the paths of the objects under test.
 fn scene(list: &Table, row: &Value) -> (Value, Vec<String>) {
     let chosen = |key: &str, usual: &str| {
         let name = row.get(key).and_then(Value::as_str).unwrap_or(usual);
@@ -380,7 +380,7 @@ fn try_all(folder: &Path, name: &str, (scene, tried): (Value, Vec<String>), foun
                 .as_ref()
                 .is_ok_and(|after| after.loaded.scene == before.loaded.scene)
             {
-                continue; // the same, such as a default
+                continue; // unchanged, such as a default
             }
             let place = [path.as_slice(), &[key.to_string()]].concat().join(".");
             let said = |text: String| format!("{name}: {place} = {value}: {text}");

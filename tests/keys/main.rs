@@ -1,4 +1,4 @@
-//! The keys of the scene format: each of them acts or is refused, and the page of the format has them all.
+//! Keys of the scene format: each of them acts or is refused, and the page of the format lists them all.
 
 mod effect;
 mod page;

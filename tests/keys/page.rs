@@ -1,4 +1,4 @@
-//! The reference of the scene format in `docs/scene.md` is written from the property table. After an intended change, write it again:
+//! The reference of the scene format in `docs/scene.md` is generated from the property table. After an intended change, regenerate it:
 //! `MOORLINE_UPDATE=1 cargo test --test keys page`.
 
 use std::collections::BTreeSet;
@@ -50,7 +50,7 @@ fn every_key_has_a_text_and_a_row_and_every_number_a_unit() {
         }
     }
     for (key, choice) in choices() {
-        assert!(!choice.words.is_empty(), "{}", key.name()); // `flow` has one so far
+        assert!(!choice.words.is_empty(), "{}", key.name()); // `flow` has only one so far
         assert!(choice.words.iter().all(|(_, meaning)| !meaning.trim().is_empty()));
     }
 }
@@ -75,7 +75,7 @@ fn every_key_in_an_example_of_the_page_is_one_of_the_reader() {
         for before in code.split('=').rev().skip(1) {
             let key = before.rsplit([' ', '{', ',', '.']).find(|word| !word.is_empty());
             let key = key.unwrap_or_default();
-            // a motion is given by the name of the point or vessel that it moves
+            // a motion has the name of the point or vessel that it moves
             assert!(
                 known.contains(key) || ["fairlead", "platform"].contains(&key),
                 "{line}"

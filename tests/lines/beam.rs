@@ -1,4 +1,4 @@
-//! The geometrically exact beam against published and closed-form solutions, through scenes as a user writes them.
+//! Geometrically exact beam against published and closed-form solutions, through scenes as a user writes them.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,20 +9,20 @@ use moorline::scene::{Axis, InitialShape, Integrator, LineModel, PointKind, Scen
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
-/// The flying rod with n elements and a step [s].
+/// The flying rod with `elements` elements and a time step [s].
 fn spaghetti(elements: usize, step: f64) -> Scene {
     let mut scene = with_elements(shipped("flying_spaghetti"), elements);
     scene.solver.time_step_max = step;
     scene
 }
 
-/// Energy held [J], by the energy balance.
+/// Stored energy [J], from the energy balance.
 fn energy(simulation: &Simulation) -> f64 {
     let balance = simulation.energy_balance().unwrap();
     balance_error(simulation) + balance.start + balance.flow.external_work - balance.flow.dissipation
 }
 
-/// A flight of 10 s in steps of 0.1 s: energy and momenta stay after the load, and the impulse is exact.
+/// Asserts for a flight of 10 s in steps of 0.1 s that the impulse is exact and energy and momenta are constant after the load.
 fn assert_conserves(scene: &Scene) {
     let mut simulation = start(&balanced(scene.clone()));
     run(&mut simulation, 0.1, 25);
@@ -62,7 +62,7 @@ fn a_flying_rod_keeps_energy_and_momenta_to_rounding() {
 
 #[test]
 fn a_flying_rod_tends_to_the_converged_flight_at_second_order() {
-    // Displacements of A and B [m] at 2.5, 5 and 10 s: spectral elements, converged to 5e-6 m; energy [J] after 2.5 s.
+    // Displacements of A and B [m] at 2.5, 5 and 10 s from spectral elements, converged to 5e-6 m; energy [J] after 2.5 s.
     let reference = [
         [[-1.036_913_2, 4.476_005_5], [3.583_146_0, -1.888_104_1]],
         [[3.783_685_3, 8.203_803_1], [8.074_362_2, -6.241_153_4]],
@@ -97,7 +97,7 @@ fn a_flying_rod_tends_to_the_converged_flight_at_second_order() {
     assert_orders(2.0, &errors);
 }
 
-/// A weightless beam along x from the origin: EI 1 N m², 1 kg/m, EA and GA [N] so great that Euler and Bernoulli hold; `tip` adds its end.
+/// A weightless beam along x from the origin: EI 1 N m², 1 kg/m, EA and GA [N] high enough for Euler-Bernoulli theory; `tip` adds its end.
 fn slender(elements: usize, stiffness: f64, clamps: &str, tip: impl Fn(Draft) -> Draft) -> Scene {
     let beam = draft(format!(
         "gravity = 0.0
@@ -139,8 +139,8 @@ fn an_end_moment_rolls_a_cantilever_up_to_a_circle() {
     assert!(nodes(&cantilever(40, "moment = { z = 6.283185307179586 }"))[40].norm() < 1e-5);
 }
 
-/// Claims that the first natural frequency tends to a closed form [rad/s] at second order, over meshes of 8 to 64 elements with steps in proportion, of a
-/// slender beam that starts as 1e-6 m times `shape` of x/L.
+/// Asserts that the first natural frequency converges to a closed form [rad/s] at second order, over meshes of 8 to 64 elements with
+/// proportional steps, for a slender beam with an initial displacement of 1e-6 m times `shape` of x/L.
 fn assert_frequency(exact: f64, shape: impl Fn(f64) -> f64, beam: impl Fn(usize) -> Scene) {
     assert_orders(
         2.0,
@@ -154,7 +154,7 @@ fn assert_frequency(exact: f64, shape: impl Fn(f64) -> f64, beam: impl Fn(usize)
             let step = TAU / exact / steps as f64;
             scene.solver.time_step_max = step;
             let mut simulation = start(&scene);
-            // projected onto the mode, so that other components of the start drop out
+            // projected onto the mode, which removes other components of the initial displacement
             let sample = |_| {
                 simulation.advance(step).unwrap();
                 nodes(&simulation)
@@ -172,7 +172,7 @@ fn assert_frequency(exact: f64, shape: impl Fn(f64) -> f64, beam: impl Fn(usize)
     );
 }
 
-/// Euler and Bernoulli's mode of a beam clamped at x = 0, with the coefficient of its sines [-].
+/// Euler-Bernoulli mode of a beam clamped at x = 0, with the coefficient of its sines [-].
 fn clamped_mode(beta: f64, sigma: f64) -> impl Fn(f64) -> f64 {
     move |x: f64| {
         let u = beta * x;
@@ -199,14 +199,14 @@ fn the_frequency_of_a_beam_clamped_at_both_ends_tends_to_the_closed_form_at_seco
 
 #[test]
 fn the_frequency_of_a_tensioned_beam_tends_to_the_closed_form_at_second_order() {
-    // pinned ends: ω² = (π/L)⁴ EI/m + (π/L)² T/m; the stretch of 1e-6 that makes T = 10 N shows in L and m only by itself
+    // pinned ends: ω² = (π/L)⁴ EI/m + (π/L)² T/m; the stretch for T = 10 N changes L and m only by 1e-6
     let (stiffness, stretch) = (1e7, 1e-6);
     let exact = (PI.powi(4) + PI.powi(2) * stiffness * stretch).sqrt();
     let far = |beam: Draft| beam.fixed("b", [1.0 + stretch, 0.0, 0.0]);
     assert_frequency(exact, |x| (PI * x).sin(), |n| slender(n, stiffness, "", far));
 }
 
-/// A clamped rod whose end B is turned about its axis by `turns` in 10 s and then drawn in by half of its length in 20 s.
+/// A clamped rod whose end B is twisted about its axis by `turns` revolutions in 10 s and then moved in by half the length in 20 s.
 fn hockle(elements: usize, turns: f64) -> Scene {
     let angle = TAU * turns;
     draft(format!(
@@ -226,7 +226,7 @@ fn hockle(elements: usize, turns: f64) -> Scene {
     .scene()
 }
 
-/// Follows a hockle to the end, finite throughout; the simulation there, or the message that ended it.
+/// Follows a hockle to the end and checks for finite values; returns the simulation there, or the message of a failed step.
 fn twist_and_slacken(scene: &Scene) -> Result<Simulation, String> {
     let mut simulation = following(scene);
     for _ in 0..350 {
@@ -271,7 +271,7 @@ fn the_moments_of_a_cantilever_under_an_end_load_grow_straight_to_its_clamp() {
     assert_relative_eq!(simulation.end_moment(0), -0.001 * Vector3::y(), epsilon = 1e-9);
 }
 
-/// The OC3 line as a beam of a bending stiffness [N m²].
+/// The OC3 line as a beam with a bending stiffness [N m²].
 fn mooring_beam(bending: f64) -> Scene {
     let mut scene = shipped("oc3_catenary");
     for line_type in scene.line_types.values_mut() {
@@ -303,7 +303,7 @@ fn bending_stiffness_from_a_hair_to_a_girder_finds_its_rest_on_the_seabed() {
     }
 }
 
-/// Tip [m] at rest of a cable of 100 m that is clamped along a seabed and starts with its other end, which can move, 55 m above it.
+/// Tip [m] at rest of a 100 m cable that is clamped along a seabed; its free end starts 55 m above the seabed.
 fn dropped(elements: usize, keys: &str) -> Vector3<f64> {
     let cable = draft(
         "water.density = 1025.0
@@ -332,7 +332,7 @@ fn a_beam_that_drops_to_the_seabed_finds_the_same_rest_on_every_mesh() {
     }
 }
 
-/// The end hangs a little above where the rest lies, so that the moment about the vertical has a part along it.
+/// The end is slightly higher than the cable at rest, so that the moment about the vertical has a component along the cable.
 #[test]
 fn a_moment_along_a_beam_that_no_end_holds_is_why_there_is_no_equilibrium() {
     let scene = |moment: &str, keys: &str| {
@@ -373,7 +373,7 @@ fn a_beam_in_water_over_a_seabed_has_an_energy_balance_that_closes() {
     assert!(error < 1e-9 * start, "{error:e}");
 }
 
-/// A line of 20 m from a point at z = `anchor` [m] to a free point, as a cable or as a supple beam.
+/// A 20 m line from a point at z = `anchor` [m] to a free point, as a cable or as a flexible beam.
 fn tethered(model: &str, anchor: f64, position: [f64; 3], keys: &str) -> Simulation {
     let beam = ", shear_stiffness = 1e6, torsional_stiffness = 500.0, rotary_inertia = 0.01";
     let beam = if model == "beam" { beam } else { "" };
@@ -478,7 +478,7 @@ fn scenes_that_beams_cannot_serve_are_refused_with_their_place() {
     assert_eq!(refused(&|_| {}), "");
 }
 
-/// MotionSolve's wire and collar as a beam of EI 10.85 N m².
+/// MotionSolve's wire and collar as a beam with EI 10.85 N m².
 fn collar(elements: usize) -> Scene {
     let mut scene = with_elements(shipped("collar"), elements);
     let wire = scene.line_types.get_mut("wire").unwrap();
@@ -507,7 +507,7 @@ fn a_heavy_collar_that_slides_has_an_energy_balance_that_closes() {
 
 #[test]
 fn a_sliding_collar_draws_a_bending_wire_to_its_published_span_at_second_order() {
-    // MotionSolve's wire of 20 m and 0.2 kg/m under 20 N as a solid rod: span and sag [m] of the inextensible limit
+    // MotionSolve's wire, 20 m and 0.2 kg/m under 20 N, as a solid rod: span and sag [m] of the inextensible limit
     let reference = [17.7404, 4.0520];
     let meshes = [20, 40, 80, 160].map(|elements| {
         let mut scene = collar(elements);
@@ -524,7 +524,7 @@ fn a_sliding_collar_draws_a_bending_wire_to_its_published_span_at_second_order()
     }
 }
 
-/// A beam over a seabed in water, with a fairlead that moves; stiffnesses, lengths, ends and motions by the seed.
+/// A beam in water over a seabed, with a moving fairlead; the seed determines stiffnesses, lengths, ends and motions.
 fn any_beam(seed: &mut u64) -> Scene {
     let mut decades = |low: f64, high: f64| 10.0_f64.powf(low + (high - low) * random(seed));
     let (ea, ei) = (decades(6.0, 9.0), decades(0.0, 6.0));
@@ -532,7 +532,7 @@ fn any_beam(seed: &mut u64) -> Scene {
     let (inertia, slack) = (decades(-5.0, 0.0), decades(-3.0, -0.9) + 0.99);
     let (period, amplitude) = (decades(0.5, 1.3), decades(-1.0, 0.0));
     let elements = decades(1.2, 1.9) as usize;
-    let stiff = ei > 1e4; // a bend at a clamp is √(EI/T) long, and elements must be shorter
+    let stiff = ei > 1e4; // the bend at a clamp is √(EI/T) long, and elements must be shorter
     let given = [0, 1].map(|_| random(seed) < 0.5 && stiff);
     let clamps: Vec<String> = ["clamped_a", "clamped_b"]
         .iter()

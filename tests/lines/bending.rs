@@ -21,7 +21,7 @@ fn collar_scene(axial_stiffness: f64, gravity: f64, elements: usize) -> Scene {
     collar
 }
 
-/// The collar with a bending stiffness EI [N m²], all but inextensible, at the end of its pull: span and sag [m].
+/// Span and sag [m] of the nearly inextensible collar with a bending stiffness EI [N m²] at the end of its pull.
 fn collar(bending_stiffness: f64, gravity: f64, elements: usize) -> [f64; 2] {
     let mut collar = collar_scene(1e10, gravity, elements);
     collar.line_types.get_mut("wire").unwrap().bending_stiffness = Some(bending_stiffness);
@@ -40,13 +40,13 @@ fn assert_close(found: [f64; 2], wanted: [f64; 2], tolerance: f64) {
     }
 }
 
-/// Span and sag with two digits.
+/// Span and sag with two decimals.
 fn digits([span, sag]: [f64; 2]) -> [String; 2] {
     [format!("{span:.2}"), format!("{sag:.2}")]
 }
 
-/// EI [N m²], span [m] and sag [m] of the inextensible wire with moment-free ends, g = 9.81, from a boundary-value solution of the elastica
-/// with weight.
+/// EI [N m²], span [m] and sag [m] of the inextensible wire with moment-free ends, g = 9.81, from a boundary-value solution of the heavy
+/// elastica.
 const COLLAR: [(f64, [f64; 2]); 3] = [
     (10.85, [17.7404, 4.0520]),
     (1.0, [17.69804, 4.08295]),
@@ -95,7 +95,7 @@ fn the_published_twenty_fibres_are_the_squared_reading() {
     let linear = strands(FibreLaw::Linear);
     assert_close(linear, [17.6972, 4.0834], 1e-4);
     assert_eq!(digits(linear)[1], "4.08");
-    // 4.08500 stands on the edge between 4.08 and 4.09: the mesh of twenty elements falls on the published side
+    // 4.08500 is halfway between 4.08 and 4.09: the mesh of twenty elements rounds to the published value
     for bending_stiffness in [10.85 / 400.0, 10.85 / 20.0] {
         assert_eq!(digits(collar(bending_stiffness, G, 20)), ["17.70", "4.09"]);
     }
@@ -128,7 +128,7 @@ const EI: f64 = 3.0; // [N m²]
 const LENGTH: f64 = 2.0; // [m]
 const MASS: f64 = 0.7; // [kg/m]
 
-/// A type of weightless rod, and these keys of the scene.
+/// A weightless rod type, with these keys of the scene.
 fn rod(axial_stiffness: f64, keys: &str) -> Draft {
     draft(format!(
         "gravity = 0.0
@@ -138,7 +138,7 @@ fn rod(axial_stiffness: f64, keys: &str) -> Draft {
     ))
 }
 
-/// A cantilever along x, clamped to a direction, with these keys of its tip and of the scene's solver table.
+/// A cantilever along x, clamped in a direction, with these keys of its tip and of the scene's solver table.
 fn cantilever(elements: usize, clamp: [f64; 3], tip: &str, solver: &str) -> Scene {
     rod(1e7, &format!("solver = {{ time_step_max = 0.05, {solver} }}"))
         .fixed("root", [0.0; 3])
@@ -151,7 +151,7 @@ fn cantilever(elements: usize, clamp: [f64; 3], tip: &str, solver: &str) -> Scen
 
 const LEVEL: [f64; 3] = [1.0, 0.0, 0.0];
 
-/// A cantilever at rest under α EI/L² across its tip.
+/// A cantilever at rest under a transverse tip load of α EI/L².
 fn bent_down(alpha: f64, elements: usize, clamp: [f64; 3]) -> Simulation {
     let load = alpha * EI / (LENGTH * LENGTH);
     start(&cantilever(
@@ -166,7 +166,7 @@ fn tip(simulation: &Simulation) -> [f64; 3] {
     simulation.state().points[1].position.into()
 }
 
-/// PL²/EI [-], deflection over L [-], shortening over L [-]: inextensible elastica with a dead load across its tip, from elliptic
+/// PL²/EI [-], deflection/L [-], shortening/L [-]: inextensible elastica with a transverse dead load at its tip, from elliptic
 /// integrals in high precision.
 const ELASTICA: [(f64, f64, f64); 4] = [
     (0.5, 0.16214357565836962, 0.015918962470837496),
@@ -203,7 +203,7 @@ fn the_root_of_a_cantilever_feels_the_load_and_its_moment() {
 
 // ------------------------------------------------------------------ moments on free ends
 
-/// A cantilever along x under a moment about y [N m] at its tip, in time.
+/// A cantilever along x with a moment about y [N m] at its tip, as a function of time.
 fn turned(moment: &str, elements: usize, solver: &str) -> Simulation {
     start(&cantilever(
         elements,
@@ -215,7 +215,7 @@ fn turned(moment: &str, elements: usize, solver: &str) -> Simulation {
 
 #[test]
 fn a_moment_on_the_free_end_bends_a_cable_to_a_circle_at_second_order() {
-    // at large angles an end without torsion turns out of the plane, towards the axis of its moment
+    // at large angles, an end without torsional stiffness rotates out of the plane, towards the axis of its moment
     for angle in [0.3, 0.9, 1.5] {
         let curvature = angle / LENGTH;
         let errors = [10, 20, 40, 80].map(|elements| {
@@ -246,7 +246,7 @@ fn the_root_of_a_cantilever_feels_the_moment_on_its_tip_and_no_force() {
     }
 }
 
-/// The integrators of lines that bend, as keys of the solver table.
+/// Integrators of lines with bending stiffness, as keys of the solver table.
 const BENDING: [&str; 5] = [
     "integrator = 'generalised_alpha'",
     "integrator = 'bossak'",
@@ -300,7 +300,7 @@ fn a_column_stands_below_its_euler_load_and_bends_above() {
     assert!(x.hypot(y) > 0.3 * LENGTH);
 }
 
-/// A cantilever on a vessel, along x in its reference attitude, its tip under a load.
+/// A cantilever on a vessel, along x in its reference attitude, with a load at its tip.
 fn carried(solver: &str, load: f64) -> Simulation {
     let vessel = "vessels = [{ name = 'floater', position = [0.0, 0.0, 0.0] }]";
     rod(1e7, &format!("{vessel}\nsolver = {{ {solver} }}"))
@@ -338,7 +338,7 @@ fn a_vessel_feels_the_moment_of_a_line_that_is_clamped_to_it() {
     assert!(mx.abs() < 1e-6 && mz.abs() < 1e-6);
 }
 
-/// Claims that the error of the energy balance falls with the step where a clamp turns.
+/// Asserts that the error of the energy balance decreases with the step for a rotating clamp.
 fn assert_balance_of_a_turning_clamp(integrator: &str, steps: [f64; 4]) {
     let errors = steps.map(|step| {
         let solver = format!("integrator = '{integrator}', time_step_max = {step}");
@@ -369,8 +369,8 @@ fn the_work_of_a_clamp_that_turns_is_in_the_energy_balance_of_explicit_steps() {
 
 // ------------------------------------------------------------------ vibration
 
-/// Claims that the first three (βL)², the circular frequencies over √(EI/mL⁴), of a beam along x with this kind of
-/// end tend to exact ones at second order.
+/// Asserts that the first three (βL)², the circular frequencies over √(EI/mL⁴), of a beam along x with this kind of
+/// end converge to exact values at second order.
 fn assert_frequencies(exact: [f64; 3], end: &str, clamps: &str, tension: f64) {
     let stiffness = 1e9; // [N]
     let scale = (EI / MASS / LENGTH.powi(4)).sqrt();
@@ -384,7 +384,7 @@ fn assert_frequencies(exact: [f64; 3], end: &str, clamps: &str, tension: f64) {
         modes(&beam.start()).frequencies
     });
     for mode in 0..3 {
-        // each comes in two planes
+        // each frequency occurs in two planes
         let errors = [0, 1, 2, 3].map(|i| (found[i][2 * mode] / scale / exact[mode] - 1.0).abs());
         assert_order(2.0, &meshes.map(|n| 1.0 / n as f64), &errors);
         assert!(errors[3] < 1e-3);
@@ -424,7 +424,7 @@ fn frequencies_of_a_tensioned_beam_have_second_order() {
     assert_frequencies(exact, "fixed", "", tension);
 }
 
-/// A cantilever released from under a small load, which is gone after t = 0.
+/// A cantilever released from a small load, which is removed at t = 0.
 fn released(solver: &str) -> Simulation {
     let load = "force = { z = { table = [[0.0, -0.05], [1e-9, 0.0]] } }";
     start(&cantilever(30, LEVEL, load, solver))
@@ -519,7 +519,7 @@ fn stiffness_from_a_millionth_to_a_hundred_million_times_a_wires_finds_rest() {
         for elements in [2, 20, 200] {
             let mut collar = with_elements(shipped("collar"), elements);
             let wire = collar.line_types.get_mut("wire").unwrap();
-            // a radius of gyration of 0.1 m at most
+            // limits the radius of gyration to 0.1 m
             wire.axial_stiffness = wire.axial_stiffness.map(|ea| ea.max(100.0 * bending_stiffness));
             wire.bending_stiffness = Some(bending_stiffness);
             let [span, sag] = drawn_out(&collar);
@@ -532,7 +532,7 @@ fn stiffness_from_a_millionth_to_a_hundred_million_times_a_wires_finds_rest() {
     }
 }
 
-/// 100 m of cable on the seabed between ends 95 m apart, pushed together by 3 m and back within 20 s.
+/// 100 m of cable on the seabed between ends 95 m apart, which are moved together by 3 m and back within 20 s.
 fn slack(bending_stiffness: f64, elements: usize) -> Scene {
     draft(format!(
         "water.density = 1025.0
@@ -579,7 +579,7 @@ fn a_line_that_hardly_bends_rests_on_the_seabed_like_one_that_does_not_bend() {
     }
 }
 
-/// A heavy rod clamped at one end, its other end free.
+/// A heavy rod clamped at one end and free at the other.
 fn heavy_rod(bending_stiffness: f64, elements: usize, clamp: [f64; 3]) -> Scene {
     draft(format!(
         "solver.time_step_max = 0.02
@@ -592,7 +592,7 @@ fn heavy_rod(bending_stiffness: f64, elements: usize, clamp: [f64; 3]) -> Scene 
     .scene()
 }
 
-/// Without bending stiffness all of these hang straight down, some of them folded back at the clamp.
+/// Without bending stiffness all these rods would hang straight down, some of them folded back at the clamp.
 #[test]
 fn a_heavy_cantilever_comes_to_rest_whichever_way_it_is_clamped() {
     for clamp in [
@@ -695,7 +695,7 @@ fn a_leapfrog_is_refused_where_joints_are_damped_or_springs_curved() {
     }
 }
 
-/// Integrator of the one network of a scene.
+/// Integrator of the only network of a scene.
 fn chosen(scene: &Scene) -> Integrator {
     start(scene).choices().next().unwrap().integrator
 }
@@ -707,8 +707,8 @@ fn a_cable_takes_fully_implicit_steps_where_its_elements_are_short() {
     assert_eq!(chosen(&short), Integrator::GeneralisedAlpha);
 }
 
-/// Tension at the hang-off [N] and greatest curvature [1/m] of the power cable of three times 80 elements from 20 to 30 s, each as a vector along x. At
-/// 15 s a kink of the ramp starts axial waves that nothing damps.
+/// Tension at the hang-off [N] and greatest curvature [1/m] of the power cable with three times 80 elements from 20 to 30 s, each as vectors along x.
+/// At 15 s a kink of the ramp starts undamped axial waves.
 fn driven(integrator: Integrator, step: f64) -> [Vec<Vector3<f64>>; 2] {
     let cable = with_elements(shipped("power_cable"), 80);
     let mut simulation = following(&with_integrator(cable, integrator, step));
@@ -775,7 +775,7 @@ fn a_clamp_is_as_stiff_in_the_equilibrium_of_a_run_from_a_given_shape_as_in_stat
     }
 }
 
-/// Moment at the hang-off of the power cable with `elements` elements in the last 90 m [N m], at rest and the greatest from 15 to 30 s.
+/// Moment at the hang-off of the power cable with `elements` elements in the last 90 m [N m]: at rest, and the greatest from 15 to 30 s.
 fn hang_off_moments(elements: usize) -> [f64; 2] {
     let mut scene = shipped("power_cable");
     scene.lines[0].sections[2].elements = Some(elements);

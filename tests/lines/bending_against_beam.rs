@@ -1,20 +1,20 @@
-//! The cable with bending against the geometrically exact beam: a power cable in a lazy wave, with part of it on the seabed.
+//! Cable with bending stiffness against the geometrically exact beam: a power cable in a lazy wave, partly on the seabed.
 //!
 //!          ● hang-off, clamped and driven          EI = 10 kN m², EA = 400 MN
 //!          ╲      ___                              beam: GA = 100 MN, GJ = 10 kN m²
 //!           ╲___╱     ╲
 //!                       ╲══════● seabed end, clamped
 //!
-//! A clamped end bends over √(EI/T), 0.8 m under the hang-off. The last 10 m there have elements a quarter as long as the others.
+//! The bending at a clamped end extends over √(EI/T), 0.8 m at the hang-off. The last 10 m there have elements a quarter as long as the others.
 
 use crate::common::*;
 use moorline::scene::{LineModel, Scene, Section};
 use moorline::simulation::Simulation;
 
-/// Length at the hang-off with short elements [m].
+/// Length with short elements at the hang-off [m].
 const BEND_LENGTH: f64 = 10.0;
 
-/// The shipped cable with some elements a metre, four times as many at the hang-off.
+/// The shipped cable with `per_metre` elements per metre, and four times as many at the hang-off.
 fn cable(per_metre: f64) -> Scene {
     let mut scene = shipped("power_cable");
     let sections = &mut scene.lines[0].sections;
@@ -32,7 +32,7 @@ fn cable(per_metre: f64) -> Scene {
     scene
 }
 
-/// The same line as a beam, all but stiff against shear.
+/// The same line as a beam with high shear stiffness.
 fn beam(per_metre: f64) -> Scene {
     let mut scene = cable(per_metre);
     for line_type in scene.line_types.values_mut() {
@@ -54,7 +54,7 @@ fn curvature(simulation: &Simulation) -> Vec<f64> {
         .collect()
 }
 
-/// Greatest difference of two sequences over the greatest value of the second [-].
+/// Greatest difference of two sequences, relative to the greatest value of the second [-].
 fn greatest_difference(values: &[f64], reference: &[f64]) -> f64 {
     assert_eq!(values.len(), reference.len());
     let pairs = values.iter().zip(reference);

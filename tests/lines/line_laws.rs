@@ -1,9 +1,9 @@
-//! Lines whose tension is not a constant stiffness times strain: tables of tension over strain, and viscoelastic
+//! Lines whose tension is not a constant stiffness times strain: tables of tension against strain, and viscoelastic
 //! ropes.
 //!
-//! Claims: a table of a straight line is a stiffness; a line at rest carries the tension of its table; energy is
-//! conserved, and the integrators' error of energy vanishes with the step. A viscoelastic rope has its static
-//! stiffness at rest, its dynamic one in fast motion, and dissipates in every cycle the energy of the closed form.
+//! Claims: a table with a straight line is equivalent to a stiffness; a line at rest has the tension of its table; energy is
+//! conserved, and the energy error of the integrators vanishes with the step. A viscoelastic rope has its static
+//! stiffness at rest and its dynamic stiffness in fast motion, and dissipates in every cycle the energy of the closed form.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use moorline::physics::viscoelastic::Viscoelastic;
 use moorline::scene::{Integrator, Scene, Water};
 use moorline::simulation::Simulation;
 
-/// A rope of 200 m drawn out to `span` [m], with these keys for its stretch, and the motion of its fairlead.
+/// A 200 m rope stretched to `span` [m], with these keys for its axial law and the motion of its fairlead.
 fn rope(keys: &str, span: f64, motion: &str) -> Scene {
     draft(format!(
         "[line_types.rope]
@@ -29,7 +29,7 @@ fn rope(keys: &str, span: f64, motion: &str) -> Scene {
     .scene()
 }
 
-/// A polyester rope: soft at first, stiffer later.
+/// Table of a polyester rope: soft at first, then stiffer.
 const TABLE: &str = "axial_damping = 0.0
     tension_strain = [[0.0, 0.0], [0.01, 4.0e5], [0.02, 1.0e6], [0.04, 3.0e6], [0.06, 6.0e6]]";
 const SWAY: &str = "fairlead = { x = [[1.5, 7.0]], z = [[1.0, 5.0]], ramp = 5.0 }";
@@ -44,7 +44,7 @@ fn a_table_of_a_straight_line_is_a_stiffness() {
             History::record(&mut following(&scene), 0.1, 100).tension
         });
         let tolerance = match integrator {
-            Integrator::QuasiStatic => 5e-3, // a closed form against 20 elements
+            Integrator::QuasiStatic => 5e-3, // closed form against 20 elements
             _ => 1e-7,
         };
         for (a, b) in of_table.into_iter().zip(of_stiffness) {
@@ -62,7 +62,7 @@ fn a_light_rope_at_rest_carries_what_its_table_says() {
     }
 }
 
-/// The scene by an integrator without algorithmic dissipation.
+/// The scene with an integrator without algorithmic dissipation.
 fn undissipated(scene: Scene, integrator: Integrator, step: f64) -> Scene {
     let mut scene = with_integrator(scene, integrator, step);
     scene.solver.spectral_radius = (integrator != Integrator::Leapfrog).then_some(1.0);
@@ -72,7 +72,7 @@ fn undissipated(scene: Scene, integrator: Integrator, step: f64) -> Scene {
 #[test]
 fn a_tabulated_rope_keeps_its_energy() {
     for integrator in INTEGRATORS {
-        // error of energy of the integrator after 10 s, over the greatest kinetic energy
+        // energy error of the integrator after 10 s, relative to the greatest kinetic energy
         let [coarse, fine] = [2e-3, 5e-4].map(|step| {
             let mut simulation = following(&balanced(undissipated(
                 rope(TABLE, 203.0, SWAY),
@@ -95,7 +95,7 @@ fn a_tabulated_rope_keeps_its_energy() {
     }
 }
 
-/// A rope with these keys for its stretch that its fairlead draws taut in every swing; moved by one integrator with steps of at most `step` [s].
+/// A rope with these keys for its axial law, pulled taut by its fairlead in every cycle, with steps of at most `step` [s].
 fn snapping(stretch: &str, integrator: Integrator, step: f64) -> Simulation {
     let sea = "diameter = 0.12\ndrag_normal = 1.2\ndrag_tangential = 0.05\nadded_mass_normal = 1.0";
     let motion = "fairlead = { x = [[4.0, 8.0]], z = [[3.0, 8.0, 1.57]] }";
@@ -108,7 +108,7 @@ fn snapping(stretch: &str, integrator: Integrator, step: f64) -> Simulation {
 
 #[test]
 fn a_rope_that_snaps_taut_is_held_by_the_stiffness_that_it_comes_to() {
-    // soft at first, and forty times as stiff when it is drawn taut; the ratio is 0.02 of one of the rope's 20 elements
+    // soft at first, and forty times as stiff when taut; the ratio is 0.02 of that of one of the rope's 20 elements
     let stretch = "tension_strain = [[0.0, 0.0], [0.01, 1.0e5], [0.02, 8.0e5], [0.04, 4.0e6]]
         damping_ratio = 0.04";
     let reference = History::record(&mut snapping(stretch, Integrator::Leapfrog, 2e-4), 0.1, 400);
@@ -135,7 +135,7 @@ fn a_rope_that_snaps_taut_is_held_by_the_stiffness_that_it_comes_to() {
     }
 }
 
-/// Dampers of segments that are slack pull as these come near to being taut: the averaging carries over the tension of spring and damper.
+/// Dampers of slack segments pull when these are about to become taut: the averaging transmits the tension of spring and damper.
 #[test]
 fn a_rope_that_dampers_draw_before_it_is_taut_converges_to_the_motion_of_explicit_steps() {
     for (damping, bounds) in [
@@ -192,7 +192,7 @@ fn a_viscoelastic_rope_rests_as_one_of_its_static_stiffness_does_and_stays_there
     }
 }
 
-/// A light rope that is stretched to and fro at a circular frequency [rad/s] about a strain of 2 %.
+/// A light rope that is stretched cyclically at a circular frequency [rad/s] about a strain of 2 %.
 fn stretched(integrator: Integrator, omega: f64, step: f64) -> Simulation {
     let sway = format!("fairlead = {{ x = [[0.4, {}]] }}", 2.0 * PI / omega);
     let mut scene = with_integrator(rope(VISCOELASTIC, 204.0, &sway), integrator, step);
@@ -242,7 +242,7 @@ fn the_loops_of_a_viscoelastic_rope_are_those_of_the_closed_form() {
         let area = PI * exact[1] * 0.002 * 0.002 * 200.0;
         let after = flow(&simulation);
         let lost = after.dissipation - before.dissipation;
-        // the damping of the integrator is included
+        // includes the algorithmic dissipation of the integrator
         let given = after.external_work
             - before.external_work
             - (after.algorithmic_dissipation - before.algorithmic_dissipation);

@@ -1,4 +1,4 @@
-//! Kinds of lines: tension laws, bending stiffness, beams, winches, ends that are released.
+//! Kinds of lines: tension laws, bending stiffness, beams, winches, released ends.
 
 #[path = "../common/mod.rs"]
 mod common;

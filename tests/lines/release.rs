@@ -1,7 +1,7 @@
-//! Lines whose ends are released: by the host, under too much tension, or at a time.
+//! Lines whose ends are released: by the host, at a tension limit, or at a given time.
 //!
-//! Claims: a light straight line under tension snaps back as a bar does; a hanging chain falls freely, its middle
-//! with g; the point carries no more force; the energy balance closes through the release; a snapshot replays it.
+//! Claims: a straight line in tension snaps back as a bar does; a hanging chain falls freely, its middle
+//! at g; the released point carries no more force; the energy balance closes through the release; a snapshot replays it.
 
 use crate::common::*;
 use approx::assert_relative_eq;
@@ -10,7 +10,7 @@ use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
-/// A chain of 100 m over a span of 60 m between points 20 m apart in height, with these keys of the line and of the scene.
+/// A chain of 100 m over a horizontal span of 60 m between points 20 m apart in height, with these keys of the line and of the scene.
 fn chain(keys: &str, surroundings: &str) -> Scene {
     draft(format!(
         "line_types.chain = {{ mass = 20.0, diameter = 0.05, axial_stiffness = 1.0e6, drag_normal = 1.2, drag_tangential = 0.1 }}
@@ -23,12 +23,12 @@ fn chain(keys: &str, surroundings: &str) -> Scene {
     .scene()
 }
 
-/// A simulation of that chain by an integrator with steps of at most `step` [s].
+/// Starts a simulation of this chain with an integrator and steps of at most `step` [s].
 fn started(keys: &str, integrator: Integrator, step: f64) -> Simulation {
     start(&balanced(with_integrator(chain(keys, ""), integrator, step)))
 }
 
-/// Claims that the error of the energy balance is below 2 % of the kinetic energy.
+/// Asserts that the error of the energy balance is below 2 % of the kinetic energy.
 fn assert_balanced(simulation: &Simulation) {
     let (error, kinetic) = (balance_error(simulation).abs(), simulation.energy().kinetic);
     assert!(error < 2e-2 * kinetic, "{error} of {kinetic} J");
@@ -118,7 +118,7 @@ fn a_line_breaks_when_its_end_carries_too_much() {
 
 #[test]
 fn a_taut_bar_snaps_back_behind_the_front_of_a_wave() {
-    // until the front arrives, the wall pulls as before: momentum grows by EA ε t, and the part ahead of the front is at rest
+    // until the front arrives, the wall pulls as before: momentum grows as EA ε t, and the part ahead of the front is at rest
     let bar = draft(
         "gravity = 0.0\nline_types.bar = { mass = 10.0, axial_stiffness = 1.0e6, axial_damping = 0.0 }",
     )
@@ -229,7 +229,7 @@ fn a_simulation_goes_on_from_a_snapshot_after_a_step_that_grew_without_bound() {
 
 #[test]
 fn an_end_that_was_released_moves_at_second_order() {
-    // the free end of a hanging line of two elements whose top moves up and down; its lower point carries nothing
+    // the free end of a hanging line of two elements whose top moves up and down; its lower point carries no force
     let shaken = |step: f64| {
         let rope = draft(
             "line_types.rope = { mass = 20.0, diameter = 0.05, axial_stiffness = 1.0e5 }
@@ -265,7 +265,7 @@ fn an_end_that_may_be_released_limits_the_step_as_the_half_node_that_it_becomes(
         sections.push(short);
         start(&scene).choices().next().unwrap().explicit.step
     };
-    // 0.38 of 2/ω, with ω² = 2 Σk/M
+    // 0.38 · 2/ω, with ω² = 2 Σk/M
     let inner = (2.0 * (1.0e5 + 1.0e6) / (20.0 * 5.5_f64)).sqrt();
     let end = (2.0 * 1.0e6 / (20.0 * 0.5_f64)).sqrt();
     for (keys, omega) in [("", inner), ("release = 'a'", inner), ("release = 'b'", end)] {

@@ -1,4 +1,4 @@
-//! Winches: lines whose length at the fairlead a host changes.
+//! Winches: lines whose length at the fairlead is changed by a host.
 //!
 //!        winch ▣ x_B, prescribed ΔL(t)
 //!              │ end segment, 0.4 to 1.5 of its nominal length
@@ -6,15 +6,15 @@
 //!              │ segments of nominal length
 //!              ◆ weight
 //!
-//! Claims: a weight that is hoisted carries W(1 + a/g); a line at a length change is the line written with that length; a line that is paid out and
-//! hauled in again comes to rest where it was; the energy balance closes, at second order in time; a state replays bit for bit.
+//! Claims: the tension above a hoisted weight is W(1 + a/g); a line with a length change equals a line written with that length; a line that is
+//! paid out and hauled in again returns to its rest position; the energy balance closes, at second order in time; a state replays bit for bit.
 
 use crate::common::*;
 use approx::assert_relative_eq;
 use moorline::scene::{Integrator, Rayleigh, Reconstruction, Scene};
 use moorline::simulation::Simulation;
 
-/// A chain of a length [m] over a span of 60 m between points 40 m apart in height, over a seabed.
+/// A chain of a length [m] over a horizontal span of 60 m between points 40 m apart in height, over a seabed.
 fn chain(length: f64, elements: usize) -> Draft {
     draft(
         "water = { density = 1025.0 }
@@ -27,12 +27,12 @@ fn chain(length: f64, elements: usize) -> Draft {
     .line("line1", ["anchor", "fairlead"], "chain", length, elements)
 }
 
-/// The chain of 100 m in elements of 4 m with a winch at its fairlead, by the leapfrog with steps of at most `step` [s].
+/// The 100 m chain in elements of 4 m with a winch at its fairlead, for the leapfrog with steps of at most `step` [s].
 fn wound(step: f64) -> Scene {
     with_integrator(chain(100.0, 25).with(WINCH).scene(), Integrator::Leapfrog, step)
 }
 
-/// The chain of some elements whose winch changes its length by a smooth step from one time to another [s].
+/// The chain with `elements` elements, whose winch changes its length by a smooth step from `start` to `end` [s].
 fn stepped([start, end]: [f64; 2], change: f64, elements: usize, step: f64) -> Scene {
     let path = format!("path = {{ step = [{start}, 0.0, {end}, {change}] }}");
     let line = chain(100.0, elements).with(&format!("winch = {{ end = 'b', length_max = 30.0, {path} }}"));
@@ -42,7 +42,7 @@ fn stepped([start, end]: [f64; 2], change: f64, elements: usize, step: f64) -> S
 const WINCH: &str = "winch = { end = 'b', length_max = 30.0 }";
 const SWAY: &str = "motion.fairlead = { x = [[1.0, 6.0]], z = [[1.0, 5.0]], ramp = 5.0 }";
 
-/// Length paid out [m], its rate [m/s] and acceleration [m/s²] of a winch that takes 8 s to haul in at 0.5 m/s.
+/// Length paid out [m], its rate [m/s] and acceleration [m/s²] of a winch that reaches a hauling speed of 0.5 m/s in 8 s.
 fn hauling(t: f64) -> [f64; 3] {
     let (u, speed, time) = ((t / 8.0).min(1.0), 0.5, 8.0);
     let part = u * u * (3.0 - 2.0 * u);
@@ -53,7 +53,7 @@ fn hauling(t: f64) -> [f64; 3] {
 
 #[test]
 fn a_hoisted_weight_and_its_rope_weigh_what_they_weigh_and_their_inertia() {
-    // 2 t on 40 m of rope of 20 kg/m, dry, below a winch, in elements of 2 m; the ratio is 0.3 of one of 20 elements
+    // 2 t on 40 m of rope of 20 kg/m, in air, below a winch, in elements of 2 m; the ratio is 0.3 of that of one of 20 elements
     let hoist = draft("line_types.rope = { mass = 20.0, axial_stiffness = 2.0e7, damping_ratio = 0.6 }")
         .free("weight", [0.0, 0.0, -40.0])
         .with("mass = 2000.0")
@@ -68,7 +68,7 @@ fn a_hoisted_weight_and_its_rope_weigh_what_they_weigh_and_their_inertia() {
         simulation.advance(0.05).unwrap();
         let [change, rate, acceleration] = hauling(0.05 * f64::from(step + 1));
         let mass = 2000.0 + 20.0 * (40.0 + change);
-        // all of it is accelerated by −ℓ̈; the part that passes the winch takes m ℓ̇² off it
+        // the whole mass is accelerated by −ℓ̈; the material transport through the winch reduces the tension by m ℓ̇²
         let expected = mass * (G - acceleration) - 20.0 * rate * rate;
         worst = worst.max((simulation.tension_b(0) / expected - 1.0).abs());
         fewest = fewest.min(simulation.model().lines[0].segment_count());
@@ -78,7 +78,7 @@ fn a_hoisted_weight_and_its_rope_weigh_what_they_weigh_and_their_inertia() {
     assert_eq!(fewest, 14);
 }
 
-/// The chain of 25 elements at rest after its winch has changed its length [m].
+/// The chain of 25 elements at rest after a length change [m] by its winch.
 fn at_rest_after(change: f64) -> Simulation {
     let mut simulation = chain(100.0, 25).with(WINCH).start();
     simulation.set_length_change(0, change);
@@ -136,7 +136,7 @@ fn a_line_that_is_paid_out_and_hauled_in_again_comes_to_rest_where_it_was() {
 
 #[test]
 fn the_energy_balance_closes_through_splits() {
-    // over the energy lost in 20 s of paying out and hauling in while the fairlead sways
+    // relative to the energy dissipated in 20 s of paying out while the fairlead sways
     let errors = [4e-3, 2e-3, 1e-3, 5e-4].map(|step| {
         let mut simulation = following(&balanced(swaying(stepped([1.0, 15.0], 9.0, 25, step))));
         let mut worst: f64 = 0.0;
@@ -148,7 +148,7 @@ fn the_energy_balance_closes_through_splits() {
         worst / flow(&simulation).dissipation
     });
     println!("balance: {errors:?}");
-    // of second order, but parts of elements that land in one step or the next make it uneven
+    // second order, but parts of elements that touch down in one step or the next make it irregular
     assert!(
         errors[0] > 12.0 * errors[2] && errors[1] > 12.0 * errors[3],
         "{errors:?}"
@@ -164,7 +164,7 @@ fn swaying(mut scene: Scene) -> Scene {
 
 #[test]
 fn the_energy_balance_closes_where_a_winch_jumps() {
-    // over the energy lost in 10 s of paying out while the fairlead jumps every 0.1 s
+    // relative to the energy dissipated in 10 s of paying out while the fairlead jumps every 0.1 s
     let errors = [2e-3, 1e-3, 5e-4, 2.5e-4].map(|step| {
         let mut scene = wound(step);
         scene.solver.input_reconstruction = Reconstruction::Jump;
@@ -181,12 +181,12 @@ fn the_energy_balance_closes_where_a_winch_jumps() {
     assert!(errors[0] < 0.05 && errors[3] < 2e-3, "{errors:?}");
 }
 
-/// Tension at the fairlead [N] every 0.1 s of 20 s in which the fairlead sways above a deep seabed and the winch pays out a length [m], at a step [s].
+/// Tension at the fairlead [N] every 0.1 s for 20 s, in which the fairlead sways without a seabed and the winch pays out a length [m], at a step [s].
 fn paying_out(change: f64, step: f64) -> History {
     let mut scene = swaying(stepped([1.0, 15.0], change, 25, step));
     scene.seabed = None;
     let kind = scene.line_types.get_mut("chain").unwrap();
-    kind.axial_damping = Some(0.0); // it is taken with the velocity before, at first order
+    kind.axial_damping = Some(0.0); // it is evaluated with the previous velocity, at first order
     History::record(&mut following(&scene), 0.1, 200)
 }
 
@@ -200,13 +200,13 @@ fn the_error_of_the_tension_falls_with_the_step_as_it_does_without_a_winch() {
         order(&steps, &errors)
     });
     assert!(orders[1] > orders[0] - 0.1, "{orders:?}");
-    // splits fall on the grid of the steps, at first order where it is fine
+    // splits occur at multiples of the step, which gives first order for short steps
     assert!(orders[2] > 1.3, "through two splits: {orders:?}");
 }
 
 #[test]
 fn the_ripple_of_splits_and_merges_vanishes_as_elements_get_shorter() {
-    // greatest change of the tension within 0.02 s, over the tension, of a chain that hangs freely
+    // greatest change of the tension within 0.02 s, relative to the tension, of a freely hanging chain
     let ripple = |change: f64, elements: usize| {
         let mut scene = stepped([0.0, 40.0], change, elements, 1e-3);
         scene.seabed = None;

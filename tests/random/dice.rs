@@ -1,6 +1,6 @@
 //! Source of the random numbers: a tape of genes that proptest draws and shrinks, read part by part.
 //!
-//! A gene of zero means the plainest of all choices, so that a failing scene shrinks to a plain one: parts first, single genes after.
+//! A gene of zero selects the simplest alternative, so that a failing scene shrinks to a simple one: first whole parts, then single genes.
 
 use std::ops::Range;
 
@@ -8,17 +8,17 @@ use proptest::prelude::Rng;
 use proptest::strategy::{NewTree, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
-/// Parts of a tape: draws in one part do not shift those in another.
+/// Number of parts of a tape [-]. Draws in one part do not shift those in another.
 const PARTS: usize = 48;
-/// Genes of a part.
+/// Number of genes of a part [-].
 const GENES: usize = 64;
 
-/// All that is random about a scene and its drive.
+/// All random numbers of a scene and its drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tape(Vec<u32>);
 
 impl Tape {
-    /// Dice of a part; `wild` is the share of numbers that are drawn from all that is legal.
+    /// Returns the dice of a part; `wild` is the share of numbers drawn from the whole legal range.
     pub fn part(&self, number: usize, wild: f64) -> Dice<'_> {
         assert!(number < PARTS, "a tape has {PARTS} parts");
         Dice {
@@ -29,7 +29,7 @@ impl Tape {
     }
 }
 
-/// Reads the genes of a part, one after the other and round again.
+/// Reads the genes of a part in turn, and again from the first after the last.
 #[derive(Debug, Clone)]
 pub struct Dice<'t> {
     genes: &'t [u32],
@@ -38,7 +38,7 @@ pub struct Dice<'t> {
 }
 
 impl Dice<'_> {
-    /// From 0 to just below 1.
+    /// Returns a number from 0 to just below 1.
     fn unit(&mut self) -> f64 {
         let gene = self.genes[self.at % self.genes.len()];
         self.at += 1;
@@ -50,44 +50,44 @@ impl Dice<'_> {
         self.unit() > 1.0 - share
     }
 
-    /// A value, if something rare happens.
+    /// Returns a value with a probability of `share`.
     pub fn maybe<T>(&mut self, share: f64, value: impl FnOnce(&mut Self) -> T) -> Option<T> {
         self.chance(share).then(|| value(self))
     }
 
-    /// Evenly between two numbers.
+    /// Returns a number with uniform distribution between two bounds.
     pub fn between(&mut self, lower: f64, upper: f64) -> f64 {
         lower + (upper - lower) * self.unit()
     }
 
-    /// Evenly to both sides of zero.
+    /// Returns a number with uniform magnitude up to `size` and random sign.
     pub fn within(&mut self, size: f64) -> f64 {
         let sign = if self.chance(0.5) { -1.0 } else { 1.0 };
         sign * self.between(0.0, size)
     }
 
-    /// Alike in every power of ten.
+    /// Returns a number with log-uniform distribution.
     pub fn log(&mut self, lower: f64, upper: f64) -> f64 {
         (lower * (upper / lower).powf(self.unit())).clamp(lower, upper)
     }
 
-    /// As [`Self::log`] from the usual range, now and then from the legal one.
+    /// Works like [`Self::log`] with the usual range, or occasionally the legal one.
     pub fn size(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [lower, upper] = if self.chance(self.wild) { legal } else { usual };
         self.log(lower, upper)
     }
 
-    /// A whole number, both bounds included.
+    /// Returns a whole number, both bounds included.
     pub fn whole(&mut self, lower: usize, upper: usize) -> usize {
         lower + (self.unit() * (upper - lower + 1) as f64) as usize
     }
 
-    /// One of several.
+    /// Returns one of several values.
     pub fn pick<T: Clone>(&mut self, list: &[T]) -> T {
         list[self.whole(0, list.len() - 1)].clone()
     }
 
-    /// A number of no meaning, for generators of their own.
+    /// Returns a seed for a separate generator.
     pub fn seed(&mut self) -> u64 {
         (self.unit() * 1e6) as u64
     }
@@ -114,7 +114,7 @@ impl Strategy for Tapes {
     }
 }
 
-/// A tape on its way to a plainer one.
+/// A tape being simplified.
 #[derive(Debug, Clone)]
 pub struct TapeTree {
     tape: Tape,

@@ -1,4 +1,4 @@
-//! Hosts that drive scenes: by its own motion or step by step, at regular or irregular communication points, with jumps.
+//! Hosts of scenes: the scene's own motion, or step by step, at regular or irregular communication points, with jumps.
 
 use moorline::model::{Body, Motion};
 use moorline::scene::{PointKind, Scene};
@@ -13,24 +13,24 @@ pub const SPAN: f64 = 60.0;
 /// Inputs of a host.
 #[derive(Debug, Clone)]
 pub struct Drive {
-    /// The scene's own motion moves everything.
+    /// True if the scene's own motion moves everything.
     pub follows: bool,
-    /// Communication steps [s], [`SPAN`] in all.
+    /// Communication steps [s]; their sum is [`SPAN`].
     pub steps: Vec<f64>,
-    /// True if velocities are given.
+    /// True if the host sets velocities.
     gives_velocity: bool,
-    /// Moved bodies with their motions.
+    /// Moved bodies and their motions.
     bodies: Vec<(Body, Motion)>,
-    /// From a time [s] on, all bodies are elsewhere along x [m].
+    /// Time [s] from which all bodies are displaced along x, and the displacement [m].
     jump: Option<[f64; 2]>,
-    /// Lines that are released, and when [s].
+    /// Released lines and their release times [s].
     releases: Vec<(usize, f64)>,
-    /// Lines on winches and their greatest length changes [m].
+    /// Lines on winches and their final length changes [m].
     winches: Vec<(usize, f64)>,
 }
 
 impl Drive {
-    /// The host of a tape and its scene.
+    /// Returns the host of a tape and its scene.
     pub fn of(tape: &Tape, plan: &Plan, scene: &Scene) -> Drive {
         let mut dice = plan.dice(tape, part::DRIVE);
         let follows = !dice.chance(0.5);
@@ -63,18 +63,18 @@ impl Drive {
         drive
     }
 
-    /// Returns true where communication steps differ.
+    /// Returns whether communication steps differ.
     pub fn is_irregular(&self) -> bool {
         let inner = &self.steps[..self.steps.len() - 1];
         inner.windows(2).any(|pair| pair[0] != pair[1])
     }
 
-    /// Returns true where a body jumps.
+    /// Returns whether a body jumps.
     pub fn jumps(&self) -> bool {
         !self.follows && self.jump.is_some()
     }
 
-    /// Sets the inputs of a simulation at its time.
+    /// Sets the inputs of a simulation at its current time.
     pub fn set_inputs(&self, simulation: &mut Simulation) {
         let time = simulation.time();
         for &(line, at) in &self.releases {
@@ -93,7 +93,7 @@ impl Drive {
             }
             let mut rate = [None; 6];
             if self.gives_velocity {
-                // angular velocities of a vessel are not the rates of its angles: those are left to be derived
+                // angular velocities of a vessel are not the rates of its angles, so they are left to be derived
                 (0..3).for_each(|axis| rate[axis] = Some(pose.rate[axis]));
             }
             simulation.set_body(*body, value, rate);
@@ -104,7 +104,7 @@ impl Drive {
     }
 }
 
-/// Communication steps [s]: alike, or each another.
+/// Communication steps [s]: equal, or each different.
 fn steps(dice: &mut Dice) -> Vec<f64> {
     let usual = dice.log(0.05, 0.5);
     let spread = dice.pick(&[1.0, 1.0, 5.0, 20.0]);

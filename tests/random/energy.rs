@@ -2,12 +2,12 @@
 
 use moorline::simulation::Simulation;
 
-/// Energy that a balance has counted.
+/// Energy counted by a balance.
 #[derive(Default)]
 pub struct Balance {
-    /// Sum of external work and dissipation, all positive [J].
+    /// Sum of the magnitudes of external work and dissipation [J].
     turnover: f64,
-    /// Most that was held [J].
+    /// Greatest stored energy [J].
     held: f64,
     given: f64,
     lost: f64,
@@ -15,14 +15,14 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// At the start.
+    /// Returns the balance at the start.
     pub fn new(simulation: &Simulation) -> Balance {
         let mut balance = Balance::default();
         balance.count(simulation);
         balance
     }
 
-    /// Counts a communication step.
+    /// Adds a communication step.
     pub fn count(&mut self, simulation: &Simulation) {
         let (energy, flow) = (simulation.energy(), simulation.energy_balance().unwrap().flow);
         self.turnover += (flow.external_work - self.given).abs() + (flow.dissipation - self.lost).abs();
@@ -32,7 +32,7 @@ impl Balance {
         self.held = self.held.max(energy.total() - height + height.abs());
     }
 
-    /// Energy that the damping of the integrators brought in all, over all that was counted; negative where it took some [-].
+    /// Energy added by algorithmic dissipation, relative to all counted energy; negative if it removed energy [-].
     pub fn created(&self) -> f64 {
         match self.numerical {
             0.0 => 0.0,
@@ -40,7 +40,7 @@ impl Balance {
         }
     }
 
-    /// Error of the energy balance over all the energy that it has counted [-].
+    /// Error of the energy balance, relative to all counted energy [-].
     pub fn imbalance(&self, simulation: &Simulation) -> f64 {
         match simulation.energy_balance().unwrap().error() {
             0.0 => 0.0,

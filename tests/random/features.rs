@@ -38,12 +38,12 @@ pub fn of(case: &Case) -> Vec<&'static str> {
     all
 }
 
-/// Returns true where the paths of driven points jump.
+/// Returns whether the paths of driven points jump.
 pub fn jumps(scene: &Scene) -> bool {
     scene.solver.input_reconstruction == Reconstruction::Jump
 }
 
-/// The types of all sections.
+/// Line types of all sections.
 pub fn used_types(scene: &Scene) -> Vec<&LineType> {
     let sections = scene.lines.iter().flat_map(|line| &line.sections);
     sections
@@ -51,7 +51,7 @@ pub fn used_types(scene: &Scene) -> Vec<&LineType> {
         .collect()
 }
 
-/// The names of those that hold.
+/// Names of the entries that are true.
 fn held<const N: usize>(list: [(&'static str, bool); N]) -> impl Iterator<Item = &'static str> {
     list.into_iter().filter(|(_, has)| *has).map(|(name, _)| name)
 }
@@ -123,7 +123,7 @@ fn types(used: &[&LineType]) -> Vec<&'static str> {
     .collect()
 }
 
-/// Returns true where a type has bending stiffness.
+/// Returns whether a type has bending stiffness.
 pub fn bends(kind: &LineType) -> bool {
     kind.bending_stiffness > Some(0.0) || kind.solid_section.is_some()
 }

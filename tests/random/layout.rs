@@ -1,4 +1,4 @@
-//! Points, vessels and lines: anchors below, supports of the lines above, free points between.
+//! Points, vessels and lines: anchors below, upper supports of the lines above, free points between.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,7 +15,7 @@ use crate::motions;
 use crate::plan::{Plan, Resists, part};
 use crate::{surroundings, types};
 
-/// The scene of a tape.
+/// Returns the scene of a tape.
 pub fn scene(tape: &Tape, plan: &Plan) -> Scene {
     let mut scene = Scene {
         title: "a random scene".to_string(),
@@ -58,11 +58,11 @@ pub fn scene(tape: &Tape, plan: &Plan) -> Scene {
     layout.scene
 }
 
-/// A scene on the way.
+/// Scene under construction.
 struct Layout<'t> {
     tape: &'t Tape,
     plan: &'t Plan,
-    /// [m]
+    /// Depth [m].
     depth: f64,
     scene: Scene,
     /// Positions of the points [m].
@@ -76,7 +76,7 @@ impl Layout<'_> {
         self.places.len() - 1
     }
 
-    /// One or two points that hold lines from above, with vessels and motions.
+    /// Adds one to three upper supports of lines, with vessels and motions.
     fn tops(&mut self) {
         let mut dice = self.plan.dice(self.tape, part::TOPS);
         let size = self.plan.size;
@@ -104,7 +104,7 @@ impl Layout<'_> {
         }
     }
 
-    /// A point on a vessel, the last one or a new one.
+    /// Returns a point on a vessel, the last one or a new one.
     fn carried(&mut self, dice: &mut Dice, motion: &mut Dice, name: String, place: Vector3<f64>) -> Point {
         if self.scene.vessels.is_empty() || dice.chance(0.4) {
             let number = self.scene.vessels.len();
@@ -130,7 +130,7 @@ impl Layout<'_> {
         }
     }
 
-    /// A fixed point on the seabed, or on a wall.
+    /// Adds a fixed point on the seabed, or on a wall.
     fn anchor(&mut self, dice: &mut Dice, number: usize) -> usize {
         let size = self.plan.size;
         let radius = size * dice.pick(&[1.0, 1.0, 0.1]) * dice.between(0.3, 1.0);
@@ -150,7 +150,7 @@ impl Layout<'_> {
         )
     }
 
-    /// A free point at a place: a clump, a buoy, a knot, or one on a rail.
+    /// Adds a free point: a clump, a buoy, a knot, or a point on a rail.
     fn free(&mut self, number: usize, place: Vector3<f64>) -> usize {
         let mut dice = self.plan.dice(self.tape, part::JUNCTIONS + number);
         let mut point = Point::at(format!("free{number}"), place.into(), PointKind::Free);
@@ -185,7 +185,7 @@ impl Layout<'_> {
         self.add(point, place)
     }
 
-    /// One to six lines.
+    /// Adds one to six lines.
     fn lines(&mut self) {
         let count = self
             .plan
@@ -223,7 +223,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Returns true where stretching a line by a hundredth takes far more than its weight, so that a motion would snap a taut one.
+    /// Returns whether a strain of 1 % requires far more than a line's weight, so that a motion would snap a taut line.
     fn is_stiff(&self) -> bool {
         let weight = self.plan.gravity.max(1.0) * self.plan.size;
         let stiff = |kind: &LineType| {
@@ -233,7 +233,7 @@ impl Layout<'_> {
         self.scene.line_types.values().any(stiff)
     }
 
-    /// A place [m] that is not below the seabed.
+    /// Moves a position [m] to the seabed if it is below.
     fn lifted(&self, place: Vector3<f64>) -> Vector3<f64> {
         let seabed = self.scene.seabed.as_ref();
         let floor = seabed.map_or(f64::NEG_INFINITY, |seabed| {
@@ -242,7 +242,7 @@ impl Layout<'_> {
         Vector3::new(place.x, place.y, place.z.max(floor))
     }
 
-    /// A line between two points: taut, slack or in between, of one to four sections.
+    /// Returns a line between two points: taut, slack or in between, with one to four sections.
     fn line(&self, dice: &mut Dice, number: usize, ends: [usize; 2]) -> Line {
         let [a, b] = ends.map(|end| self.places[end]);
         let chord = (b - a).norm().max(0.02 * self.plan.size);
@@ -284,7 +284,7 @@ impl Layout<'_> {
         line
     }
 
-    /// Shapes at the start and at rest, and clamps.
+    /// Sets the initial shape, the rest shape and the clamps of a line.
     fn start(&self, dice: &mut Dice, line: &mut Line, [a, b]: [Vector3<f64>; 2], slack: f64) {
         let chord = b - a;
         let beam = self.plan.resists == Resists::Torsion;
@@ -322,7 +322,7 @@ impl Layout<'_> {
         line.clamped_b = line.clamped_b.filter(|_| !turned(&line.to));
     }
 
-    /// Releases, breaks and winches of a line.
+    /// Sets the releases, breaks and winches of a line.
     fn controls(&self, dice: &mut Dice, line: &mut Line, ends: [usize; 2]) {
         let held = self.scene.points[ends[1]].kind != PointKind::Free;
         if self.plan.winch && held && dice.chance(0.6) {
@@ -361,7 +361,7 @@ impl Layout<'_> {
     }
 }
 
-/// A load in time up to about `size` [N].
+/// Returns a time-dependent load up to about `size` [N].
 fn load(dice: &mut Dice, size: f64) -> TimeFunction {
     let [f0, f1] = [dice.within(0.2 * size), dice.within(size)];
     let [t0, span] = [dice.between(0.0, 20.0), dice.log(0.1, 30.0)];

@@ -1,15 +1,15 @@
-//! Changes that must not change a result, over random scenes: a thing of size zero is equivalent to an absent one,
-//! and a scene that is turned, moved, reversed, split or written in another order is the same scene.
+//! Changes that must not affect a result, over random scenes: an object of size zero is equivalent to an absent one,
+//! and a scene that is rotated, moved, reversed, split or written in another order is the same scene.
 //!
-//! Elements, integrator, steps and threads are given, with one of the integrators that step elements; a quasi-static line leaves its closed form with any current,
-//! EI or slope, and differs by the error of its mesh. Runs are compared at every communication step: places of all nodes over the size of the scene, and
-//! forces at the ends of lines over the greatest of the run.
+//! Elements, integrator, steps and threads are prescribed, with one of the integrators that step elements; a quasi-static line with any current,
+//! EI or slope is no longer its closed form, and differs from it by the error of its mesh. Runs are compared at every communication step: positions of
+//! all nodes relative to the size of the scene, and forces at line ends relative to the greatest of the run.
 //!
-//! A relation may fail only in a scene that is not smooth (`is_smooth`): where displacements of its points by [`NUDGE`] change the run by [`NUDGED_MAX`] or more, as in
-//! lines that snap, or where a segment at rest is slack, so that its place is not determined. Such scenes are counted, and may be a fifth of all at most. By design
-//! the axial-implicit leapfrog reproduces curved springs to 1e-3 of the tension, so that its scenes have linear ones; and a line that lies with both ends, or with none, has the
-//! friction of one that was laid from end A, so that such lines are reversed without. Lines on winches are left out: the correction of their
-//! end forces is (`dynamics/reaction.rs`).
+//! A relation may fail only in a scene that is not smooth (`is_smooth`): if displacements of its points by [`NUDGE`] change the run by [`NUDGED_MAX`]
+//! or more, as in lines that snap, or if a segment at rest is slack, so that its position is indeterminate. Such scenes are counted, and may be a
+//! quarter of all at most ([`ROUGH_MAX`]). By design the axial-implicit leapfrog reproduces curved tension laws to 1e-3 of the tension, so its scenes
+//! have linear ones. A line that lies on the seabed with both ends, or with none, has the friction of a line laid from end A, so such lines are
+//! reversed without friction. Lines on winches are excluded, since the correction of their end forces is (`dynamics/reaction.rs`).
 
 use std::cell::RefCell;
 use std::f64::consts::PI;
@@ -30,30 +30,30 @@ use crate::dice::Tape;
 use crate::plan::{Plan, Resists};
 use crate::{layout, surroundings, survey};
 
-/// Scenes.
+/// Number of scenes [-].
 const SCENES: usize = 200;
 /// The communication steps of a run.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     steps: usize,
-    /// Greatest length of one [s].
+    /// Maximum length of a communication step [s].
     step_max: f64,
-    /// Greatest length of one over the shortest internal step [-].
+    /// Maximum length of a communication step relative to the shortest internal step [-].
     internal: f64,
 }
-/// A few internal steps.
+/// Run of a few internal steps.
 const SHORT: Span = Span {
     steps: 2,
     step_max: 0.05,
     internal: 20.0,
 };
-/// Some seconds, or as much as ten thousand internal steps make.
+/// Run of some seconds, or of ten thousand internal steps if that is shorter.
 const LONG: Span = Span {
     steps: 10,
     step_max: 0.3,
     internal: 1000.0,
 };
-/// Integrators, in turns.
+/// Integrators, used in turn.
 const INTEGRATORS: [Integrator; 4] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
@@ -66,14 +66,14 @@ struct Base {
     scene: Scene,
     size: f64,
     number: usize,
-    /// Communication steps, and the length of each [s].
+    /// Number of communication steps, and the length of each [s].
     steps: usize,
     step: f64,
-    /// Runs so far.
+    /// Runs made so far.
     runs: RefCell<Vec<(Scene, Outcome)>>,
 }
 
-/// A run; the error is why a scene is refused, has no start or a step cannot be made.
+/// A run, or the reason why a scene is refused, has no equilibrium or a step fails.
 type Outcome = Rc<Result<Run, String>>;
 
 impl Base {
@@ -87,7 +87,7 @@ impl Base {
             gravity: 9.80665,
             integrator,
             resists: Resists::Stretch,
-            // Leapfrogs take one law along a line; the axial-implicit one follows those that are curved to 1e-3 of the tension.
+            // Leapfrogs accept one law along a line; the axial-implicit one reproduces curved laws to 1e-3 of the tension.
             law: match integrator {
                 Integrator::AxialImplicit => Some(0),
                 _ => Some(drawn.law.unwrap_or(0)),
@@ -123,7 +123,7 @@ impl Base {
         }
     }
 
-    /// The run of a scene, made once.
+    /// Returns the run of a scene; repeated calls reuse it.
     fn run(&self, scene: &Scene) -> Outcome {
         let mut runs = self.runs.borrow_mut();
         if let Some((_, run)) = runs.iter().find(|(known, _)| known == scene) {
@@ -145,10 +145,10 @@ impl Base {
     }
 }
 
-/// Places [m] of nodes and forces [N] at ends of lines by name, at every communication step.
+/// Positions [m] of nodes and forces [N] at line ends by line name, at every communication step.
 #[derive(Clone)]
 struct Run {
-    /// Lines of the scene.
+    /// Number of lines of the scene [-].
     lines: usize,
     places: Vec<(String, Vec<Vector3<f64>>)>,
     forces: Vec<(String, Vec<Vector3<f64>>)>,
@@ -170,14 +170,14 @@ fn run(scene: &Scene, steps: usize, step: f64) -> Result<Run, String> {
     Ok(run)
 }
 
-/// Greatest difference of two runs [-], and at which communication step and where they differ first.
+/// Greatest difference of two runs [-], and the communication step and location of the first difference.
 #[derive(Debug, Clone, Default)]
 struct Gap {
     most: f64,
     first: String,
 }
 
-/// Image of a vector of one run in the other.
+/// Image of a vector of one run in the other run.
 type Image = dyn Fn(Vector3<f64>) -> Vector3<f64>;
 
 impl Gap {
@@ -199,7 +199,7 @@ impl Run {
         }
     }
 
-    /// The run with its lines in the order of another's names, and without the rest.
+    /// Returns the run with its lines in the order of another run, without other lines.
     fn sorted(mut self, like: &Run) -> Run {
         let names = like.places[..like.lines].iter().map(|(name, _)| name.clone());
         let names: Vec<String> = names.collect();
@@ -212,7 +212,7 @@ impl Run {
         self
     }
 
-    /// Difference from another run whose vectors are the images of these.
+    /// Difference from another run, whose vectors are images of the vectors of this one.
     fn gap(&self, other: &Run, size: f64, [place, turn]: [&Image; 2]) -> Gap {
         let forces = self.forces.iter().flat_map(|(_, forces)| forces);
         let greatest = forces.map(|force| force.norm()).fold(1e-6, f64::max);
@@ -238,30 +238,30 @@ impl Run {
     }
 }
 
-/// Difference that is reported as the first [-].
+/// Smallest difference that is reported as the first one [-].
 const FIRST: f64 = 1e-10;
 
-/// Displacements of points, over the size of the scene, in turns [-]: small ones, and the rounding of coordinates. (A segment that is just slack is
-/// taut in scenes displaced by rounding alone: 133 moved.)
+/// Displacements of points relative to the size of the scene, used in turn [-]: small ones, and the rounding of coordinates. (A segment that is just
+/// slack becomes taut in scenes displaced by rounding alone: 133 moved.)
 const NUDGE: [f64; 2] = [1e-10, 1e-15];
-/// Displaced scenes.
+/// Number of displaced scenes [-].
 const NUDGES: usize = 24;
-/// Bound of the difference of runs that such displacements make in a smooth scene [-], or half the bound of a relation where that is less. (With
-/// half the bound alone two scenes fail at 1e-6, of stiff lines that hardly pull: 154 turned and moved, 189 moved.)
+/// Greatest difference of runs after such displacements in a smooth scene [-], or half the bound of a relation if that is smaller. (With
+/// half the bound alone, two scenes with stiff lines of very low tension fail at 1e-6: 154 turned and moved, 189 moved.)
 const NUDGED_MAX: f64 = 5e-9;
-/// Least tension of a line at rest that is determined by forces, over its greatest [-].
+/// Least tension of a line at rest that is determined by forces, relative to its greatest tension [-].
 const TAUT: f64 = 1e-9;
-/// Greatest share of the scenes of a relation that may fail because they are not smooth [-]: over some seconds parts of elements land and leave
-/// the seabed.
+/// Greatest share of the scenes of a relation that may fail because they are not smooth [-]: within some seconds, parts of elements touch down and lift
+/// off.
 const ROUGH_MAX: f64 = 0.25;
 
-/// Returns true where a scene is smooth: small displacements of its points change its run in proportion. A line that
-/// snaps is not smooth, nor is one that may rest in many places, where rounding changes the run as much.
+/// Returns whether a scene is smooth: small displacements of its points change its run in proportion. A line that
+/// snaps is not smooth, nor is one with many possible rest positions, which rounding changes as much.
 fn is_smooth(base: &Base, scene: &Scene, bound: f64) -> bool {
     is_taut_at_rest(scene) && (1..=NUDGES).all(|seed| nudged(base, scene, seed) < NUDGED_MAX.min(0.5 * bound))
 }
 
-/// Difference that small displacements of the points of a scene make in its run [-]; infinite where the displaced scene fails.
+/// Difference of a run caused by small displacements of the points [-]; infinite if the displaced scene fails.
 fn nudged(base: &Base, scene: &Scene, seed: usize) -> f64 {
     let mut other = scene.clone();
     let points = other.points.iter_mut().filter(|point| point.on.is_none());
@@ -273,7 +273,7 @@ fn nudged(base: &Base, scene: &Scene, seed: usize) -> f64 {
     same(base, scene, &other).map_or(f64::INFINITY, |(_, gap)| gap.most)
 }
 
-/// Returns true where every segment that starts at rest pulls: the place of slack ones on a seabed is not determined.
+/// Returns whether every segment that starts at rest is in tension: the position of slack ones on a seabed is indeterminate.
 fn is_taut_at_rest(scene: &Scene) -> bool {
     let simulation = Simulation::new(scene).expect("the scene has run");
     let lines = scene.lines.iter().enumerate();
@@ -285,17 +285,17 @@ fn is_taut_at_rest(scene: &Scene) -> bool {
     })
 }
 
-/// A relation of scenes, with the scene that is compared with its image; `None` where it does not concern one.
+/// A relation of scenes. Returns the scene and its difference from its image; `None` if the relation does not apply.
 type Relation = fn(&Base) -> Option<(Scene, Gap)>;
 
-/// A comparison of a scene with its image.
+/// Comparison of a scene with its image.
 struct Found {
     /// Number of the relation.
     which: usize,
     scene: usize,
     gap: Gap,
     holds: bool,
-    /// The relation fails in a scene that is not smooth.
+    /// True if the relation fails in a scene that is not smooth.
     rough: bool,
 }
 
@@ -319,7 +319,7 @@ fn compare(number: usize, span: Span, relations: &[(&str, Relation, f64)]) -> Ve
     found
 }
 
-/// Holds relations to their bounds over all smooth scenes, on two threads.
+/// Asserts that the relations are within their bounds for all smooth scenes, on two threads.
 fn claim(span: Span, relations: &[(&str, Relation, f64)]) {
     let next = AtomicUsize::new(0);
     let work = || {
@@ -353,12 +353,12 @@ fn claim(span: Span, relations: &[(&str, Relation, f64)]) {
     assert!(broken.is_empty(), "{broken:#?}");
 }
 
-/// Difference of two scenes that should be one; the second fails where the first does.
+/// Difference of two scenes that should be equivalent; the second must not fail if the first runs.
 fn same(base: &Base, one: &Scene, other: &Scene) -> Option<(Scene, Gap)> {
     images(base, one, other, [&|r| r, &|f| f])
 }
 
-/// As [`same`], of scenes of which one is the image of the other.
+/// Works like [`same`], for a scene and its image.
 fn images(base: &Base, one: &Scene, other: &Scene, images: [&Image; 2]) -> Option<(Scene, Gap)> {
     let own = base.run(one);
     let own = own.as_ref().as_ref().ok()?;
@@ -369,7 +369,7 @@ fn images(base: &Base, one: &Scene, other: &Scene, images: [&Image; 2]) -> Optio
     Some((one.clone(), gap))
 }
 
-/// A limit against absence: both scenes are made from the base, the second from the first.
+/// A limit compared with absence: the first scene is made from the base, the second from the first.
 fn limit(
     base: &Base,
     absent: impl FnOnce(&mut Scene),
@@ -381,7 +381,7 @@ fn limit(
     same(base, &one, &other)
 }
 
-/// A limit of the water, where there is some.
+/// A limit of the water; `None` without water.
 fn limit_of_water(base: &Base, absent: fn(&mut Water), zero: impl Fn(&mut Water)) -> Option<(Scene, Gap)> {
     base.water()?;
     let change = |scene: &mut Scene, change: &dyn Fn(&mut Water)| scene.water.iter_mut().for_each(change);
@@ -394,7 +394,7 @@ fn without_density(base: &Base) -> Option<(Scene, Gap)> {
     limit(base, |scene| scene.water = None, |scene| scene.water = Some(thin))
 }
 
-/// A current of no speed, of next to none, or times zero.
+/// A current of zero speed, of negligible speed, or with a factor of zero.
 fn without_current(base: &Base) -> Option<(Scene, Gap)> {
     let mut current = Current::default();
     match base.number % 3 {
@@ -412,7 +412,7 @@ fn without_current(base: &Base) -> Option<(Scene, Gap)> {
     )
 }
 
-/// Waves of next to no height, regular or of a spectrum.
+/// Waves of negligible height, regular or of a spectrum.
 fn without_wave_height(base: &Base) -> Option<(Scene, Gap)> {
     let (mut sea, height) = (Sea::default(), Some(1e-13));
     if base.number.is_multiple_of(2) {
@@ -436,7 +436,7 @@ fn without_wave_height(base: &Base) -> Option<(Scene, Gap)> {
     )
 }
 
-/// A flow from a host that gives none, in addition to the current.
+/// A flow from a host that sets none, in addition to the current.
 fn without_flow(base: &Base) -> Option<(Scene, Gap)> {
     limit_of_water(
         base,
@@ -455,7 +455,7 @@ fn without_bending_stiffness(base: &Base) -> Option<(Scene, Gap)> {
         kind.strain == Strain::Engineering && kind.rayleigh.is_none() && kind.axial_stiffness.is_some()
     };
     if explicit.contains(&base.scene.solver.integrator) && !base.scene.line_types.values().all(serves) {
-        return None; // joints with other springs are integrated implicitly
+        return None; // joints with other laws are integrated implicitly
     }
     let bend = |scene: &mut Scene| every_type(scene, |kind| kind.bending_stiffness = Some(1e-12));
     limit(base, |_| {}, bend)
@@ -481,7 +481,7 @@ fn without_slope(base: &Base) -> Option<(Scene, Gap)> {
     with_seabed(base, |seabed| seabed.slope = Some([1e-15, -1e-15]))
 }
 
-/// Drag, or added mass.
+/// Coefficients of zero, of drag or of added mass.
 fn without_coefficients(base: &Base) -> Option<(Scene, Gap)> {
     base.water()?;
     let drags = base.number.is_multiple_of(2);
@@ -539,7 +539,7 @@ fn without_motion(base: &Base) -> Option<(Scene, Gap)> {
     limit(base, |scene| scene.motion.clear(), move_all)
 }
 
-/// Limits of size zero, each with its bound.
+/// Limits of zero size, each with its bound.
 const LIMITS: [(&str, Relation, f64); 10] = [
     ("density", without_density, 1e-9),
     ("current", without_current, 1e-9),
@@ -566,7 +566,7 @@ fn a_thing_of_size_zero_is_absent_through_some_seconds() {
     claim(LONG, &through_seconds);
 }
 
-/// Scene with every path a sum of sines, level and without objects that have fixed axes.
+/// Scene whose motions are all sums of sines, with a level seabed and without objects that have fixed axes.
 fn isotropic(base: &Base) -> Scene {
     base.changed(|scene| {
         for point in &mut scene.points {
@@ -584,7 +584,7 @@ fn isotropic(base: &Base) -> Scene {
     })
 }
 
-/// Turns the horizontal part of sums of sines.
+/// Rotates the horizontal part of sums of sines.
 fn turned_path(path: &mut MotionPath, [cos, sin]: [f64; 2]) {
     let MotionPath::Harmonic(path) = path else { return };
     let times = |rows: &[Vec<f64>], factor: f64| {
@@ -663,7 +663,7 @@ fn moved(base: &Base) -> Option<(Scene, Gap)> {
     images(base, &one, &other, [&move |r| r + by, &|f| f])
 }
 
-/// Returns true where friction holds every line as one that was laid from its end on the seabed, A or B.
+/// Returns whether friction acts on every line as on one laid from its end on the seabed, A or B.
 fn is_laid_from_one_end(scene: &Scene) -> bool {
     let Some(seabed) = &scene.seabed else { return true };
     let position = |name: &String| {
@@ -731,7 +731,7 @@ fn reordered(base: &Base) -> Option<(Scene, Gap)> {
     same(base, &base.scene, &other)
 }
 
-/// Returns true where free points join lines: forces of several lines are then summed in another order.
+/// Returns whether free points join lines: forces of several lines are then summed in a different order.
 fn is_joined(base: &Base) -> bool {
     base.scene
         .points
@@ -764,7 +764,7 @@ fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
         let seabed = scene.seabed.as_ref();
         let along = seabed
             .and_then(|seabed| seabed.slope)
-            .map_or(1.0, |[x, _]| -x.signum()); // down the slope
+            .map_or(1.0, |[x, _]| -x.signum()); // downslope
         let [a, b] = [5000.0, 5100.0].map(|x| {
             let floor = seabed.map_or(-100.0, |seabed| {
                 surroundings::seabed_height(seabed, [along * x, 0.0])

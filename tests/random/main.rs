@@ -1,20 +1,21 @@
-//! Random scenes: any of the physics, extreme but legal numbers, random motion, 60 s each. None panics, returns a
-//! number that is not finite, or hangs; a scene that cannot be run is refused with a reason and leaves the state
+//! Random scenes: any of the physics, extreme but legal values, random motion, 60 s each. No scene panics, returns a
+//! non-finite number or hangs; a scene that cannot be run is refused with a reason and leaves the state
 //! unchanged; snapshots replay to the last bit; energy balances close where possible.
 //!
-//! Every scene has a number and is always the same. In addition to the suite there are
+//! Every scene has a number and is reproducible. In addition to the suite there are
 //!
 //! ```text
 //! cargo test --release --test random -- --ignored --nocapture ten_thousand      the long run; with SCENES=500..1000 a part of it
 //! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and its result
 //! ```
 //!
-//! An energy balance closes where its error is at most 2 % of the energy that it counts. The damping of an integrator may bring energy: the share of energy balances to which
-//! it brought no more than that is claimed too. Beams conserve energy: their energy balances close in every scene. Lines that slacken and snap
-//! do so by a kink in their tension law, which no fixed step of a leapfrog resolves where they are as stiff and as little damped as these may be; the implicit
-//! integrators count all of their work, but may bring energy where their steps are halved and doubled in turns, or an end is released; and a quasi-static
-//! line may jump from one equilibrium to another: of these, the shares are claimed. Held points that a host moves abruptly pull stiff lines by more than can be resolved
-//! by steps as long as the waves of these lines allow; they are counted separately.
+//! An energy balance closes if its error is at most 2 % of the energy that it counts. Algorithmic dissipation may add energy; the share of
+//! balances to which it adds at most this much is tested as well. Beams conserve energy, so their balances close in every scene. For the other
+//! lines, the shares of balances that close are tested: a line that snaps taut passes a kink of its tension law, which no fixed leapfrog step
+//! resolves if the line is as stiff and as little damped as some of these; the implicit integrators account for all work, but may add energy if
+//! steps are alternately halved and doubled, or if an end is released; and a quasi-static line may jump from one equilibrium to another.
+//! Prescribed points that a host moves abruptly load stiff lines by more than steps at the limit of their axial waves resolve; such scenes are
+//! counted separately.
 
 mod dice;
 mod drive;
@@ -33,13 +34,13 @@ use std::ops::Range;
 
 use survey::Survey;
 
-/// Scenes of the suite.
+/// Number of scenes of the suite [-].
 const SUITE: usize = 500;
-/// Scenes of the long run.
+/// Number of scenes of the long run [-].
 const LONG: usize = 10_000;
 
-/// Shares of energy balances that close, and of those without energy from integrators, for a host's equal steps, for
-/// unequal ones, and for held points that it moves abruptly [-], as measured on scenes 0..10 000.
+/// Shares of energy balances that close, and of those in which integrators also add no energy, for equal communication steps, for
+/// unequal ones, and for prescribed points that move abruptly [-], as measured on scenes 0..10 000.
 const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
     ("AxialImplicit", [[0.980, 0.978], [0.971, 0.961], [0.747, 0.742]]),
     ("Bossak", [[0.998, 0.965], [0.999, 0.932], [0.989, 0.899]]),
@@ -51,17 +52,17 @@ const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
     ("QuasiStatic", [[0.980, 0.980], [0.975, 0.975], [0.965, 0.965]]),
     ("several", [[0.978, 0.960], [0.956, 0.942], [0.871, 0.862]]),
 ];
-/// Share of scenes that are too expensive to run, as measured on the same [-].
+/// Share of scenes that are too expensive to run, as measured on the same scenes [-].
 const TOO_DEAR: f64 = 0.170;
-/// Standard deviations by which a draw of scenes may miss it by chance [-].
+/// Number of standard deviations by which a sample of scenes may deviate from it by chance [-].
 const BY_CHANCE: f64 = 3.0;
-/// Greatest error of a beam's energy balance, over the energy that it counts [-]. The iteration of a step ends with changes of 1e-12 of the length: in a beam of 25 g/m
-/// with EA = 0.2 GN (scene 2893) that leaves 9e-9, in most beams 1e-13.
+/// Greatest error of a beam's energy balance, relative to the energy that it counts [-]. The iteration of a step stops at changes of 1e-12 of the
+/// length: in a beam of 25 g/m with EA = 0.2 GN (scene 2893) that leaves an error of 9e-9, in most beams 1e-13.
 const BEAM: f64 = 1e-8;
-/// Least share of the scenes with any feature that run [-].
+/// Minimum share of the scenes with a feature that run [-].
 const RUN_MIN: f64 = 0.5;
 
-/// Deviation of a share that chance may cause in a number of draws [-].
+/// Random deviation of a share expected for a number of draws [-].
 fn by_chance(share: f64, draws: f64) -> f64 {
     BY_CHANCE * (share * (1.0 - share) / draws.max(1.0)).sqrt()
 }
@@ -131,7 +132,7 @@ fn one_random_balance_closes_better_in_shorter_steps() {
     }
 }
 
-/// Outcome of a case in steps of a part of their usual length.
+/// Outcome of a case with steps shortened to a fraction of their usual length.
 fn outcome(case: &run::Case, part: f64) -> String {
     let mut case = case.clone();
     let scene = moorline::discretisation::discretised(&case.scene);

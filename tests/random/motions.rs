@@ -8,7 +8,7 @@ use crate::plan::{Plan, Resists};
 /// Fastest motion along an axis [m/s], except for wild motions.
 const SPEED: f64 = 20.0;
 
-/// A motion: sums of sines, or a table that turns a vessel round and round.
+/// A motion: sums of sines, or a table, which may turn a vessel through several revolutions.
 pub fn motion(dice: &mut Dice, plan: &Plan, turns: bool) -> MotionPath {
     let violent = dice.chance(0.15);
     if dice.chance(0.2) {
@@ -47,7 +47,7 @@ pub fn motion(dice: &mut Dice, plan: &Plan, turns: bool) -> MotionPath {
     MotionPath::Harmonic(path)
 }
 
-/// Rows every few seconds; vessels may turn by more than a round.
+/// A table with a row every few seconds; vessels may turn by more than one revolution.
 fn table(dice: &mut Dice, plan: &Plan, turns: bool) -> MotionPath {
     let reach = plan.size * dice.log(1e-3, 0.1);
     let turn = if turns { dice.log(0.01, 10.0) } else { 0.0 };

@@ -5,7 +5,7 @@ use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solv
 use crate::dice::{Dice, Tape};
 use crate::surroundings;
 
-/// Parts of the tape, by the objects drawn from them.
+/// Parts of the tape, named by the objects drawn from them.
 pub mod part {
     pub const PLAN: usize = 0;
     pub const SOLVER: usize = 1;
@@ -27,37 +27,37 @@ pub enum Resists {
     Torsion,
 }
 
-/// The axial law of springs that pull in proportion to their strain.
+/// Axial law of lines whose tension is proportional to strain.
 const PROPORTIONAL: usize = 0;
 
 /// Choices that all parts of a scene share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
-    /// Share of numbers that are drawn from all that is legal [-].
+    /// Share of numbers drawn from the whole legal range [-].
     pub wild: f64,
-    /// About how far and deep the scene reaches [m].
+    /// Approximate extent and depth of the scene [m].
     pub size: f64,
-    /// [m/s²]
+    /// Gravity [m/s²].
     pub gravity: f64,
     pub integrator: Integrator,
     pub resists: Resists,
     pub wet: bool,
     pub seabed: bool,
-    /// The axial law that all line types share, by number; each its own where absent. Ropes with memory and lines integrated
-    /// explicitly share one.
+    /// Number of the axial law shared by all line types; `None` if each has its own. Viscoelastic ropes and explicitly integrated lines
+    /// share one.
     pub law: Option<usize>,
     /// Poisson's ratio of logarithmic strain [-].
     pub poisson: f64,
-    /// Lines are on winches.
+    /// True if lines are on winches.
     pub winch: bool,
-    /// Points move freely.
+    /// True if there are free points.
     pub junctions: bool,
-    /// Lines break or are released.
+    /// True if lines break or are released.
     pub parts: bool,
 }
 
 impl Plan {
-    /// The choices of a tape.
+    /// Returns the plan of a tape.
     pub fn of(tape: &Tape) -> Plan {
         let mut dice = tape.part(part::PLAN, 0.0);
         let wild = dice.pick(&[0.0, 0.0, 0.02, 0.1]);
@@ -105,17 +105,17 @@ impl Plan {
         }
     }
 
-    /// Dice of a part of a tape.
+    /// Returns the dice of a part of a tape.
     pub fn dice<'t>(&self, tape: &'t Tape, part: usize) -> Dice<'t> {
         tape.part(part, self.wild)
     }
 
-    /// True where the scene names a leapfrog.
+    /// Returns whether the scene specifies a leapfrog.
     pub fn is_leapfrog(&self) -> bool {
         matches!(self.integrator, Integrator::Leapfrog | Integrator::AxialImplicit)
     }
 
-    /// The solver's settings.
+    /// Returns the settings of the solver.
     pub fn solver(&self, dice: &mut Dice) -> Solver {
         let radius = match self.integrator {
             Integrator::AxialImplicit => Some(AXIAL_RADIUS_MIN),
@@ -127,7 +127,7 @@ impl Plan {
             tolerance: dice.size([0.02, 0.3], [1e-3, 0.5]),
             integrator: self.integrator,
             negative_tension: dice.chance(0.15),
-            elements: dice.maybe(0.9, |dice| dice.whole(4, 40)), // else they are found by trials
+            elements: dice.maybe(0.9, |dice| dice.whole(4, 40)), // otherwise selected by convergence trials
             time_step_max: dice.size([0.05, 0.05], [2e-3, 10.0]),
             spectral_radius: dice
                 .maybe(0.4, |dice| dice.between(radius.unwrap_or(0.0), 1.0))

@@ -1,4 +1,4 @@
-//! Runs a random scene and holds it to its claims.
+//! Runs a random scene and checks the claims.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -14,12 +14,12 @@ use crate::drive::Drive;
 use crate::plan::Plan;
 use crate::{energy, layout};
 
-/// Work that a scene may cost, in node steps of the explicit leapfrog [-]; a run that would need more stops with that
-/// reason.
+/// Maximum work of a scene, in node steps of the explicit leapfrog [-]; a run that would need more stops and counts as too
+/// expensive.
 const BUDGET: f64 = 2e7;
-/// Work of one communication step that no scene may exceed under any conditions [-].
+/// Work that one communication step must never exceed [-].
 const STEP_MAX: f64 = 1e9;
-/// Communication steps of the replay [-].
+/// Number of communication steps of the replay [-].
 const REPLAY: usize = 5;
 
 /// A random scene and its host.
@@ -30,7 +30,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// The case of a tape.
+    /// Returns the case of a tape.
     pub fn of(tape: &Tape) -> Case {
         let plan = Plan::of(tape);
         let scene = layout::scene(tape, &plan);
@@ -38,7 +38,7 @@ impl Case {
         Case { scene, drive }
     }
 
-    /// The scene as the command line reads it, and its host as a comment.
+    /// Returns the scene as the command line reads it, with its host as a comment.
     pub fn as_toml(&self) -> String {
         format!("# host: {:?}\n{}", self.drive, self.scene.to_toml())
     }
@@ -54,9 +54,9 @@ pub enum Fate {
     Refused(String),
     /// Has no equilibrium, with a reason.
     Unsolved(String),
-    /// A step could not be made, with a reason.
+    /// A step failed, with a reason.
     Stopped(String),
-    /// Would have cost more than a test may.
+    /// Exceeded the cost limit of a test.
     Costly,
 }
 
@@ -64,21 +64,21 @@ pub enum Fate {
 #[derive(Debug, Clone, Default)]
 pub struct Account {
     pub fate: Fate,
-    /// Integrators that served it, by name.
+    /// Integrators used, by name.
     pub integrators: Vec<String>,
-    /// Error of the energy balance, over the energy that it counts [-].
+    /// Error of the energy balance, relative to the energy that it counts [-].
     pub imbalance: f64,
-    /// Energy that the damping of the integrators brought on balance, over the same [-].
+    /// Net energy added by algorithmic dissipation, relative to the same energy [-].
     pub created: f64,
     /// Work of all steps [-].
     pub work: f64,
     /// Work of the most expensive communication step [-].
     pub dearest: f64,
-    /// Time that it reached [s].
+    /// Time reached [s].
     pub time: f64,
 }
 
-/// Runs a case; the error is the claim that does not hold.
+/// Runs a case; the error is the claim that is broken.
 pub fn run(case: &Case) -> Result<Account, String> {
     catch_unwind(AssertUnwindSafe(|| watched(case))).unwrap_or_else(|panic| {
         let said = panic.downcast_ref::<String>().map(String::as_str);
@@ -109,7 +109,7 @@ fn watched(case: &Case) -> Result<Account, String> {
     Ok(account)
 }
 
-/// All communication steps, until one fails or the budget is spent.
+/// Makes all communication steps, until one fails or the budget is spent.
 fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Result<(), String> {
     let outputs = Outputs::new(&case.scene, simulation)?;
     outputs
@@ -157,9 +157,9 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
 
 /// Cost of steps.
 struct Load {
-    /// Work of a second where nothing is halved or repeated, of every network with its longest step [s].
+    /// Work of every network per internal step, without halved or repeated steps [-], and its longest internal step [s].
     networks: Vec<(f64, f64)>,
-    /// Work of a solve, on the mean of the networks [-].
+    /// Work of a solve, averaged over the networks [-].
     weight: f64,
 }
 
@@ -180,7 +180,7 @@ impl Load {
         }
     }
 
-    /// Work of a communication step [s] at least.
+    /// Least work of a communication step of `step` [s] [-].
     fn expected(&self, step: f64) -> f64 {
         self.networks
             .iter()
@@ -189,7 +189,7 @@ impl Load {
     }
 }
 
-/// Work of a node in a step or iteration of an integrator, over one of the explicit leapfrog [-].
+/// Work per node of a step or iteration of an integrator, relative to the explicit leapfrog [-].
 fn node_cost(integrator: Integrator) -> f64 {
     match integrator {
         Integrator::Leapfrog => 1.0,
@@ -199,7 +199,7 @@ fn node_cost(integrator: Integrator) -> f64 {
     }
 }
 
-/// Checks that a step that failed gives its reason and has left everything as it was.
+/// Checks that a failed step reports its location and reason and leaves the state unchanged.
 fn said_clearly(error: &StepError, before: &Snapshot, simulation: &Simulation) -> Result<(), String> {
     let mut lines = simulation.model().lines.iter();
     let line = lines.find(|line| line.name == error.line);
@@ -221,7 +221,7 @@ fn bytes(snapshot: &Snapshot) -> Vec<u8> {
     postcard::to_stdvec(snapshot).expect("a snapshot can be written")
 }
 
-/// Makes the last steps again from a snapshot: every bit must come out as before.
+/// Repeats the last steps from a snapshot: every bit must be the same as before.
 fn replay(
     case: &Case,
     simulation: &mut Simulation,
@@ -242,7 +242,7 @@ fn replay(
     }
 }
 
-/// The outputs of a scene's interface table.
+/// Outputs in the interface table of a scene.
 struct Outputs {
     table: Interface,
 }
@@ -256,7 +256,7 @@ impl Outputs {
         Ok(Outputs { table })
     }
 
-    /// Reads all of them; the error is one that is not a finite number.
+    /// Reads all of them; the error reports one that is not finite.
     fn read(&self, simulation: &Simulation) -> Result<(), String> {
         for variable in self.table.variables() {
             if ![Causality::Output, Causality::CalculatedParameter].contains(&variable.causality) {

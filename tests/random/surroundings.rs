@@ -9,7 +9,7 @@ use moorline::scene::{
 
 use crate::dice::Dice;
 
-/// Gravity [m/s²]: the earth's, the moon's, none, or any.
+/// Gravity [m/s²]: the earth's, the moon's, zero, or any legal value.
 pub fn gravity(dice: &mut Dice) -> f64 {
     if dice.chance(0.05) {
         return dice.pick(&[1.62, 0.0, 9.81]);
@@ -17,7 +17,7 @@ pub fn gravity(dice: &mut Dice) -> f64 {
     dice.size([STANDARD_GRAVITY; 2], [1e-3, 1e3])
 }
 
-/// Water that may flow and have waves where lines are cables in motion: `moves`.
+/// Water. A current is drawn only if `moves`, and waves only if `waves`.
 pub fn water(dice: &mut Dice, size: f64, gravity: f64, moves: bool, waves: bool) -> Water {
     let density = dice.size([1025.0, 1025.0], [1e-15, 1e5]);
     Water {
@@ -70,7 +70,7 @@ fn waves(dice: &mut Dice, size: f64) -> Waves {
 }
 
 fn sea(dice: &mut Dice, size: f64, ramp: Option<f64>) -> Sea {
-    // a twentieth of the length in deep water, g T²/2π, and no higher than the scene is deep
+    // height: at most a tenth of the wavelength in deep water, g T²/2π, and 0.3 of the size of the scene
     let period = dice.size([2.0, 20.0], [0.05, 1e5]);
     let steepness = dice.log(1e-3, 0.1);
     let height = (steepness * 1.56 * period * period).clamp(1e-6, (0.3 * size).min(30.0));
@@ -119,7 +119,7 @@ fn sea(dice: &mut Dice, size: f64, ramp: Option<f64>) -> Sea {
     sea
 }
 
-/// A seabed about `depth` [m] deep, with the height [m] that fixed points may have anywhere within `size` [m]; level where it must be.
+/// A seabed about `depth` [m] deep, level if `level`; fixed points may be anywhere within `size` [m].
 pub fn seabed(dice: &mut Dice, depth: f64, size: f64, level: bool) -> Seabed {
     let mut seabed = Seabed::level(depth);
     if dice.chance(0.6) {
@@ -166,7 +166,7 @@ fn grid(dice: &mut Dice, depth: f64, size: f64) -> DepthGrid {
     }
 }
 
-/// A height [m] at or above the seabed at a place [m].
+/// A height [m] at or above the seabed at a horizontal position [m].
 pub fn seabed_height(seabed: &Seabed, [x, y]: [f64; 2]) -> f64 {
     if let Some(grid) = &seabed.grid {
         let depths = grid.depth.iter().flatten();

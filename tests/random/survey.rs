@@ -16,9 +16,9 @@ use crate::run::{Account, Case, Fate, run};
 
 /// Threads.
 const THREADS: usize = 2;
-/// Runs that shrinking a failing scene may take.
+/// Maximum number of runs to shrink a failing scene [-].
 const SHRINKS_MAX: u32 = 200;
-/// Error of an energy balance that closes, over the energy that it counts [-].
+/// Greatest error of an energy balance that counts as closed, relative to the energy that it counts [-].
 pub const CLOSED: f64 = 0.02;
 
 fn runner(number: usize) -> TestRunner {
@@ -37,17 +37,17 @@ fn tree(number: usize) -> TapeTree {
     tree.expect("tapes are always drawn")
 }
 
-/// The tape of a number: always the same.
+/// Returns the tape with a number, which is always the same.
 pub fn tape(number: usize) -> Tape {
     tree(number).current()
 }
 
-/// The case of a number: always the same.
+/// Returns the case with a number, which is always the same.
 pub fn case(number: usize) -> Case {
     Case::of(&tape(number))
 }
 
-/// A plainer case that breaks a claim like that of a number, with the claim.
+/// Returns a simpler case that breaks a claim as the case with this number does, and the claim.
 pub fn shrunk(number: usize) -> Option<(Case, String)> {
     let hold = |tape| match run(&Case::of(&tape)) {
         Ok(_) => Ok(()),
@@ -63,19 +63,19 @@ pub fn shrunk(number: usize) -> Option<(Case, String)> {
 #[derive(Debug, Clone, Copy)]
 pub struct Closing {
     pub scene: usize,
-    /// Error of the energy balance, over the energy that it counts [-].
+    /// Error of the energy balance, relative to the energy that it counts [-].
     pub imbalance: f64,
-    /// Energy that the damping of integrators brought, over the same [-].
+    /// Energy added by algorithmic dissipation, relative to the same energy [-].
     pub created: f64,
 }
 
 impl Closing {
-    /// Returns true where the energy balance closes.
+    /// Returns whether the energy balance closes.
     pub fn close(&self) -> bool {
         self.imbalance.abs() <= CLOSED
     }
 
-    /// Returns true where the damping of integrators brought nothing, either.
+    /// Returns whether the energy balance closes and algorithmic dissipation adds no significant energy.
     pub fn are_sound(&self) -> bool {
         self.close() && self.created <= CLOSED
     }
@@ -84,26 +84,26 @@ impl Closing {
 /// Outcomes of scenes.
 #[derive(Debug, Default)]
 pub struct Survey {
-    /// Scenes in all.
+    /// Number of scenes [-].
     pub scenes: usize,
-    /// Scenes by fate.
+    /// Number of scenes by fate [-].
     pub fates: BTreeMap<&'static str, usize>,
-    /// By feature: how many ran for the whole span or as far as they may cost, of how many.
+    /// By feature: number of scenes that ran for the whole span or to their cost limit, and number of scenes [-].
     pub features: BTreeMap<&'static str, [usize; 2]>,
     /// Energy balances, by integrator.
     pub balances: BTreeMap<String, Vec<Closing>>,
     /// Scenes that break a claim, with the claim.
     pub broken: Vec<(usize, String)>,
-    /// Reasons given by scenes that could not be run.
+    /// Number of scenes by the reason why they were not run to the end [-].
     pub reasons: BTreeMap<String, usize>,
-    /// Scenes in which a step could not be made, with the reason.
+    /// Scenes in which a step failed, with the reason.
     pub stopped: Vec<(usize, String)>,
-    /// Most expensive communication step, and its scene.
+    /// Work of the most expensive communication step [-], and its scene.
     pub dearest: (f64, usize),
 }
 
 impl Survey {
-    /// Runs the scenes of these numbers.
+    /// Runs the scenes with these numbers.
     pub fn of(numbers: Range<usize>) -> Survey {
         let survey = Mutex::new(Survey::default());
         let (next, numbers_end) = (AtomicUsize::new(numbers.start), numbers.end);
@@ -175,19 +175,19 @@ impl Survey {
         }
     }
 
-    /// Share of scenes of a fate [-].
+    /// Share of scenes with a fate [-].
     pub fn share(&self, fate: &str) -> f64 {
         self.fates.get(fate).copied().unwrap_or(0) as f64 / self.scenes as f64
     }
 
-    /// Numbers of the energy balances of an integrator that close, of those that are sound, and of all [-].
+    /// Numbers of energy balances of an integrator: closed, sound, and all [-].
     pub fn closed(&self, integrator: &str) -> [f64; 3] {
         let balances = self.balances.get(integrator).map_or(&[][..], Vec::as_slice);
         let count = |which: fn(&Closing) -> bool| balances.iter().filter(|balance| which(balance)).count();
         [count(Closing::close), count(Closing::are_sound), balances.len()].map(|count| count as f64)
     }
 
-    /// Greatest error of the energy balances of an integrator, for any steps of a host [-].
+    /// Greatest error of the energy balances of an integrator, over all kinds of communication steps [-].
     pub fn worst(&self, integrator: &str) -> f64 {
         let found = self.balances.iter();
         let balances = found
@@ -199,7 +199,7 @@ impl Survey {
     }
 }
 
-/// A reason without its numbers and names.
+/// Returns a reason without its numbers and names.
 fn kind_of(reason: &str) -> String {
     let words = reason.split([' ', '"']);
     let plain = words.filter(|word| !word.contains(|c: char| c.is_ascii_digit()));

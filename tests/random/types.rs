@@ -9,12 +9,12 @@ use moorline::scene::{
 use crate::dice::Dice;
 use crate::plan::{Plan, Resists};
 
-/// Explicit steps that lines with explicit integration should allow [s]; shorter ones cost more than a scene may.
+/// Explicit time step that lines with explicit integration should allow [s]; shorter steps exceed the cost limit of a scene.
 const EXPLICIT_STEP: f64 = 1e-3;
-/// Fastest axial waves of lines that are not wild [m/s]: twenty times those in steel.
+/// Greatest speed of axial waves, except in wild lines [m/s]: twenty times that in steel.
 const AXIAL_SPEED: f64 = 1e5;
 
-/// A line type for lines of about the plan's size.
+/// Returns a line type for lines of about the plan's size.
 pub fn line_type(dice: &mut Dice, plan: &Plan) -> LineType {
     let mass = dice.size([1e-2, 1e3], [1e-15, 1e6]);
     let density = 8000.0 / dice.log(1.0, 20.0); // from chain to foam [kg/m³]
@@ -48,7 +48,7 @@ pub fn line_type(dice: &mut Dice, plan: &Plan) -> LineType {
     kind
 }
 
-/// Resistance to stretch: a stiffness from 1 kN to 10 TN, a table or a viscoelastic rope; and damping.
+/// Sets the axial stiffness, from 1 kN to 10 TN, a table or a viscoelastic law; and the damping.
 fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
     let beam = plan.resists == Resists::Torsion;
     let hanging = if beam { 5e3 } else { 5.0 } * mass * plan.gravity * plan.size;
@@ -93,7 +93,7 @@ fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
         1 => kind.axial_damping = Some((stiffness * dice.log(1e-7, 0.3)).clamp(1e-15, 1e15)),
         2 => kind.axial_damping = Some(0.0),
         3 => kind.damping_ratio = Some(dice.size([1e-3, 2.0], [1e-15, 100.0])),
-        // a leapfrog takes no damped joints
+        // leapfrogs do not allow damped joints
         _ if plan.resists == Resists::Bending && plan.is_leapfrog() => {}
         _ => {
             let ratio = dice.log(1e-3, 0.5);
@@ -106,7 +106,7 @@ fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
     }
 }
 
-/// Resistance to bending, and of beams to torsion and shear.
+/// Sets the bending stiffness, and for beams the torsional and shear stiffness.
 fn bending(dice: &mut Dice, plan: &Plan, kind: &mut LineType, diameter: f64) {
     let axial = kind.axial_stiffness.or(kind.static_stiffness).unwrap_or(1e6);
     let rod = axial * diameter * diameter / 16.0; // EI of a solid rod [N m²]
@@ -134,7 +134,7 @@ fn bending(dice: &mut Dice, plan: &Plan, kind: &mut LineType, diameter: f64) {
     }
 }
 
-/// A rod of a diameter [m] whose axial stiffness is that given [N].
+/// Returns a rod with a diameter [m] and an axial stiffness [N].
 fn solid(dice: &mut Dice, diameter: f64, axial: f64) -> SolidSection {
     let area = 0.25 * PI * diameter * diameter;
     SolidSection {

@@ -1,8 +1,8 @@
-//! Scenes damaged in every way that users and disks damage files: each is refused with the place of the fault, or is
-//! still a scene and then has an equilibrium of finite numbers, or a message with the reason why not. None panics,
-//! none hangs.
+//! Scenes damaged as users and disks damage files. Each is either refused with the place of the fault, or is
+//! still a scene; then it has an equilibrium of finite numbers, or a message with the reason why not. None panics
+//! or hangs.
 //!
-//! Mutations come from a generator with a fixed seed: the same files every time.
+//! Mutations come from a generator with a fixed seed, so the files are the same every time.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -15,22 +15,22 @@ use crate::common::Chance;
 use moorline::scene::{LoadError, load};
 use moorline::simulation::{Error, Simulation};
 
-/// Longest that one file may take in a busy test run [s]; most take milliseconds.
+/// Time limit for one file in a busy test run [s]; most take milliseconds.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A system with a bit of everything: a vessel, sections, a clump, a line through the surface, a motion.
+/// A system with a variety of features: a vessel, sections, a clump, a surface-piercing line, a motion.
 const SYSTEM: &str = include_str!("../scenes/barge.toml");
 
-/// Replacements of values: no numbers, sizes out of range, types that no key takes.
+/// Replacement values: not numbers, out of range, or of types that no key accepts.
 const VALUES: &str = "nan|inf|-inf|1e300|-1e300|1e-300|1e-15|1e-6|0|-1|-0.08|1e999|99999999999999999999|100001|1e12|\
     true|\"\"|\"x\"|\"anchor1\"|\"\\u0000\"|[]|[1.0]|[nan, 0.0, 0.0]|[[0.0, 0.0]]|{}|{ type = 1 }|0x|";
 
-/// The first `count` of these values.
+/// Returns the first `count` of these values.
 fn values(count: usize) -> Vec<&'static str> {
     VALUES.split('|').take(count).collect()
 }
 
-/// The shipped scenes that solve fast, and the system above.
+/// Returns the shipped scenes that solve fast, and the system above.
 fn seeds() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let shipped = ["oc3_catenary", "demo", "collar", "point_load", "power_cable"];
@@ -38,19 +38,19 @@ fn seeds() -> Vec<String> {
     shipped.iter().map(read).chain([SYSTEM.to_string()]).collect()
 }
 
-/// Numbers of the lines that hold `key = value`.
+/// Indices of the lines with an assignment `key = value`.
 fn assignments(lines: &[String]) -> Vec<usize> {
     let is_one = |line: &String| line.contains(" = ") && !line.trim_start().starts_with('#');
     (0..lines.len()).filter(|&i| is_one(&lines[i])).collect()
 }
 
-/// Numbers of the lines that hold a number: lengths, coefficients, positions.
+/// Indices of the assignments with a digit: lengths, coefficients, positions.
 fn numbers(lines: &[String]) -> Vec<usize> {
     let digits = |&i: &usize| lines[i].contains(|c: char| c.is_ascii_digit());
     assignments(lines).into_iter().filter(digits).collect()
 }
 
-/// The line with one of its numbers replaced.
+/// Replaces one of the numbers in a line.
 fn with_number(chance: &mut Chance, line: &str, new: &str) -> String {
     let begins = |&(at, c): &(usize, char)| {
         let before = line[..at].chars().next_back().unwrap_or('=');
@@ -66,7 +66,7 @@ fn with_number(chance: &mut Chance, line: &str, new: &str) -> String {
     format!("{}{new}{}", &line[..start], &rest[length..])
 }
 
-/// The file after one mutation.
+/// Returns the file after one mutation.
 fn mutated(chance: &mut Chance, seed: &str, kind: usize) -> Vec<u8> {
     let mut lines: Vec<String> = seed.lines().map(str::to_string).collect();
     let of_keys = *chance.one_of(&assignments(&lines));
@@ -82,7 +82,7 @@ fn mutated(chance: &mut Chance, seed: &str, kind: usize) -> Vec<u8> {
             lines[line] = with_number(chance, &lines[line], new);
         }
         4 => {
-            // a name is that of something else, or of nothing
+            // a name is replaced by that of another object
             let keys = ["name =", "from =", "to =", "on =", "type ="];
             let named = |i: &usize| keys.iter().any(|key| lines[*i].contains(key));
             let names: Vec<usize> = assignments(&lines).into_iter().filter(named).collect();
@@ -91,7 +91,7 @@ fn mutated(chance: &mut Chance, seed: &str, kind: usize) -> Vec<u8> {
             lines[line] = lines[line].replacen(&name(line), &name(other), 1);
         }
         5 => {
-            // a table is missing or comes twice
+            // a table is removed or repeated
             let heads: Vec<usize> = (0..lines.len()).filter(|&i| lines[i].starts_with('[')).collect();
             let start = *chance.one_of(&heads);
             let end = heads.iter().find(|&&head| head > start);
@@ -111,15 +111,15 @@ fn mutated(chance: &mut Chance, seed: &str, kind: usize) -> Vec<u8> {
 /// Outcome of a file.
 #[derive(Debug)]
 enum Fate {
-    /// Refused with its place, or with why it cannot be read as text.
+    /// Refused with its place, or with the reason why it is not text.
     Refused,
-    /// In equilibrium and through two steps, all numbers finite.
+    /// Solved in equilibrium and for two steps, with finite outputs.
     Solved,
-    /// Reported the reason for a missing equilibrium or step.
+    /// Reported the reason why the equilibrium or a step failed.
     Unsolved,
 }
 
-/// Reads a file and solves its statics where it is a scene.
+/// Reads a file and solves its statics if it is a scene.
 fn fate(path: &Path) -> Result<Fate, String> {
     let loaded = match load(path) {
         Ok(loaded) => loaded,
@@ -144,7 +144,7 @@ fn fate(path: &Path) -> Result<Fate, String> {
     }
 }
 
-/// Checks that every refusal names the file, and the line where the file is text.
+/// Checks that a refusal names the file, and the line if the file is text.
 fn refused(error: &LoadError) -> Result<Fate, String> {
     let list = error.list();
     let first = list.lines().next().unwrap_or("");
@@ -161,7 +161,7 @@ fn refused(error: &LoadError) -> Result<Fate, String> {
     }
 }
 
-/// Steps twice by a small step; a step may fail with a reason.
+/// Makes two short steps; a step may fail with a reason.
 fn moved(simulation: &mut Simulation) -> Result<Fate, String> {
     for _ in 0..2 {
         match simulation.advance(0.01) {
@@ -201,7 +201,7 @@ fn finite(simulation: &Simulation) -> Result<(), String> {
     }
 }
 
-/// The fate of bytes as a file, within [`PATIENCE`]; a panic is reported as one.
+/// Returns the fate of bytes as a file, within [`PATIENCE`]; a panic is reported as an error.
 fn fate_of(bytes: &[u8]) -> Result<Fate, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
@@ -232,11 +232,11 @@ fn three_hundred_mutated_scenes_are_refused_with_their_place_or_solved() {
         }
     }
     assert!(wrong.is_empty(), "{counts:?}\n{}", wrong.join("\n"));
-    // Most are mistakes; some, such as a coefficient left out, are scenes still.
+    // Most are mistakes; some, such as a missing coefficient, are still scenes.
     assert!(counts[0] >= 150 && counts[1] >= 20, "{counts:?}");
 }
 
-/// Lines that the mutation changed, for the message.
+/// Lines changed by the mutation, for the message.
 fn difference(seed: &str, bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let known: Vec<&str> = seed.lines().collect();

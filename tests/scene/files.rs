@@ -1,4 +1,4 @@
-//! Files that are no scenes, and the files that a scene names.
+//! Files that are not scenes, and files that a scene refers to.
 
 use std::fs;
 use std::path::Path;
@@ -87,7 +87,7 @@ fn all_mistakes_are_listed_in_the_order_of_the_file() {
     assert!(error.to_string().ends_with("(and 3 mistakes more)"));
 }
 
-/// Loads a scene whose fairlead follows a motion file with this text.
+/// Loads a scene whose fairlead follows a motion file with these contents.
 fn load_with_motion_file(folder: &Path, csv: &[u8]) -> Result<Scene, String> {
     let motion = "fairlead = { file = \"motion.csv\" }";
     let text = SCENE.replace("fairlead = { x = [[1.0, 10.0]] }", motion);

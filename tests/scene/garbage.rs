@@ -1,11 +1,11 @@
-//! Text that is anything.
+//! Arbitrary text.
 
 use moorline::scene::{InitialShape, MotionPath, Scene, TimeFunction};
 use proptest::prelude::*;
 
 use crate::{SCENE, said};
 
-/// Fails where reading the text panics, or refuses it without a place in it.
+/// Fails if reading the text panics, or refuses it without a place in the text.
 fn assert_read_or_refused_with_a_place(text: &str) {
     if let Err(mistake) = Scene::from_toml(text) {
         let span = mistake.span.as_ref();
@@ -18,7 +18,7 @@ fn assert_read_or_refused_with_a_place(text: &str) {
     }
 }
 
-/// Text with many of the keys that the format allows.
+/// Returns a text with many of the keys of the format.
 fn rich_text() -> String {
     SCENE
         .replace(

@@ -1,4 +1,4 @@
-//! Scenes as a user writes them: every refusal once with its place, files that are no scenes, text that is anything.
+//! Scenes as a user writes them: every refusal once with its place, files that are not scenes, arbitrary text.
 
 mod broken;
 #[path = "../common/mod.rs"]
@@ -10,7 +10,7 @@ mod words;
 
 use moorline::scene::Scene;
 
-/// A scene without a mistake that has a little of everything.
+/// A valid scene with a variety of features.
 const SCENE: &str = include_str!("../scenes/small.toml");
 
 /// Line, column, key and problem of the first mistake in a text, or `fine`.

@@ -1,4 +1,4 @@
-//! Every mistake once, in `refusals.txt`: line, column, key and problem that answer a change of the small scene.
+//! Every mistake once, in `refusals.txt`: a change of the small scene, and the line, column, key and problem reported.
 
 use crate::common::assert_answers;
 use crate::{SCENE, said};

@@ -1,4 +1,4 @@
-//! Lines in a current: the balance of a riser and of a towed cable, invariance under a moving frame, rest, energy, order.
+//! Lines in a current: equilibrium of a riser and of a towed cable, invariance in a moving frame, rest, energy, order.
 //!
 //! ```text
 //!      u(z) → ● top            claim: elements at rest -> the cable equation with drag, integrated independently
@@ -37,7 +37,7 @@ fn riser(elements: usize, current: &str) -> Scene {
 
 const SHEARED: &str = "{ profile = [[0.0, 1.1, 0.4], [-50.0, 0.8, 0.1], [-200.0, 0.2, -0.3]], factor = 1.2 }";
 
-/// The same current, written independently.
+/// The same current, programmed independently.
 fn sheared(z: f64) -> Vector3<f64> {
     let rows = [[-200.0, 0.2, -0.3], [-50.0, 0.8, 0.1], [0.0, 1.1, 0.4]];
     let pair = rows.windows(2).find(|pair| z <= pair[1][0]);
@@ -58,7 +58,7 @@ fn slope([r, pull]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
     [(1.0 + tension / STIFFNESS) * q, WEIGHT * Vector3::z() - drag]
 }
 
-/// The cable from the well under a pull [N] there, at every tenth of its length, by Runge and Kutta's method.
+/// The cable from the well with a given end force [N] there, at every tenth of its length, by the Runge-Kutta method.
 fn integrate(pull: Vector3<f64>) -> Vec<[Vector3<f64>; 2]> {
     let count = 20_000;
     let h = LENGTH / f64::from(count);
@@ -80,7 +80,7 @@ fn integrate(pull: Vector3<f64>) -> Vec<[Vector3<f64>; 2]> {
     samples
 }
 
-/// The cable whose pull at the well lets it end at the top, by Newton's method.
+/// The cable whose end force at the well makes it end at the top, by Newton's method.
 fn shoot() -> Vec<[Vector3<f64>; 2]> {
     let miss = |pull: Vector3<f64>| integrate(pull)[10][0] - Vector3::from(TOP);
     let mut pull = Vector3::new(1e4, 0.0, 6e4);
@@ -102,7 +102,7 @@ fn shoot() -> Vec<[Vector3<f64>; 2]> {
     integrate(pull)
 }
 
-/// Positions at every tenth of the length, and the force on the well.
+/// Positions at every tenth of the length [m], and the force on the well [N].
 fn at_rest(elements: usize) -> Vec<Vector3<f64>> {
     let simulation = start(&riser(elements, SHEARED));
     let tenths = (0..=10).map(|i| nodes(&simulation)[i * elements / 10]);
@@ -153,12 +153,12 @@ fn a_cable_with_a_free_end_streams_at_the_angle_of_balance() {
 
 const FLOW: [f64; 3] = [0.8, -0.3, 0.2];
 
-/// A sagging line whose top swings, in a current or, towed against it, in still water.
+/// A sagging line whose top swings, in a current or, towed against the current's direction, in still water.
 fn swinging(integrator: Integrator, towed: bool) -> Scene {
     let [x, y, z] = FLOW;
     let mut scene = riser(16, &format!("{{ velocity = [{x}, {y}, {z}] }}"));
     scene = with_integrator(scene, integrator, 0.02);
-    // the tables begin early: their first slope is none
+    // the tables begin early, since their initial slope is zero
     let rows = |swing: f64| {
         let drawn = if towed { 1.0 } else { 0.0 };
         let row = |k: i32| {
@@ -178,7 +178,7 @@ fn swinging(integrator: Integrator, towed: bool) -> Scene {
     scene
 }
 
-/// The state of the first simulation, seen from the water, for the second.
+/// The state of the first simulation, relative to the water, for the second.
 fn boosted(from: &Snapshot, to: &Snapshot) -> Snapshot {
     let flow = Vector3::from(FLOW);
     let [source, mut target] = [from, to].map(|snapshot| serde_json::to_value(snapshot).unwrap());
@@ -266,11 +266,11 @@ fn lines_at_rest_in_a_current_stay_at_rest_for_ten_minutes() {
     }
 }
 
-/// A riser in a current that comes and goes.
+/// A riser in a current that varies with time.
 fn tidal(integrator: Integrator, step: f64) -> Scene {
     let current = "{ profile = [[0.0, 1.4, 0.5], [-50.0, 0.8, 0.1], [-200.0, 0.2, -0.3]], factor = { step = [0.0, 0.2, 8.0, 1.3] } }";
     let mut scene = with_integrator(riser(16, current), integrator, step);
-    // an added mass alike in all directions has the same energy however the line turns
+    // the energy of an isotropic added mass does not depend on the orientation of the line
     scene
         .line_types
         .values_mut()
@@ -281,7 +281,7 @@ fn tidal(integrator: Integrator, step: f64) -> Scene {
 #[test]
 fn the_energy_balance_of_a_line_in_a_changing_current_closes_at_second_order_or_at_any_step() {
     for (integrator, coarse) in COARSE_STEPS {
-        // the explicit leapfrog closes to 4e-8 at its largest step, where the rounding of a hundred thousand sums shows
+        // the explicit leapfrog closes to 4e-8 at its largest step, limited by the rounding of a hundred thousand sums
         assert_balance_order(integrator, coarse, 1e-6, |step| {
             let mut simulation = start(&balanced(tidal(integrator, step)));
             run(&mut simulation, 0.4, 20);
@@ -317,7 +317,7 @@ fn a_quasi_static_line_in_a_current_is_in_the_equilibrium_of_its_elements() {
     assert!(gap(nodes(&simulation), nodes(&dynamic)) < 1e-9 * LENGTH);
 }
 
-/// A line between two points, slack to taut, on a seabed where there is one.
+/// A line between two points, slack to taut, over a seabed if requested.
 fn span(ratio: f64, weight: f64, seabed: bool, velocity: [f64; 3]) -> Draft {
     let seabed = if seabed { "seabed = { depth = 80.0 }" } else { "" };
     draft(format!(
@@ -420,8 +420,8 @@ fn check_says_which_current_there_is_and_what_is_not_modelled() {
     assert!(!words.contains("still water"), "{words}");
 }
 
-/// Taut rope along a current of 3 m/s, its top moved by a centimetre: drag is stiff compared with axial waves in
-/// steps as long as these allow.
+/// A taut rope along a current of 3 m/s, its top moved by a centimetre: drag is stiff compared with axial waves in
+/// steps at their stability limit.
 fn streaming(water: &str, drag: &str, [amplitude, period]: [f64; 2]) -> Scene {
     draft(format!(
         "water = {{ density = 1025.0{water} }}

@@ -1,4 +1,4 @@
-//! Water from the host: the flow at the nodes against built-in waves and currents, orders, saved states, refusals.
+//! Water flow from the host: the flow at the nodes against built-in waves and currents, orders, saved states, refusals.
 //!
 //! ```text
 //!   ~~~~~~~~~~~~~~~~~~~~~~
@@ -17,11 +17,11 @@ use moorline::scene::{Integrator, Scene};
 use moorline::simulation::{EndMotion, FLOW_COMPONENTS, Simulation, WaterFlow};
 use nalgebra::Vector3;
 
-/// A ripple that reaches no node, a few centimetres deep, but for whose sake built-in waves are sampled about every hundredth of a second.
+/// A ripple only a few centimetres deep that reaches no node; it makes the solver sample the built-in waves about every hundredth of a second.
 const RIPPLE: &str = "[2.9e-5, 0.05, 0.0, 0.0]";
 const RHO: f64 = 1025.0;
 
-/// A line with a sinker near one end, taut in every sea here and so without snaps, in the motion of the water that is given as keys of `[water]`.
+/// A line with a sinker near one end, taut in all these seas and therefore without snaps, in water with these keys of `[water]`.
 fn mooring(water: &str, integrator: Integrator) -> Scene {
     let scene = draft(format!(
         "water = {{ density = {RHO}, surface = false, {water} }}
@@ -47,14 +47,14 @@ fn waves(components: &str) -> String {
     components.replace("RIPPLE", RIPPLE)
 }
 
-/// A host with Airy's field.
+/// A host that computes Airy waves.
 struct Host {
     waves: Waves,
     flow: WaterFlow,
 }
 
 impl Host {
-    /// With the waves of a scene, for a simulation.
+    /// Returns a host with the waves of a scene, for a simulation.
     fn new(waves: &Scene, simulation: &Simulation) -> Host {
         let model = moorline::model::Model::new(waves).unwrap();
         Host {
@@ -63,7 +63,7 @@ impl Host {
         }
     }
 
-    /// Gives the flow of a time [s] at the places where it is due.
+    /// Sets the flow of a time [s] at the positions where it is required.
     fn give(&mut self, simulation: &mut Simulation, time: f64) {
         for line in 0..simulation.model().lines.len() {
             for node in 0..self.flow.node_count(line) {
@@ -76,7 +76,7 @@ impl Host {
     }
 }
 
-/// The motion of the fairlead [m].
+/// Motion of the fairlead [m].
 fn fairlead(t: f64) -> [f64; 3] {
     let ramp = (t / 5.0).min(1.0).powi(2);
     [
@@ -93,7 +93,7 @@ fn results(simulation: &Simulation) -> Vec<f64> {
     forces.chain(sinker.iter().copied()).collect()
 }
 
-/// Steps a simulation whose host knows the displacement at the end of every step; returns its results in time.
+/// Steps a simulation whose host gives the displacement at the end of every step; returns the results over time.
 fn history(
     simulation: &mut Simulation,
     step: f64,
@@ -112,7 +112,7 @@ fn history(
     rows
 }
 
-/// Greatest difference of two histories over the range of the second, of the worst result [-].
+/// Greatest difference of two histories, relative to the range of the second, over all results [-].
 fn difference(found: &[Vec<f64>], wanted: &[Vec<f64>]) -> f64 {
     let columns = (0..wanted[0].len()).map(|column| {
         let of = |rows: &[Vec<f64>]| -> Vec<f64> { rows.iter().map(|row| row[column]).collect() };
@@ -124,8 +124,8 @@ fn difference(found: &[Vec<f64>], wanted: &[Vec<f64>]) -> f64 {
     greatest(columns)
 }
 
-/// Difference of a run in built-in waves from one in the same field given by a host, both sampled once a step, in internal steps of
-/// at most a length [s].
+/// Difference between a run in built-in waves and one in the same field from a host, both sampled once per step, with internal steps of
+/// at most `longest` [s].
 fn difference_from_waves(sea: &str, integrator: Integrator, longest: f64) -> f64 {
     let (own, given) = (
         mooring(&waves(sea), integrator),
@@ -169,10 +169,10 @@ fn a_field_of_airy_from_the_host_is_the_built_in_waves_to_a_millionth() {
         Integrator::Bossak,
     ] {
         for sea in [SWELL, SEA] {
-            // between the samples the accelerations differ, by slopes that the host does not give
+            // between the samples the accelerations differ, because of slopes that the host does not set
             for (longest, limit) in [(0.0025, 1e-6), (0.01, 1e-9)] {
                 if integrator == Integrator::Leapfrog && longest == 0.01 {
-                    continue; // its steps are shorter
+                    continue; // its steps are shorter anyway
                 }
                 let error = difference_from_waves(sea, integrator, longest);
                 assert!(error < limit, "{integrator:?}, steps of {longest} s: {error:e}");
@@ -181,7 +181,7 @@ fn a_field_of_airy_from_the_host_is_the_built_in_waves_to_a_millionth() {
     }
 }
 
-/// A hosted mooring in a swell, started, with its host.
+/// A mooring with flow from a host in a swell, started, with its host.
 fn hosted(integrator: Integrator) -> (Simulation, Host) {
     let simulation = start(&mooring("flow = 'host'", integrator));
     let host = Host::new(&mooring(&waves(SWELL), integrator), &simulation);
@@ -205,7 +205,7 @@ fn a_saved_state_replays_the_flow_of_the_host_bit_for_bit() {
             history(&mut simulation, 0.1, 40, |simulation, end| {
                 host.give(simulation, end)
             });
-            // the flow of the next step is set before the state is saved, and is a part of it
+            // the flow of the next step is set before the state is saved, and is part of it
             assert_replays(simulation, start(&scene), |simulation| {
                 simulation.advance(0.1).unwrap();
                 let mut host = Host::new(&mooring(&waves(SWELL), integrator), simulation);
@@ -246,7 +246,7 @@ fn a_step_repeated_from_a_saved_state_is_made_in_the_flow_that_is_given_then() {
 fn without_interpolation_the_error_of_the_force_falls_with_the_square_of_the_step() {
     let scene = mooring("flow = 'host'", Integrator::GeneralisedAlpha);
     let smooth = Scene::from_toml(&scene.to_toml().replace("\"interpolate\"", "\"smooth\"")).unwrap();
-    // a ramp that ends later, for at its end the rate of the acceleration jumps
+    // a ramp that ends later, since the rate of the acceleration jumps at its end
     let field = mooring(
         &waves(SWELL).replace("ramp = 5.0", "ramp = 25.0"),
         Integrator::GeneralisedAlpha,
@@ -291,7 +291,7 @@ fn a_flow_of_zero_is_still_water() {
 
 #[test]
 fn a_steady_uniform_flow_is_a_current_of_its_velocity_and_adds_to_one() {
-    // on straight lines of given shape, which start alike: at rest in equilibrium a current already drags, and a flow does not
+    // on straight lines of given shape, which start equally: in equilibrium a current already exerts drag, whereas a flow does not
     let run = |water: &str, velocity: [f64; 3]| {
         let mut scene = mooring(water, Integrator::Leapfrog);
         for line in &mut scene.lines {

@@ -1,4 +1,4 @@
-//! Free points in the sea: clumps that sink and rest on the seabed, buoys that float, heave and hold lines up; mass of driven points.
+//! Free points in the sea: clumps that sink and rest on the seabed, buoys that float, heave and support lines; mass of driven points.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use moorline::scene::{InitialShape, Integrator, Scene, Strain};
 use moorline::simulation::Simulation;
 
-/// A body on a weightless thread of 1 g/m, slack from a point 40 m above.
+/// A body on a weightless thread of 1 g/m, slack, from a point 40 m above.
 ///
 ///      ● top              thread: 200 m in 4 elements, no diameter
 ///     / \
@@ -51,14 +51,14 @@ fn a_sinking_clump_reaches_its_terminal_velocity() {
     }
 }
 
-/// Radius of a sphere of a volume of 1 m³ [m].
+/// Radius of a sphere with a volume of 1 m³ [m].
 fn radius() -> f64 {
     (0.75 / PI).cbrt()
 }
 
 #[test]
 fn a_floating_sphere_heaves_with_the_stiffness_of_its_waterplane() {
-    let mass = 0.5 * RHO; // floats half under: ds/dz = 3/(4R)
+    let mass = 0.5 * RHO; // floats half submerged: ds/dz = 3/(4R)
     let waterplane = RHO * G * PI * radius() * radius();
     let omega = (waterplane / (mass + 0.25 * RHO)).sqrt();
     let body = format!("mass = {mass}, volume = 1.0, added_mass = 0.5");
@@ -100,7 +100,7 @@ fn a_buoy_dropped_on_the_water_settles_at_its_draught() {
     for integrator in JOINED {
         let scene = with_integrator(on_a_thread(3.0, &body, ""), integrator, 0.005);
         let (z, simulation) = heights(&scene, 0.1, 6000);
-        let fall = (2.0 * (3.0 - radius()) / G).sqrt(); // to the first touch of the water
+        let fall = (2.0 * (3.0 - radius()) / G).sqrt(); // until it touches the water
         let before = (fall / 0.1) as usize;
         let t = 0.1 * before as f64;
         assert_relative_eq!(z[before], 3.0 - 0.5 * G * t * t, max_relative = 2e-3);
@@ -108,7 +108,7 @@ fn a_buoy_dropped_on_the_water_settles_at_its_draught() {
         let last = &z[5900..];
         let mean = last.iter().sum::<f64>() / last.len() as f64;
         assert_relative_eq!(mean, draught, epsilon = 1e-4);
-        // quadratic drag lets the swing fade as 1/t
+        // with quadratic drag the oscillation decays as 1/t
         assert!(last.iter().all(|z| (z - draught).abs() < 3e-3));
         assert!(balance_error(&simulation).abs() < 1e-3 * mass * G * 3.0);
     }
@@ -136,7 +136,7 @@ fn a_buoy_on_a_slack_line_floats_where_its_weight_is_its_buoyancy_and_stays_ther
         let (z, simulation) = heights(&scene, 0.5, 1200);
         let body = simulation.model().point_index("body").unwrap();
         let excess = simulation.model().points[body].free().unwrap().at(z[0]).weight;
-        assert!(excess.abs() < 5.0, "{excess}"); // the part of the thread that hangs from it
+        assert!(excess.abs() < 5.0, "{excess}"); // part of the thread hangs from it
         assert!((z[1200] - z[0]).abs() < 1e-9 * 200.0, "{}", z[1200] - z[0]);
     }
 }
@@ -164,8 +164,8 @@ fn a_drogue_in_a_current_pulls_by_its_drag_whatever_the_step() {
     }
 }
 
-/// Free point between two straight ropes, the first of which starts as in `near`, and a third rope 5 km away that
-/// starts as in `far`.
+/// Free point between two straight ropes, the first of which starts with the shape `near`, and a third rope 5 km away that
+/// starts with the shape `far`.
 fn beside(near: &str, far: &str) -> Scene {
     draft("line_types.rope = { mass = 10.0, axial_stiffness = 1e6, axial_damping = 1e4 }")
         .fixed("a", [0.0; 3])
@@ -205,7 +205,7 @@ fn a_line_of_another_network_does_not_decide_where_a_free_point_starts() {
 
 #[test]
 fn a_network_whose_lines_have_shapes_of_their_own_needs_no_equilibrium_to_start() {
-    // a softening measure that cannot carry the clump: no equilibrium exists
+    // a softening strain measure that cannot carry the clump: no equilibrium exists
     let mut scene = beside("straight", "static");
     let mut weak = scene.line_types["rope"].clone();
     (weak.strain, weak.axial_stiffness) = (Strain::Logarithmic(0.5), Some(2e3));
@@ -231,7 +231,7 @@ fn check_says_where_each_free_point_starts() {
 
 const BODY: &str = "mass = 9000.0, volume = 1.2, drag_area = 2.5, added_mass = 0.7";
 
-/// Rope from the ground to a fairlead that heaves by 0.8 m in 5 s, of a kind, at a position [m] and with additional
+/// Rope from the ground to a fairlead that heaves by 0.8 m in 5 s, with the kind and position [m] of the fairlead, and additional
 /// keys of the fairlead and of the scene.
 fn heaving_fairlead(kind: &str, position: [f64; 3], [keys, rest]: [&str; 2], body: &str) -> Scene {
     draft(format!(
@@ -247,7 +247,7 @@ fn heaving_fairlead(kind: &str, position: [f64; 3], [keys, rest]: [&str; 2], bod
     .scene()
 }
 
-/// −(m − ρV)g − ½ρ CdA |v|v − (m + ρV Ca)a of the heave after a time [s], in [N].
+/// Vertical force of the heaving body after a time [s], −(m − ρV)g − ½ρ CdA |v|v − (m + ρV Ca)a [N].
 fn own_law(t: f64, moves: bool) -> f64 {
     let omega = 2.0 * PI / 5.0;
     let (v, a) = (
@@ -310,7 +310,7 @@ fn mass_on_a_vessel_has_a_moment_and_a_stiffness_about_its_origin() {
     for axis in 0..6 {
         assert_relative_eq!(force[axis] - bare[axis], expected[axis], epsilon = 1e-6 * w);
     }
-    // it hangs 6 m under the origin, as a pendulum
+    // it hangs 6 m below the origin, as a pendulum
     let turning = [
         (3, 3, 6.0),
         (4, 4, 6.0),

@@ -1,4 +1,4 @@
-//! Seabeds that slope, rise and resist sliding: Coulomb friction with stick in all integrators and in statics, planes and soundings.
+//! Sloping, uneven and rough seabeds: Coulomb friction with stick in all integrators and in statics, planes and soundings.
 
 use crate::common::*;
 use approx::assert_relative_eq;
@@ -15,7 +15,7 @@ const ALL: [Integrator; 4] = [
     Integrator::Bossak,
 ];
 
-/// A block of 1 t on a seabed, tied to a slack thread of 1 g/m that weighs nothing.
+/// A block of 1 t on a seabed, tied to a slack, weightless thread of 1 g/m.
 fn block(seabed: &str, force: &str) -> Scene {
     draft(format!(
         "seabed = {{ depth = 50.0, {seabed} }}
@@ -73,7 +73,7 @@ fn a_block_that_is_pushed_below_the_limit_stays_and_above_it_goes() {
             run(&mut simulation, 0.1, 160);
             let gone = place(&simulation, "block").x;
             if goes {
-                // pushed by 2 % of the friction for 10 s, after half a second of the ramp
+                // a net force of 2 % of the friction for 10 s, after half a second of ramp
                 assert_relative_eq!(gone, 0.5 * 0.02 * 0.4 * G * 100.0, max_relative = 0.02);
             } else {
                 assert!(gone.abs() < 1e-4, "{integrator:?}: {gone} m");
@@ -98,7 +98,7 @@ fn chain(seabed: &str, span: f64, elements: usize) -> Scene {
 
 #[test]
 fn tension_falls_by_mu_w_along_the_seabed_and_there_is_none_beyond() {
-    // on a seabed that gives way by millimetres the nodes lie at one height, except next to the touchdown, which are pressed in turns
+    // on a seabed with millimetres of deflection the nodes lie at one height, except next to the touchdown, where the pressure alternates
     let simulation = start(&chain("friction = 0.5, contact = \"as_given\"", 560.0, 60));
     let (w, l) = (simulation.model().lines[0].sections[0].weight, 10.0);
     let nodes = nodes(&simulation);
@@ -123,7 +123,7 @@ fn segment(simulation: &Simulation, i: usize) -> f64 {
 
 #[test]
 fn statics_with_friction_tends_to_the_closed_form_with_order_2() {
-    // a seabed that does not yield, as in the closed form; the nodes that land one by one make the errors scatter
+    // a nearly rigid seabed, as in the closed form; errors scatter, since nodes touch down one by one
     for (mu, span) in [(0.5, 560.0), (1.0, 575.0), (0.05, 580.0)] {
         let seabed = format!("friction = {mu}, contact = \"as_given\", stiffness = 3.0e8");
         let [coarse, fine] = [40, 640].map(|count| {
@@ -153,7 +153,7 @@ fn a_line_with_friction_starts_at_rest_and_stays_there_for_600_s() {
     }
 }
 
-/// A chain of 100 m in 20 elements that lies straight along x on the seabed, from the origin; `a` is the kind of its first end.
+/// A chain of 100 m in 20 elements, straight along x on the seabed, from the origin; `a` is the kind of its first end.
 fn lying(a: &str, length: f64) -> Scene {
     draft(
         "seabed = { depth = 20.0, friction = { transverse = 0.8, axial = 0.3 } }
@@ -167,7 +167,7 @@ fn lying(a: &str, length: f64) -> Scene {
     .scene()
 }
 
-/// Moves coupled points at a constant velocity [m/s].
+/// Moves coupled points at a constant velocity [m/s] for a time [s].
 fn drag_along(simulation: &mut Simulation, points: &[&str], velocity: Vector3<f64>, time: f64) {
     let step = 0.05;
     for i in 0..(time / step).round() as usize {
@@ -204,7 +204,7 @@ fn a_line_dragged_across_itself_resists_with_the_transverse_coefficient() {
         let forces = [End::A, End::B].map(|end| simulation.line_end_force(0, end));
         let pulled = -(forces[0].y + forces[1].y);
         println!("{integrator:?}: {pulled} N of {} N", 0.8 * 100.0 * G * 95.0);
-        // the ends, held on the seabed by a tension of 200 kN, carry part of the weight: half as much where a line rests half as deep
+        // the ends, held on the seabed by a tension of 200 kN, carry part of the weight, and half the weight where the line rests half as deep
         assert_relative_eq!(pulled, 0.8 * 100.0 * G * 95.0, max_relative = 0.025);
     }
 }
@@ -225,7 +225,7 @@ fn the_energy_balance_closes_over_a_seabed_with_slope_and_friction() {
     }
 }
 
-/// Swings the fairlead of a chain by 8 m in 12 s; tension at the fairlead at every 0.1 s, and the internal steps of the last.
+/// Moves the fairlead of a chain by 8 m with a period of 12 s; returns its tension every 0.1 s [N], and the internal steps of the last step [-].
 fn swung(
     scene: Scene,
     integrator: Integrator,
@@ -246,7 +246,7 @@ fn swung(
     (tensions, simulation.counters().substeps)
 }
 
-/// Claims that two runs have the same tensions.
+/// Asserts that two runs have the same tensions.
 fn assert_alike(one: &[f64], other: &[f64], tolerance: f64) {
     for (a, b) in one.iter().zip(other) {
         assert_relative_eq!(a, b, max_relative = tolerance);
@@ -289,7 +289,7 @@ fn soundings_of_a_plane_are_that_plane() {
     }
 }
 
-/// The depth that is given with soundings is that for waves.
+/// The depth given with soundings is used only for waves.
 #[test]
 fn the_mesh_of_a_cable_over_soundings_follows_them_and_not_the_depth() {
     let lengths = |seabed: &str| {
@@ -324,7 +324,7 @@ fn a_slope_of_zero_is_the_level_seabed() {
     }
 }
 
-/// A light line, stiff along itself, that floats up from the seabed with a free end and is drawn along by a slow current.
+/// A light line with high axial stiffness that floats up from the seabed with a free end and drifts in a slow current.
 fn floating(friction: f64) -> Simulation {
     draft(format!(
         "water = {{ density = 1025.0, current = {{ velocity = [0.05, -0.05, 0.0] }} }}
@@ -442,7 +442,7 @@ fn a_vessel_is_held_by_nodes_that_stick_and_released_by_nodes_that_slide() {
         start(&scene).vessel_stiffness(0).unwrap()[0][0]
     };
     let [smooth, rough] = [0.0, 1.0].map(stiffness);
-    // the shorter the part on the seabed that stretches with the fairlead, the stiffer is the line
+    // the shorter the part on the seabed that stretches with the fairlead, the stiffer the line
     assert!(rough > 1.001 * smooth && rough < 2.0 * smooth);
     println!("{smooth} N/m without, {rough} N/m with friction");
 }
@@ -463,7 +463,7 @@ fn a_point_under_a_seabed_that_is_not_level_is_noted() {
 
 #[test]
 fn a_line_that_hangs_from_a_softened_seabed_pulls_as_over_a_rigid_one() {
-    // at 20 elements the length of an element itself decides, where the line leaves the seabed
+    // with 20 elements, the length of the element at the touchdown determines the error
     for (elements, bar) in [(20, 2.5e-3), (40, 2.5e-4), (80, 5e-5)] {
         for (name, shift) in ["oc3_catenary", "oc4_chain"]
             .into_iter()
@@ -479,7 +479,8 @@ fn a_line_that_hangs_from_a_softened_seabed_pulls_as_over_a_rigid_one() {
             let lifts = simulation.line_end_force(0, End::A).z.abs() / rigid.horizontal();
             assert!(lifts < 4.6e-3, "{case}: {lifts:e} at the anchor");
             let laid = simulation.laid_length(0) - rigid.laid_length();
-            // the anchor lifts what it carries; a rise to held ends over five elements would lift less, and cost up to 1.45 times the error of tension
+            // the anchor lifts the part that it carries; a rise to fixed ends over five elements would lift less, but increase the error of
+            // tension up to 1.45 times
             assert!(laid.abs() < 5.0, "{laid} m");
         }
     }

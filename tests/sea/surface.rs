@@ -1,4 +1,4 @@
-//! Lines that pierce the still surface of the water: the part out of it has no buoyancy, no drag and no added mass.
+//! Surface-piercing lines in still water: the part above the surface has no buoyancy, no drag and no added mass.
 
 use std::f64::consts::PI;
 
@@ -14,19 +14,19 @@ use moorline::statics::catenary::{self, Section};
 const ROPE: &str = "mass = 25.0, diameter = 0.1, axial_stiffness = 2e6, axial_damping = 2e4, drag_normal = 1.2, drag_tangential = 0.1, \
                     added_mass_normal = 1.0, added_mass_tangential = 0.2";
 
-/// ρ g A of a diameter [N/m].
+/// Buoyancy per length ρ g A for a diameter [N/m].
 fn displaced(diameter: f64) -> f64 {
     RHO * G * 0.25 * PI * diameter * diameter
 }
 
-/// Water with a surface, and a type of rope with these keys.
+/// Water with a surface, and a rope type with these keys.
 fn afloat(rope: &str) -> Draft {
     draft(format!(
         "water = {{ density = {RHO}, surface = true }}\nline_types.rope = {{ {rope} }}"
     ))
 }
 
-/// A rope from 30 m under the surface to a coupled point 8 m over it, 40 m away.
+/// A rope from 30 m below the surface to a coupled point 8 m above it, 40 m away.
 ///
 ///                   ● b (40, 8)
 ///      ~~~~~~~~~~~ / ~~~~~
@@ -39,7 +39,7 @@ fn oblique(elements: usize) -> Draft {
     ends.line("line", ["a", "b"], "rope", 60.0, elements)
 }
 
-/// The same rope 20 m deeper, all of it under water.
+/// The same rope 20 m deeper, fully submerged.
 fn submerged(elements: usize) -> Scene {
     let mut scene = oblique(elements).scene();
     scene
@@ -89,7 +89,7 @@ fn the_static_forces_of_an_oblique_line_are_those_of_a_catenary_of_two_weights_t
     };
     let solve =
         |s: f64| catenary::solve(&[section(s, wet), section(60.0 - s, air)], 40.0, 38.0, None).unwrap();
-    // the length under water, by the height of its end
+    // submerged length, from the height of its end
     let exact = solve(bisect([20.0, 59.0], |s| solve(s).at(s).z - 30.0));
     let sizes = [16, 32, 64, 128, 256];
     let errors = sizes.map(|n| {
@@ -108,8 +108,8 @@ fn an_equilibrium_stays_at_rest_for_600_s() {
     }
 }
 
-/// The oblique rope, its upper end on a path that takes it into the water and out; leapfrogs without axial damping, which they take
-/// at a velocity that lags.
+/// The oblique rope with an upper end that moves into the water and out; leapfrogs without axial damping, which they evaluate
+/// at a lagged velocity.
 fn dipping(elements: usize, integrator: Integrator, step: f64) -> Scene {
     let moved = oblique(elements).and("motion.b = { x = [[3.0, 7.0]], z = [[9.0, 9.0]], ramp = 4.0 }");
     let mut scene = with_integrator(moved.scene(), integrator, step);
@@ -189,7 +189,7 @@ fn a_line_afloat_heaves_with_the_stiffness_of_its_waterplane() {
     let hose = format!("mass = {mass:?}, diameter = 0.2, axial_stiffness = 1e5, added_mass_normal = 1.0");
     let hose = afloat(&hose).fixed("a", [0.0; 3]).fixed("b", [10.01, 0.0, 0.0]);
     let simulation = hose.line("line", ["a", "b"], "rope", 10.0, count).start();
-    // the lowest mode of a chain on springs that are lumped by linear shape functions, half of the added mass in the water
+    // lowest mode of a chain on springs that are lumped by linear shape functions, with half of the added mass submerged
     let turn = (PI / count as f64).cos();
     let waterplane = RHO * G * diameter * (2.0 + turn) / 3.0;
     let tension = 1e5 * 1e-3 / 1.001 * 2.0 * (1.0 - turn);
@@ -215,7 +215,7 @@ fn a_line_under_water_moves_alike_with_and_without_a_surface() {
             };
             (0..40).map(tension).collect::<Vec<f64>>()
         });
-        // but for rounding: lines that may pierce the surface are laid out otherwise
+        // except for rounding: lines that may pierce the surface are computed differently
         for (with, without) in tensions[0].iter().zip(&tensions[1]) {
             assert_relative_eq!(with, without, max_relative = 1e-10);
         }

@@ -16,7 +16,7 @@ use moorline::scene::{Integrator, LineModel, Note, RegularWave, Scene, Sea, Wave
 use moorline::simulation::Simulation;
 use nalgebra::{Rotation3, Vector3};
 
-/// Waves of a scene as a sum of seas.
+/// Sets the waves of a scene to a sum of seas.
 fn set_waves(scene: &mut Scene, seas: Vec<Sea>) {
     scene.water.as_mut().unwrap().waves = Some(Waves { seas });
 }
@@ -35,12 +35,12 @@ fn regular(amplitude: f64, period: f64, direction: f64, ramp: Option<f64>) -> Ve
     }]
 }
 
-/// Force of a line on its ends, both together [N].
+/// Sum of the forces of a line on its two ends [N].
 fn on_both_ends(simulation: &Simulation) -> Vector3<f64> {
     simulation.line_end_force(0, End::A) + simulation.line_end_force(0, End::B)
 }
 
-/// A stiff upright piece of line, held at both ends, of one element.
+/// A short, stiff, vertical line of one element, fixed at one end and coupled at the other.
 fn piece(waves: &str) -> Scene {
     draft(format!(
         "water = {{ density = {RHO}, waves = {waves}, current = {{ velocity = [0.3, -0.2, 0.0] }} }}
@@ -87,11 +87,11 @@ fn the_force_of_waves_on_a_held_piece_is_that_of_morison_and_airy() {
         most = most.max(expected.norm());
     }
     assert!(most > 100.0);
-    // the slopes of the stretched velocity are those of the linear theory: an error of the order of (ka)², 2.5e-3 here, in between
+    // in between, the slopes of the stretched velocity are those of linear theory, which causes an error of the order of (ka)², 2.5e-3 here
     assert!(error < 2e-3 * most, "{error} N of {most} N");
 }
 
-/// A rope along y that weighs as much as water, held by nothing but a slack thread that the water does not act on, at a depth [m].
+/// A rope along y with the weight of the displaced water, held only by a slack thread without hydrodynamic forces, at a depth [m].
 fn drifter(depth: f64) -> Scene {
     let mass = RHO * 0.25 * PI * 0.2 * 0.2;
     draft(format!(
@@ -126,7 +126,7 @@ fn a_line_that_weighs_as_much_as_water_moves_in_the_orbits_of_the_water() {
                     places.push(nodes(&simulation)[2]);
                 }
             }
-            // without the drift of Stokes, from the first place of a period to the last
+            // without the Stokes drift, from the first position of a period to the last
             let drift = (places[places.len() - 1] - places[0]) / (places.len() - 1) as f64;
             let range = |axis: usize| {
                 let values = places
@@ -170,7 +170,7 @@ fn system(integrator: Integrator, waves: &str) -> Scene {
 
 const STORM: &str = "{ spectrum = \"jonswap\", significant_height = 5.0, peak_period = 9.0, spreading = 8.0, seed = 7, components = 60, ramp = 10.0 }";
 
-/// A line from a fixed point to one near the surface, of 16 elements, in waves along x and y.
+/// A line of 16 elements from a fixed point to one near the surface, in waves along x and y.
 fn riser(integrator: Integrator, step: f64) -> Scene {
     let scene = draft(format!(
         "water = {{ density = {RHO}, waves = [{{ regular = {{ height = 4.0, period = 8.0, direction = 0.4 }}, ramp = 6.0 }},
@@ -342,7 +342,7 @@ fn a_scene_turned_about_the_vertical_with_its_waves_moves_alike() {
 
 #[test]
 fn waves_push_along_the_way_they_travel() {
-    // a line that hangs along z in waves along y sways in the plane of y and z
+    // a vertical line in waves along y sways in the plane of y and z
     let mut scene = riser(Integrator::Leapfrog, 0.02);
     scene.points[1].position = [0.0, 0.0, -1.0];
     set_waves(&mut scene, regular(2.0, 8.0, 0.5 * PI, Some(8.0)));

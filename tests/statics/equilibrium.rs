@@ -13,7 +13,7 @@ fn equilibrium(model: &Model) -> Result<(State, Counters), StaticsError> {
     Ok((state, work.take_counters()))
 }
 
-/// The fraction of the load that an error says can be carried, times `factor` [-].
+/// The load fraction that can be carried according to an error, times `factor` [-].
 fn carried(error: StaticsError, factor: f64) -> f64 {
     assert!(error.to_string().contains("limit"), "{error}");
     let StaticsError::LimitLoad { load_fraction, .. } = error else {
@@ -24,7 +24,7 @@ fn carried(error: StaticsError, factor: f64) -> f64 {
 
 // ------------------------------------------------------------------ cable with a point load
 
-/// RamSeries validation case 2: two elements, EA 5000 N, 1 m between the supports, straight and unstressed at the start; the load
+/// RamSeries validation case 2: two elements, EA 5000 N, 1 m between the supports, initially straight and unstressed; the load
 /// pulls the middle down.
 ///
 ///   ●───────○───────●      L0/2 = 0.5 m each, λ = √(1 + 4u²/L0²), W = 4 (N/λ) u/L0
@@ -41,7 +41,7 @@ fn point_load(strain: &str, load: f64) -> Model {
     .model()
 }
 
-/// Deflection under a load [m] of a force N(ln λ) [N], by the closed form below `limit`.
+/// Deflection [m] under a load [N], from the closed form below `limit` [m] with an axial force N(λ) [N].
 fn deflection(load: f64, limit: f64, force: impl Fn(f64) -> f64) -> f64 {
     bisect([0.0, limit], |u| {
         let stretch = (1.0 + 4.0 * u * u).sqrt();
@@ -169,8 +169,8 @@ fn the_sag_tends_to_the_catenary_at_second_order() {
 
 // ------------------------------------------------------------------ sliding collar
 
-/// Span and sag [m] of MotionSolve's wire: 20 m, 0.2 kg/m, one end fixed, the other on a collar that slides along x under a load that rises to 20 N
-/// in 5 s.
+/// Span and sag [m] of MotionSolve's wire: 20 m, 0.2 kg/m, one end fixed, the other on a collar that slides along x under a load that increases
+/// to 20 N within 5 s.
 fn collar(elements: usize, axial_stiffness: f64) -> [f64; 2] {
     let wire = format!("{{ mass = 0.2, axial_stiffness = {axial_stiffness:e} }}");
     let model = draft(format!("gravity = 9.81\nline_types.cable = {wire}"))
@@ -220,7 +220,7 @@ fn the_collar_tends_to_the_inextensible_catenary_at_second_order_and_extrapolate
 
 // ------------------------------------------------------------------ invariants
 
-/// A line of 12 elements with a seabed below, in one piece or in two that meet in a free point.
+/// A line of 12 elements above a seabed, in one piece or in two joined at a free point.
 fn piece_or_pieces(split: bool, reversed: bool) -> Model {
     let ends = |a: &'static str, b: &'static str| if reversed { [b, a] } else { [a, b] };
     let seabed = draft(
@@ -251,7 +251,7 @@ fn splitting_a_line_at_a_free_point_or_reversing_it_changes_nothing() {
     assert!((split.points[2].position - nodes[8]).norm() < 1e-9);
 }
 
-/// Three lines from corners to a loaded joint; `order` is the order of the lines, `mirror` the sign of y.
+/// Three lines from corners to a loaded joint; `order` is the order of the lines and `mirror` the sign of y.
 fn star(order: [usize; 3], mirror: f64) -> Model {
     let corners = [[-30.0, 5.0, 4.0], [25.0, 22.0, -3.0], [10.0, -31.0, 7.0]];
     let mut star = draft("line_types.cable = { mass = 8.0, axial_stiffness = 2.0e6 }");
@@ -315,14 +315,14 @@ fn a_failure_leaves_the_state_as_it_was() {
 
 // ------------------------------------------------------------------ random scenes
 
-/// A cable of a weight [N/m] and an EA [N] over a seabed with these keys, where there is one.
+/// A cable of a weight [N/m] and EA [N], over a seabed with these keys if given.
 fn cable(weight: f64, ea: f64, seabed: Option<String>) -> Draft {
     let seabed = seabed.map_or(String::new(), |keys| format!("seabed = {{ {keys} }}\n"));
     let keys = format!("weight = {weight:e}, mass = 1.0, diameter = 0.1, axial_stiffness = {ea:e}");
     draft(format!("{seabed}line_types.cable = {{ {keys} }}"))
 }
 
-/// Slack to over-stretched, light to heavy, buoyant and weightless, EA 1e4 to 1e13 N, half of them over a seabed.
+/// Slack to over-stretched, light to heavy, buoyant and weightless lines, EA 1e4 to 1e13 N, half of them over a seabed.
 fn random_line(seed: &mut u64, class: usize) -> Model {
     let mut u = || random(seed);
     let length = 10f64.powf(1.0 + 2.0 * u());
@@ -348,7 +348,7 @@ fn random_line(seed: &mut u64, class: usize) -> Model {
         .model()
 }
 
-/// Two to four lines from random corners that meet in a free point, loaded or not, some on a slider, half of them over a seabed.
+/// Two to four lines from random corners joined at a free point, loaded or not, some on a slider, half of them over a seabed.
 fn random_network(seed: &mut u64, class: usize) -> Model {
     let mut u = || random(seed);
     let scale = 10f64.powf(1.0 + 1.5 * u());
@@ -389,7 +389,7 @@ fn random_network(seed: &mut u64, class: usize) -> Model {
     network.model()
 }
 
-/// Claims that this many random models have an equilibrium, found in a number of solves each on the mean.
+/// Asserts that this many random models have an equilibrium, with at most `solves` solves each on average.
 fn assert_solved(mut seed: u64, count: usize, solves: usize, model: fn(&mut u64, usize) -> Model) {
     let mut total = 0;
     for class in 0..count {

@@ -1,4 +1,4 @@
-//! Equilibria: assembled elements, closed forms of lines and networks, meshes, stiffness of vessels, random lines.
+//! Equilibria: assembled elements, closed forms of lines and networks, meshes, vessel stiffness, random lines.
 
 #[path = "../common/mod.rs"]
 mod common;

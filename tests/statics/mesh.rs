@@ -1,4 +1,4 @@
-//! The elements that lines get where a scene leaves them open.
+//! Elements of lines for which a scene leaves them open.
 
 use crate::common::*;
 use approx::assert_relative_eq;
@@ -20,7 +20,7 @@ fn lines_that_meet_share_elements_by_length_and_lines_alone_have_all_of_them() {
     }
 }
 
-/// The power cable held to a direction at its hang-off that it does not hang in.
+/// The power cable clamped at its hang-off in a direction other than that in which it would hang.
 fn bent_cable() -> Scene {
     let mut scene = shipped("power_cable");
     scene.lines[0].clamped_b = Some([-0.5, 0.0, 0.866]);
@@ -77,7 +77,7 @@ fn the_mesh_is_described_with_its_reasons() {
 
 #[test]
 fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
-    // a slack chain of 711 m whose top hangs 29 m above a seabed on which the rest lies
+    // a slack chain of 711 m; its top is 29 m above the seabed on which the rest lies
     let scene = draft(
         "seabed = { depth = 200.0, stiffness = 3e6, damping = 3e5 }
         line_types.chain = { mass = 100.0, weight = 860.0, diameter = 0.1, axial_stiffness = 5.4e8 }",
@@ -90,7 +90,7 @@ fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
         let simulation = start(scene);
         simulation.tension_b(0) / simulation.catenary(0).unwrap().tension_b() - 1.0
     };
-    assert!(tension_error(&scene).abs() > 0.05); // 40 elements, by the rule
+    assert!(tension_error(&scene).abs() > 0.05); // 40 elements, from the rule
     let settled = discretisation::select(&scene).unwrap();
     assert!(tension_error(&settled.scene).abs() < 0.02);
     let mesh = &settled.meshes[0];
@@ -122,7 +122,7 @@ fn an_equilibrium_alone_is_that_found_after_the_start() {
     }
 }
 
-/// Claims that the axial damping of every segment of a rope of 100 m with a damping ratio of 0.1 is that of `elements`: ζ L/n √(EA m) [N s].
+/// Asserts that the axial damping of every segment of a 100 m rope with a damping ratio of 0.1 is that for `elements` elements: ζ L/n √(EA m) [N s].
 fn assert_damping(elements: f64, section: &str, solver: &str) {
     let model = model(&format!(
         "line_types.rope = {{ mass = 4.0, axial_stiffness = 1e6, damping_ratio = 0.1 }}

@@ -1,5 +1,5 @@
 //! Equilibrium of random ordinary lines on elements: chains, wires and ropes from a rough or smooth seabed to a fairlead near the surface,
-//! with the elements that the rule gives or with 8 to 300.
+//! with the elements of the rule or with 8 to 300.
 //!
 //! ```text
 //!                          ● B, 0.05 of the depth under water      chains and wires sink and lie on a seabed with friction;
@@ -7,7 +7,7 @@
 //!   anchor A ●═════════╱    seabed
 //! ```
 //!
-//! Every line has a number and is always the same. A part of the long run, or a single line:
+//! Every line has a number and is reproducible. A part of the long run, or a single line:
 //!
 //! ```text
 //! LINES=120..121 cargo test --release --features moorline/slow-tests --test statics -- --nocapture ordinary::ten_thousand
@@ -28,7 +28,7 @@ const WATER: f64 = 1025.0;
 /// Gravity [m/s²].
 const GRAVITY: f64 = 9.80665;
 
-/// A material: mass over the square of the diameter [kg/m³], volume-equivalent diameter over the diameter [-], EA over the square of
+/// A material: mass divided by the square of the diameter [kg/m³], volume-equivalent diameter divided by the diameter [-], EA divided by the square of
 /// the diameter [N/m²].
 type Material = [f64; 3];
 
@@ -41,7 +41,7 @@ const SINKING: [Material; 3] = [
 /// Polypropylene rope.
 const FLOATING: Material = [560.0, 1.0, 1.542e10];
 
-/// A line to find the equilibrium of.
+/// A line whose equilibrium is computed.
 #[derive(Debug, Clone)]
 struct Line {
     depth: f64,
@@ -55,7 +55,7 @@ struct Line {
     elements: Option<usize>,
 }
 
-/// Random numbers.
+/// Random number generator.
 struct Dice(Random);
 
 impl Dice {
@@ -69,7 +69,7 @@ impl Dice {
 }
 
 impl Line {
-    /// Line of a number over a rough seabed.
+    /// Line with a number, over a rough seabed.
     fn rough(number: u64) -> Line {
         let mut dice = Dice(Random::new(number));
         let material = SINKING[dice.between(0.0, 3.0) as usize];
@@ -78,18 +78,18 @@ impl Line {
         Line::of(dice, material, friction, slack)
     }
 
-    /// Slack rope of a number that floats.
+    /// Floating slack rope with a number.
     fn floating(number: u64) -> Line {
         let mut dice = Dice(Random::new(number));
         let slack = dice.between(0.3, 1.2);
         Line::of(dice, FLOATING, 0.0, slack)
     }
 
-    /// Line whose length exceeds the chord by `slack` times [-] the excess of the path along the seabed and straight
-    /// up.
+    /// Line whose length exceeds the chord by `slack` [-] times the difference between the path along the seabed and straight
+    /// up and the chord.
     fn of(mut dice: Dice, material: Material, friction: f64, slack: f64) -> Line {
         let depth = dice.decades(10.0, 1000.0);
-        let thickness = dice.decades(0.02, 0.16); // of bar or rope [m]
+        let thickness = dice.decades(0.02, 0.16); // diameter of bar or rope [m]
         let square = thickness * thickness;
         let span = depth * dice.between(0.5, 4.0);
         let rise = 0.95 * depth;
@@ -133,8 +133,8 @@ impl Line {
         (self.mass - WATER * area) * GRAVITY
     }
 
-    /// Tension at end B in closed form [N], and tension along the seabed where the line leaves it, of a line this much longer and a rise this
-    /// much greater [m].
+    /// Tension at end B in closed form [N], and tension along the seabed at the touchdown, for a line that is longer and has a rise that is greater by
+    /// these differences [m].
     fn closed_form(&self, [longer, higher]: [f64; 2]) -> [f64; 2] {
         let (length, axial_stiffness) = (self.length + longer, self.axial_stiffness);
         let section = Section {
@@ -151,20 +151,20 @@ impl Line {
         [solved.tension_b(), solved.horizontal()]
     }
 
-    /// Least and greatest tension at end B [N] of a line that sinks, on elements of a length l and a seabed with a
+    /// Least and greatest tension at end B [N] of a sinking line, on elements of a length l and a seabed with a
     /// deflection of a depth [m].
     ///
-    /// The segments k that hang have one horizontal force H and vertical forces V_k = V_1 + (k − 1) w l, where the seabed still bears a part of the weight of the
-    /// node before the first, 0 ≤ V_1 ≤ w l; at end B, half an element farther, V = V_m + w l/2. Rise and excess of length over span are therefore
-    /// sums of l f(V_k) in place of the integrals of f dV/w from 0 to V, where f is V/T for the one and 1 − H/T for the other. The
-    /// sums are midpoint rules from V_1 − w l/2 to V. Their difference from the integrals is, of both f, whose slopes are at most 1/H,
+    /// The suspended segments k have one horizontal force H and vertical forces V_k = V_1 + (k − 1) w l, where the seabed still carries a part of the weight of
+    /// the node before the first, 0 ≤ V_1 ≤ w l; at end B, half an element farther, V = V_m + w l/2. The rise and the excess of length over span are therefore
+    /// sums of l f(V_k) instead of the integrals of f dV/w from 0 to V, where f is V/T for the rise and 1 − H/T for the excess. The
+    /// sums are midpoint rules from V_1 − w l/2 to V. For both f, whose slopes are at most 1/H, they differ from the integrals by
     ///
-    ///   (w l)²/(8 H) for the part between V_1 − w l/2 and 0, and (w l)²/(24 H) for the rule, over w,
+    ///   (w l)²/(8 H) for the part between V_1 − w l/2 and 0, and (w l)²/(24 H) for the rule, divided by w,
     ///
-    /// and, since 0 ≤ f ≤ 1, no more than l/2. The line on elements is therefore a line in closed form whose length
+    /// and, since 0 ≤ f ≤ 1, by no more than l/2. The line on elements is therefore a closed-form line whose length
     /// and rise differ by no more than δ = min(l/2, w l²/(6 H)) from those of the line. A soft seabed adds its
-    /// deflection under a resting node. Both are linear in these changes, and the tension falls with the length and
-    /// grows with the rise.
+    /// deflection under a resting node. Both effects are linear in these changes, and the tension decreases with the length and
+    /// increases with the rise.
     fn bounds(&self, [element, depth]: [f64; 2]) -> [f64; 2] {
         let [_, horizontal] = self.closed_form([0.0; 2]);
         let by_slope = self.weight() * element * element / (6.0 * horizontal);
@@ -177,7 +177,7 @@ impl Line {
         ]
     }
 
-    /// Length of the longest element and the greatest depth by which the seabed gives way under a resting node [m], solves, and tension at
+    /// Length of the longest element and greatest deflection of the seabed under a resting node [m], number of solves, and tension at
     /// end B [N].
     fn solved(&self) -> Result<([f64; 2], usize, f64), String> {
         let model = Model::new(&self.scene()).map_err(|error| error.to_string())?;
@@ -197,8 +197,8 @@ impl Line {
     }
 }
 
-/// Finds the equilibrium of the lines of these numbers: none may fail, and the tension of those that sink is that of
-/// the closed form, which has no water surface, within the error of the elements.
+/// Solves the equilibrium of the lines with these numbers: none may fail, and the tension of sinking lines equals that of
+/// the closed form, which has no water surface, within the discretisation error.
 fn claim(numbers: Range<u64>, line: fn(u64) -> Line) {
     let (mut failures, mut far, mut solves, mut most) = (vec![], vec![], 0, (0, 0));
     for number in numbers.clone() {
@@ -233,7 +233,7 @@ fn claim(numbers: Range<u64>, line: fn(u64) -> Line) {
     );
 }
 
-/// Lines that LINES requests, or all of the ten thousand.
+/// Lines specified by LINES, or all of the ten thousand.
 fn long_run() -> Range<u64> {
     let bound = |number: &str| number.parse().expect("LINES is two numbers, as 500..1000");
     let given = std::env::var("LINES").ok();
@@ -246,7 +246,7 @@ fn three_hundred_random_lines_with_friction_find_their_equilibrium() {
     claim(0..300, Line::rough);
 }
 
-/// The minimisation stalls on these lines where nodes stick with their full stiffness from the start.
+/// On these lines, the minimisation stalls if nodes stick with their full stiffness from the start.
 #[test]
 fn lines_on_which_many_nodes_are_about_to_slide_find_their_equilibrium() {
     for number in [922, 7623, 10_294, 19_983, 39_547] {
@@ -271,7 +271,7 @@ fn ten_thousand_random_slack_floating_ropes_find_their_equilibrium() {
     claim(long_run(), Line::floating);
 }
 
-/// Claims that the line of a type from a fixed to a coupled point over a seabed, dry, has an equilibrium.
+/// Asserts that a line in air from a fixed to a coupled point, with these keys, has an equilibrium.
 fn assert_solved(keys: &str, ends: [[f64; 3]; 2], length: f64, elements: usize) {
     let [a, b] = ends;
     let line = draft(keys).fixed("a", a).coupled("b", b);

@@ -1,4 +1,4 @@
-//! Quasi-static stepping: closed-form catenaries joined at free points, against closed forms, force balances and the assembled
+//! Quasi-static stepping: closed-form catenaries joined at free points, compared with closed forms, force balances and the assembled
 //! equilibrium.
 
 use crate::common::*;
@@ -12,13 +12,13 @@ use nalgebra::Vector3;
 
 // ------------------------------------------------------------------ sliding collar
 
-/// Span and sag of the inextensible wire at 20 N, g = 9.81 m/s² [m].
+/// Span and sag [m] of the inextensible wire at 20 N, g = 9.81 m/s².
 const COLLAR: [f64; 2] = [17.693_670_564, 4.086_064_837];
 /// Pull on the collar [N], and half the weight of the wire: 0.2 kg/m · 9.81 m/s² · 10 m.
 const PULL: f64 = 20.0;
 const HALF_WEIGHT: f64 = 19.62;
 
-/// The shipped scene with another mesh and stiffness [N], run to its end: the collar drawn out by 20 N within 5 s, 10 s in all.
+/// The shipped scene with another mesh and stiffness [N] at its end: the collar is pulled by 20 N within 5 s, 10 s in all.
 fn drawn_out(elements: usize, axial_stiffness: f64) -> Simulation {
     let mut collar = with_elements(shipped("collar"), elements);
     collar.line_types.get_mut("wire").unwrap().axial_stiffness = Some(axial_stiffness);
@@ -30,7 +30,7 @@ fn drawn_out(elements: usize, axial_stiffness: f64) -> Simulation {
         assert!(counters.substeps == 1 && counters.solves <= 12, "{counters:?}");
         solves += counters.solves;
     }
-    assert!(solves <= 320, "{solves}"); // three of the wire a step
+    assert!(solves <= 320, "{solves}"); // about three solves of the wire per step
     simulation
 }
 
@@ -111,7 +111,7 @@ fn a_saved_quasi_static_simulation_replays_bit_for_bit() {
 
 // ------------------------------------------------------------------ lines on the seabed
 
-/// Quasi-static lines of chain and rope over a seabed with a friction [-].
+/// Base of scenes with quasi-static lines of chain and rope over a seabed with a friction coefficient [-].
 fn over_seabed(friction: f64) -> Draft {
     draft(format!(
         "seabed = {{ depth = 50.0, stiffness = 3.0e6, friction = {friction} }}
@@ -122,7 +122,7 @@ fn over_seabed(friction: f64) -> Draft {
     .fixed("anchor", [0.0, 0.0, -50.0])
 }
 
-/// A chain with a rope above it, from an anchor on the seabed to a coupled point.
+/// A chain and a rope above it, from an anchor on the seabed to a coupled point.
 fn moored() -> Scene {
     let sections = [("chain", 150.0, Some(30)), ("rope", 60.0, Some(12))];
     let fairlead = over_seabed(0.6).coupled("fairlead", [190.0, 30.0, -5.0]);
@@ -193,7 +193,7 @@ fn a_line_with_an_end_under_the_seabed_rests_on_its_elements() {
 
 // ------------------------------------------------------------------ networks
 
-/// Three lines from two anchors and a coupled point above, which meet in a point that has weight.
+/// Three lines, from two anchors and a coupled point above, joined at a heavy point.
 fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
     draft(format!(
         "line_types.rope = {{ mass = 6.0, diameter = 0.08, axial_stiffness = {stiffness:e} }}
@@ -211,7 +211,7 @@ fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
     .scene()
 }
 
-/// Returns true where every line has a closed form.
+/// Returns whether every line has a closed form.
 fn all_closed(simulation: &Simulation) -> bool {
     simulation
         .state()
@@ -220,7 +220,7 @@ fn all_closed(simulation: &Simulation) -> bool {
         .all(|line| line.closed_form.is_some())
 }
 
-/// Force out of balance at a free point of some mass [kg], over the greatest tension there [-].
+/// Unbalanced force at a free point of a mass [kg], relative to the greatest tension there [-].
 fn imbalance(simulation: &Simulation, point: usize, mass: f64) -> f64 {
     let pull = Vector3::from(simulation.end_force(point)) - mass * simulation.model().gravity * Vector3::z();
     let lines = 0..simulation.model().lines.len();
@@ -247,7 +247,7 @@ fn the_lines_of_a_bridle_carry_the_weight_of_its_knot() {
             assert!(imbalance < 1e-9, "{stiffness}, {step}: {imbalance}");
             assert!(all_closed(&simulation));
         }
-        // five to eight of each line a step, although the fairlead moves by 0.8 m between steps and draws the lines taut
+        // five to eight solves per line and step, although the fairlead moves by 0.8 m between steps and pulls the lines taut
         assert!(total <= 60 * 27, "{stiffness}: {total}");
     }
 }
@@ -271,9 +271,9 @@ fn the_assembled_equilibrium_of_a_bridle_tends_to_the_catenaries_at_second_order
 
 #[test]
 fn a_line_split_at_a_free_point_hangs_as_the_whole_one() {
-    // weak enough that tension is left at the joint: where there is none, friction holds it anywhere in a range
+    // friction low enough that tension remains at the joint: without tension, friction holds it anywhere within a range
     let ends = over_seabed(0.05).coupled("fairlead", [190.0, 30.0, -5.0]);
-    // joined in the air, where it touches down, and on the seabed
+    // joined in suspension, at the touchdown, and on the seabed
     for first in [180.0, 120.0, 60.0, 20.0] {
         let parts = [("chain", first, Some(10)), ("chain", 210.0 - first, Some(20))];
         let mut whole = ends
@@ -326,7 +326,7 @@ fn a_heavy_free_point_rests_on_the_seabed_and_is_lifted_by_a_load() {
     assert!(count > 5 && lifted > -45.0, "{count} {lifted}");
 }
 
-/// Two knots, sinking or floating, over a seabed: each tied to an anchor, to a point above and to the other, slack to taut, in water.
+/// Two knots, sinking or floating, over a seabed in water: each tied to an anchor, to a point above and to the other, slack to taut.
 fn tangle(seed: &mut u64) -> Simulation {
     let mut tangle = draft(
         "seabed = { depth = 30.0, stiffness = 1.0e6 }\nwater.density = 1025.0\nsolver.integrator = 'quasi_static'",
@@ -388,7 +388,7 @@ fn random_networks_rest_on_their_catenaries_in_balance() {
                 let own = simulation.model().points[knot].free().unwrap().at(z).weight;
                 let mut pull = Vector3::from(simulation.end_force(knot)) - own * Vector3::z();
                 if z <= -30.0 + 0.02 {
-                    pull.z = pull.z.max(0.0); // the seabed carries it
+                    pull.z = pull.z.max(0.0); // the remainder is carried by the seabed
                 }
                 assert!(pull.norm() < 1e-9 * tension, "{case} {step}: {pull} {tension}");
             }
@@ -423,7 +423,7 @@ fn a_cable_of_green_strain_rests_on_its_elements() {
     }
 }
 
-/// The moored line of another strain measure, which has no closed form, with an axial damping [N s].
+/// The moored line with another strain measure, which has no closed form, and an axial damping [N s].
 fn on_elements(axial_damping: f64) -> Simulation {
     let mut scene = moored();
     for kind in scene.line_types.values_mut() {
@@ -456,8 +456,8 @@ fn a_line_on_its_elements_is_at_rest_however_fast_it_was_moved_there() {
 
 // ------------------------------------------------------------------ energy
 
-/// Error of the energy balance over the work that the ends did and took [-], after 12 s in which a point goes round within a reach [m] in communication steps
-/// of a part of a second; with the number of equilibria found.
+/// Error of the energy balance relative to the work transferred at the ends [-] after 12 s, in which a point moves around within a reach [m] in `parts`
+/// communication steps per second; and the number of equilibria solved.
 fn imbalance_of(scene: &Scene, point: usize, reach: f64, parts: usize) -> (f64, usize) {
     let mut scene = scene.clone();
     scene.solver.input_reconstruction = Reconstruction::Interpolate;
@@ -487,7 +487,7 @@ fn the_energy_balance_of_a_line_with_friction_on_the_seabed_closes_in_short_step
     }
 }
 
-/// The bridle in a current that acts on its knot only.
+/// The bridle in a current that acts only on its knot.
 fn bridle_in_current() -> Scene {
     let mut scene = bridle(
         8,

@@ -1,4 +1,4 @@
-//! The 6×6 stiffness of vessels: against differences of the force, against symmetry, and against published moorings.
+//! 6×6 stiffness of vessels: compared with differences of the force, with symmetry, and with published moorings.
 
 use crate::common::{Draft, draft, greatest, start};
 use approx::assert_relative_eq;
@@ -7,12 +7,12 @@ use moorline::scene::{MotionPath, Scene, part};
 use moorline::simulation::Simulation;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-/// A pose away from all symmetries [m, rad].
+/// A pose without symmetries [m, rad].
 const POSE: [f64; 6] = [0.6, -0.4, 0.3, 0.05, -0.08, 0.3];
 
-/// Three lines on a seabed, as a deck describes them.
+/// Three lines on a seabed.
 struct Deck {
-    /// Radius and depth [m].
+    /// Radius and depth of the anchors [m].
     anchor: [f64; 2],
     fairlead: [f64; 2],
     length: f64,
@@ -128,7 +128,7 @@ fn matrix(rows: [[f64; 6]; 6]) -> Matrix6<f64> {
     Matrix6::from_fn(|i, j| rows[i][j])
 }
 
-/// Minus the change of the force with displacements and rotations about the global axes, by central differences of equilibria.
+/// Negative derivative of the force with respect to displacements and rotations about the global axes, from central differences of equilibria.
 fn differences(scene: &Scene, pose: [f64; 6], step: f64) -> Matrix6<f64> {
     let mut simulation = posed(scene, pose);
     let angles = Vector3::new(pose[3], pose[4], pose[5]);
@@ -151,7 +151,7 @@ fn differences(scene: &Scene, pose: [f64; 6], step: f64) -> Matrix6<f64> {
     )
 }
 
-/// Greatest difference of the blocks of force and moment by displacement and rotation, each over its own size [-].
+/// Greatest difference of the blocks of force and moment against displacement and rotation, each relative to its own norm [-].
 fn difference(a: &Matrix6<f64>, b: &Matrix6<f64>) -> f64 {
     let blocks = [(0, 0), (0, 3), (3, 0), (3, 3)];
     let error = |(i, j): (usize, usize)| {
@@ -175,7 +175,7 @@ fn the_stiffness_of_elements_is_the_slope_of_their_force() {
     let smooth = Deck { friction: 0.0, ..OC3 };
     assert_is_slope(&smooth.scene(20, ""), 1e-4, 1e-5);
     assert_is_slope(&bridle(""), 1e-4, 1e-5);
-    // Every equilibrium lays the lines again on a seabed with friction, whose nodes the stiffness holds in place:
+    // Every equilibrium lays the lines anew on a seabed with friction, whereas the stiffness keeps their nodes in place:
     // 1.9e-4.
     assert_is_slope(&OC3.scene(20, ""), 1e-4, 1e-3);
 }
@@ -194,7 +194,7 @@ fn the_stiffness_in_a_current_has_the_change_of_the_drag() {
         .line("umbilical", ["end", "hang"], "umbilical", 150.0, 60)
         .scene();
     let stiffness = matrix(posed(&scene, [0.0; 6]).vessel_stiffness(0).unwrap());
-    // as `differences`, which adds nothing to the angles of the reference attitude
+    // with a level reference attitude, since `differences` adds nothing to its angles
     let mut level = scene.clone();
     level.vessels[0].attitude = [0.0; 3];
     assert_is_slope(&level, 1e-2, 1e-3);
@@ -244,7 +244,7 @@ fn a_line_with_both_ends_on_a_vessel_holds_it_nowhere() {
     let weight = 20.0 * 9.80665 * 20.0;
     let by_displacement = stiffness.fixed_columns::<3>(0).norm();
     assert!(by_displacement < 1e-6 * weight, "{by_displacement}");
-    let yaw = stiffness.column(5).norm(); // a turn about the vertical takes it along
+    let yaw = stiffness.column(5).norm(); // a rotation about the vertical rotates the mooring as well
     let moment = Vector6::from(simulation.vessel_force(0))
         .fixed_rows::<3>(3)
         .norm();
@@ -312,7 +312,7 @@ fn a_buoy_at_the_surface_stiffens_closed_forms_as_it_stiffens_elements() {
     assert!(error < 2e-3, "{error:e}: {closed} {solved}");
 }
 
-/// Diagonal of the stiffness of the closed forms, and the vertical force [N/m, N m/rad, N].
+/// Diagonal of the closed-form stiffness, and the vertical force [N/m, N m/rad, N].
 fn published(deck: &Deck) -> ([f64; 6], f64) {
     let hung = start(&deck.scene(20, "")).on_catenaries();
     let (force, stiffness) = (hung.vessel_force(0), hung.vessel_stiffness(0).unwrap());
@@ -326,7 +326,7 @@ fn assert_close(value: f64, expected: f64, tolerance: f64) {
 
 #[test]
 fn oc3_hywind_has_its_published_stiffness() {
-    // Jonkman (2010), NREL/TP-500-47535, without the yaw spring that stands for the crowfoot
+    // Jonkman (2010), NREL/TP-500-47535, without the yaw spring that represents the crowfoot
     let (diagonal, vertical) = published(&OC3);
     let expected = [41_180.0, 41_180.0, 11_940.0, 311.1e6, 311.1e6, 11.56e6];
     diagonal
@@ -356,7 +356,7 @@ fn elements_converge_to_the_stiffness_of_the_closed_form() {
         let [closed, solved] = [closed, simulation.vessel_stiffness(0)].map(|k| matrix(k.unwrap()));
         difference(&solved, &closed)
     });
-    // not evenly: the node at the touchdown is on the seabed or off it
+    // irregular, since the node at the touchdown is either on the seabed or off it
     assert!(
         errors[0] < 0.08 && errors[1] < 0.015 && errors[2] < 0.001,
         "{errors:?}"

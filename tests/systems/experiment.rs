@@ -1,5 +1,5 @@
 //! Comparison with an experiment: all conditions of Bergdahl et al. (2016) with one set of parameters, run by the
-//! example that compares them.
+//! comparison example.
 
 #[allow(dead_code)] // the example's own main
 #[path = "../../examples/chain_experiment.rs"]
@@ -17,7 +17,7 @@ fn errors_of(scene: &Scene) -> Errors {
     found
 }
 
-/// Errors of the scene as it is, computed once for all tests.
+/// Errors of the shipped scene, computed once for all tests.
 fn errors_as_shipped() -> Errors {
     static FOUND: OnceLock<Errors> = OnceLock::new();
     *FOUND.get_or_init(|| errors_of(&scene().unwrap()))

@@ -1,4 +1,4 @@
-//! Hosts at the edge of sense: steps without end, displacements beyond the scene, too few samples a period.
+//! Hosts with extreme inputs: excessive steps, displacements beyond the scene, too few samples per period.
 
 use std::time::Instant;
 
@@ -18,7 +18,7 @@ fn a_communication_step_without_end_is_refused_at_once_in_waves_as_in_still_wate
         let before = simulation.snapshot().clone();
         for step in [1e6, 1e7, 1e9, 1e15] {
             if name == "oc3_catenary" && step < 1e9 {
-                continue; // in still water, some steps that can be made
+                continue; // in still water, some of these steps are feasible
             }
             let begun = Instant::now();
             assert_says(
@@ -75,16 +75,16 @@ fn angles_beyond_a_thousand_turns_are_refused() {
     );
 }
 
-/// Result of a host that gives displacements a number of times a period.
+/// Result of a host that sets displacements several times per period.
 struct Hosted {
-    /// Error of tension over its variation [-].
+    /// Error of the tension relative to its variation [-].
     error: f64,
-    /// The greatest that `solver.input_error` was in the second half [-].
+    /// Greatest value of `solver.input_error` in the second half [-].
     estimate: f64,
     warning: Option<String>,
 }
 
-/// Error of tension at B of the first line, RMS over its standard deviation, and its estimate, with displacements given `points` times a `period` [s].
+/// RMS error of the tension at B of the first line, over its standard deviation, and its estimate, with displacements set `points` times per `period` [s].
 fn hosted(model: &Simulation, period: f64, points: f64, velocities: bool) -> Hosted {
     let (step, end) = (period / points, 12.0 * period + 20.0);
     let [mut exact, mut host] = [model.clone(), model.clone()];
@@ -119,7 +119,7 @@ fn hosted(model: &Simulation, period: f64, points: f64, velocities: bool) -> Hos
     }
 }
 
-/// Error of inputs above which there is a warning [-]: 0.6 of the tolerance of 2 %.
+/// Error of inputs above which a warning is given [-]: 0.6 of the tolerance of 2 %.
 const ALLOWED: f64 = 0.012;
 
 /// Scenes with the shortest period of their motion [s].
@@ -129,8 +129,8 @@ const SAMPLED: [(&str, f64); 3] = [
     ("taut_polyester", 8.0),
 ];
 
-/// Light lines, whose tension follows the acceleration of their end. 21 points come at the frequency of the lowest axial mode of `lazy_wave`, 2.4 Hz, and 17 at
-/// that of `hanging_riser`, 1.9 Hz: tension is then off by its whole variation.
+/// Light lines, whose tension follows the acceleration of their ends. With 21 points the sampling frequency equals that of the lowest axial mode of
+/// `lazy_wave`, 2.4 Hz, and with 17 points that of `hanging_riser`, 1.9 Hz: the error of the tension is then as large as its variation.
 const LIGHT: [(&str, f64); 3] = [("power_cable", 9.0), ("lazy_wave", 9.0), ("hanging_riser", 9.0)];
 
 #[test]
@@ -144,7 +144,7 @@ fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
                 estimate,
                 warning,
             } = hosted(&model, period, points, velocities);
-            // the estimate is relative to the variation of a tension that contains the error
+            // the estimate is relative to the variation of a tension that includes the error
             let ratio = estimate * error.hypot(1.0) / error;
             println!("{name}, {points} points, velocities {velocities}: {error:.4} estimated {estimate:.4}");
             let what = format!("{name}, {points} points, velocities {velocities}");
@@ -160,7 +160,7 @@ fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
     }
 }
 
-/// A light hose beside the riser of `lazy_wave`, from its hang-off to another floater at rest.
+/// A light hose next to the riser of `lazy_wave`, from its hang-off to another floater at rest.
 const HOSE: &str = "
     [line_types.hose]
     mass = 60.0
@@ -260,7 +260,7 @@ fn interpolated_motion_with_velocities_is_off_by_the_curvature_of_cubics_at_most
         for points in [12.0, 17.0] {
             let error = hosted(&model, period, points, true).error;
             let curvature = (std::f64::consts::TAU / points).powi(2) / 12.0;
-            let most = 1.2 * curvature; // axial modes without damping add to it
+            let most = 1.2 * curvature; // undamped axial modes add to it
             assert!(error < most, "{name}, {points} points: {error}, {curvature}");
         }
     }

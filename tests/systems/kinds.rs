@@ -1,5 +1,5 @@
-//! Mooring systems of the kinds that are built: a riser hanging in a current, a catenary with a clump weight, a bridle with a free
-//! plate, a lazy wave. Their equilibria are checked against a balance of forces drawn up here, from the scene's own words.
+//! Typical mooring systems: a riser hanging in a current, a catenary with a clump weight, a bridle with a free
+//! plate, a lazy wave. Their equilibria are compared with a force balance computed here, directly from the scene.
 //!
 //! ```text
 //!    → ● hang_off     ● fairlead       port ●             ● hang_off
@@ -18,10 +18,10 @@ use nalgebra::Vector3;
 
 const SYSTEMS: [&str; 4] = ["hanging_riser", "clump_weight", "bridle", "lazy_wave"];
 
-/// A current that no symmetry of a system helps with.
+/// A current in a general direction, without any symmetry of a system.
 const OBLIQUE: &str = "profile = [[0.0, 0.7, 0.5], [-60.0, 0.3, 0.4], [-200.0, 0.1, -0.1]]";
 
-/// Every system as it is shipped, and in a current across it.
+/// Every system as shipped, and with an oblique current.
 fn systems() -> Vec<(String, Scene)> {
     let both = |name: &str| {
         let mut drifting = shipped(name);
@@ -35,7 +35,7 @@ fn systems() -> Vec<(String, Scene)> {
     SYSTEMS.into_iter().flat_map(both).collect()
 }
 
-/// The current at a height z [m/s], from the rows that the scene gives.
+/// Current at a height z [m/s], from the rows in the scene.
 fn current(scene: &Scene, z: f64) -> Vector3<f64> {
     let water = scene.water.as_ref().unwrap();
     let Some(mut rows) = water.current.as_ref().and_then(|c| c.profile.clone()) else {
@@ -55,7 +55,7 @@ fn wet_weight(scene: &Scene, kind: &LineType) -> f64 {
     (kind.mass.unwrap() - water.density * area) * scene.gravity
 }
 
-/// Drag of the current on a length [m] of a line type that lies along `t` [N].
+/// Drag of the current on a length [m] of a line type with unit tangent `t` [N].
 fn drag(scene: &Scene, kind: &LineType, length: f64, t: Vector3<f64>, z: f64) -> Vector3<f64> {
     let u = current(scene, z);
     let along = u.dot(&t) * t;
@@ -65,8 +65,8 @@ fn drag(scene: &Scene, kind: &LineType, length: f64, t: Vector3<f64>, z: f64) ->
         + PI * kind.drag_tangential.unwrap_or(0.0) * along.norm() * along)
 }
 
-/// Weight, buoyancy, drag of the current and push of the seabed on every node of a line [N], end nodes with their half of a segment, and
-/// the tensions of its segments [N]. The springs of the seabed are those of the model.
+/// Weight, buoyancy, drag of the current and seabed force on every node of a line [N], with half a segment at end nodes, and
+/// the tensions of its segments [N]. The stiffness of the seabed is that of the model.
 fn loads(
     scene: &Scene,
     number: usize,
@@ -109,7 +109,7 @@ fn loads(
     (forces, pulls)
 }
 
-/// Weight, buoyancy and drag of a free point deep in the water [N].
+/// Weight, buoyancy and drag of a free point in deep water [N].
 fn point_load(scene: &Scene, point: &Point, place: Vector3<f64>) -> Vector3<f64> {
     let density = scene.water.as_ref().unwrap().density;
     let u = current(scene, place.z);
@@ -117,7 +117,7 @@ fn point_load(scene: &Scene, point: &Point, place: Vector3<f64>) -> Vector3<f64>
     lift * scene.gravity * Vector3::z() + 0.5 * density * point.drag_area.unwrap_or(0.0) * u.norm() * u
 }
 
-/// The scene with the elements that the model gave its sections written out.
+/// The scene with the element numbers that the model gave its sections.
 fn with_its_elements(mut scene: Scene, simulation: &Simulation) -> Scene {
     for (line, built) in scene.lines.iter_mut().zip(&simulation.model().lines) {
         let mut lengths = built.segments.length.iter();
@@ -133,8 +133,8 @@ fn with_its_elements(mut scene: Scene, simulation: &Simulation) -> Scene {
     scene
 }
 
-/// Greatest force out of balance over the weight of all lines: at a node or free point, and of each line and of the whole as the
-/// program reports their end forces.
+/// Greatest unbalanced force relative to the weight of all lines: at nodes and free points, and for each line and the whole system, from the
+/// reported end forces.
 struct Imbalance {
     node: f64,
     whole: f64,
@@ -190,20 +190,20 @@ fn systems_at_rest_are_in_balance_node_by_node_and_as_a_whole() {
         let simulation = start(&scene);
         let found = imbalance(&scene, &simulation);
         println!("{name}: {:.1e} {:.1e}", found.node, found.whole);
-        // in a current, end forces take the drag along the last element as linear, while the nodes have it lumped
+        // in a current, end forces contain the drag along the last element as linear, whereas the nodes have it lumped
         let flows = scene.water.as_ref().is_some_and(|water| water.current.is_some());
         let whole = if flows { 2e-3 } else { 1e-8 };
         assert!(found.node < 1e-8 && found.whole < whole, "{name}");
     }
 }
 
-/// Returns true where an integrator serves a scene: the axial-implicit leapfrog has no free points.
+/// Returns whether an integrator supports a scene: here, the axial-implicit leapfrog is not used with free points.
 fn serves(integrator: Integrator, scene: &Scene) -> bool {
     let free = |point: &Point| point.kind == PointKind::Free;
     integrator != Integrator::AxialImplicit || !scene.points.iter().any(free)
 }
 
-/// Claims that a system stays where it is for ten minutes.
+/// Asserts that a system remains at rest for ten minutes.
 fn assert_rest(name: &str, mut scene: Scene, integrator: Integrator) {
     scene.solver.integrator = integrator;
     let drift = relative_drift(&scene, 600);
@@ -224,7 +224,7 @@ fn systems_at_rest_stay_at_rest_for_ten_minutes_by_every_integrator_and_the_one_
     }
 }
 
-/// A line of two ropes with a clump between them, or a bridle with a plate, in water, driven at its held ends.
+/// Two ropes with a clump between them, or a bridle with a plate, in water, driven at the prescribed ends.
 fn driven(bridle: bool, integrator: Integrator, step: f64) -> Scene {
     let swing = |name: &str, x: f64| {
         format!("\nmotion.{name} = {{ x = [[{x}, 6.0]], y = [[1.5, 5.0]], z = [[1.0, 4.0]], ramp = 4.0 }}")
@@ -266,7 +266,7 @@ fn halving_the_time_step_quarters_the_error_of_a_clump_line_and_a_bridle() {
     }
 }
 
-/// Free points of 800 kg at `knots`, anchored by chains to a ring of three anchors, held up by a rope to a buoy's place in the middle.
+/// Free points of 800 kg at `knots`, a ring of three anchors, and coupled points above in the middle and on a small ring; `lines` of chain join them.
 fn joints(knots: &[[f64; 3]], lines: &[(&str, &str, f64)]) -> Scene {
     let turned = |radius: f64, z: f64, turn: usize| {
         let angle = 2.0 * PI * turn as f64 / 3.0;
@@ -294,7 +294,7 @@ fn joints(knots: &[[f64; 3]], lines: &[(&str, &str, f64)]) -> Scene {
     joints.scene()
 }
 
-/// Three lines at one point.
+/// Three legs and a line to the middle, joined at one point.
 fn y_joint() -> Scene {
     let legs = [
         ("a0", "k0", 240.0),
@@ -305,7 +305,7 @@ fn y_joint() -> Scene {
     joints(&[[0.0, 0.0, -40.0]], &legs)
 }
 
-/// Three points tied to each other, each to an anchor and to the vessel.
+/// Three interconnected points, each with a line to an anchor and one to the vessel.
 fn delta_joint() -> Scene {
     let knots = [[30.0, 0.0, -25.0], [-15.0, 26.0, -25.0], [-15.0, -26.0, -25.0]];
     let mut lines = Vec::new();
@@ -337,7 +337,7 @@ fn y_and_delta_joints_are_in_balance_turn_with_their_symmetry_and_stay_at_rest()
     }
 }
 
-/// A clump on `count` equal wires from one anchor and on as many to one fairlead, all together always the same wire. In the dry.
+/// A clump on `count` equal wires from one anchor and as many to one fairlead, equivalent to the same wire for any count. In air.
 fn strands(count: usize, integrator: Integrator) -> Scene {
     let part = 1.0 / count as f64;
     let mut strands = draft(format!(

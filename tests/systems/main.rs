@@ -1,4 +1,4 @@
-//! Whole mooring systems: kinds that are built, promised errors, an experiment, hosts at the edge, unfriendly scenes.
+//! Whole mooring systems: typical systems, error claims, an experiment, extreme hosts, difficult scenes.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,9 +1,9 @@
-//! Hard first looks: coarse runs of unfriendly lines. None may blow up.
+//! Coarse runs of difficult lines. None may diverge.
 
 use crate::common::*;
 use moorline::scene::{Integrator, MotionPath, Scene};
 
-/// A change to a scene that makes it harder.
+/// A change that makes a scene more difficult.
 type Change = fn(&mut Scene);
 
 fn scale_seabed(scene: &mut Scene) {
@@ -58,7 +58,7 @@ const CHANGES: [(&str, Change); 9] = [
     ("motion × 2", double_motion),
 ];
 
-/// Greatest tension of a coarse run, over the static tension at the fairlead [-].
+/// Greatest tension in a coarse run, relative to the static tension at the fairlead [-].
 fn greatest_tension(scene: &Scene, duration: f64) -> f64 {
     let mut simulation = following(scene);
     let at_rest = simulation.tension_b(0);
@@ -71,7 +71,7 @@ fn greatest_tension(scene: &Scene, duration: f64) -> f64 {
     greatest / at_rest
 }
 
-/// Runs every public scene with every change and 10 to 80 elements.
+/// Runs every public scene with every change and 10 to 80 elements, except those that `spared` excludes.
 fn none_blows_up(integrator: Integrator, spared: impl Fn(&str, &str, usize) -> bool) {
     for (name, _) in PUBLIC_SCENES {
         let duration = if name.starts_with("lindahl") { 10.0 } else { 30.0 };
@@ -93,7 +93,7 @@ fn none_blows_up(integrator: Integrator, spared: impl Fn(&str, &str, usize) -> b
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn no_hard_scene_blows_up_by_the_leapfrog() {
-    none_blows_up(Integrator::Leapfrog, |_, what, n| what == "BA × 10" && n == 80); // 10 µs a step
+    none_blows_up(Integrator::Leapfrog, |_, what, n| what == "BA × 10" && n == 80); // steps of 10 µs
 }
 
 #[test]

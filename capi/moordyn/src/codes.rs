@@ -12,16 +12,16 @@ pub const MOORDYN_INVALID_OUTPUT_FILE: c_int = -2;
 pub const MOORDYN_INVALID_INPUT: c_int = -3;
 /// The computation did not stay finite.
 pub const MOORDYN_NAN_ERROR: c_int = -4;
-/// Memory.
+/// Memory cannot be allocated.
 pub const MOORDYN_MEM_ERROR: c_int = -5;
-/// An argument has a value that cannot be used; null is one.
+/// An argument has a value that cannot be used, such as null.
 pub const MOORDYN_INVALID_VALUE: c_int = -6;
-/// moorline does not model it.
+/// moorline does not model the requested feature.
 pub const MOORDYN_NOT_IMPLEMENTED: c_int = -7;
-/// Anything else.
+/// Any other error.
 pub const MOORDYN_UNHANDLED_ERROR: c_int = -255;
 
-/// Level of messages from which on nothing is written.
+/// Level that disables all messages.
 pub const MOORDYN_NO_OUTPUT: c_int = 4096;
 /// Level of errors.
 pub const MOORDYN_ERR_LEVEL: c_int = 3;

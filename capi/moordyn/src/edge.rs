@@ -1,8 +1,8 @@
-//! Handles, calls, and everything that touches a host's pointer.
+//! Handles, calls, and all code that uses a host's pointers.
 //!
-//! Guarantees of the host: a pointer that is not null points to as many values as the function says, which stay valid and unchanged by others
-//! during the call; a text ends with a zero byte. Null pointers, handles that were closed and handles of another kind are refused. Any
-//! thread may call; calls on one system wait for one another.
+//! Guarantees of the host: a pointer that is not null points to as many values as the function requires, which stay valid and are not changed by
+//! others during the call; a text ends with a zero byte. Null pointers, closed handles and handles of the wrong kind are refused. Any
+//! thread may call; calls on one system are serialised.
 
 use std::ffi::{c_char, c_int, c_uint};
 use std::ops::{Deref, DerefMut};
@@ -20,28 +20,28 @@ use moorline_system::{Code, Failure, System};
 
 use crate::handles::{Handle, Kind, MoorDyn, MoorDynLine};
 
-/// Deck of a system whose host names none.
+/// Deck used if the host passes a null path.
 const DEFAULT_DECK: &str = "Mooring/lines.txt";
 
 /// All open systems.
 static SYSTEMS: Handles<Held> = Handles::new();
 
-/// True where the host of the first interface wants no messages in the console.
+/// True if the host of the first interface has disabled messages in the console.
 static IS_CONSOLE_DISABLED: AtomicBool = AtomicBool::new(false);
 
 /// The system of the first interface.
 pub(crate) static THE_SYSTEM: TheSystem = TheSystem(AtomicUsize::new(0));
 
-/// Holder of one handle.
+/// Storage for one handle.
 pub(crate) struct TheSystem(AtomicUsize);
 
 impl TheSystem {
-    /// The handle; null where there is none.
+    /// Returns the handle; null if there is none.
     pub(crate) fn get(&self) -> MoorDyn {
         MoorDyn::of(self.0.load(Ordering::Acquire))
     }
 
-    /// Takes another handle and returns the one before.
+    /// Stores another handle and returns the previous one.
     pub(crate) fn replace(&self, system: MoorDyn) -> MoorDyn {
         MoorDyn::of(self.0.swap(system.number(), Ordering::AcqRel))
     }
@@ -67,7 +67,7 @@ impl DerefMut for Held {
     }
 }
 
-/// Kinds of the parts of a system, with their numbers of parts, in the order of their handles.
+/// Kinds of the parts of a system and the number of parts of each kind, in the order of their handles.
 fn kinds(system: &System) -> [(Kind, usize); 7] {
     let lists = &system.deck.lists;
     [
@@ -81,7 +81,7 @@ fn kinds(system: &System) -> [(Kind, usize); 7] {
     ]
 }
 
-/// Kind of a part by its number, and its row, from 0.
+/// Returns the kind of a part and its row, from 0, by the number of the part.
 fn row_of(system: &System, number: usize) -> Option<(Kind, usize)> {
     let mut first = 0;
     kinds(system).into_iter().find_map(|(kind, count)| {
@@ -91,7 +91,7 @@ fn row_of(system: &System, number: usize) -> Option<(Kind, usize)> {
     })
 }
 
-/// Number of the part of a kind and row, from 0.
+/// Returns the number of a part by its kind and row, from 0.
 fn number_of(system: &System, wanted: Kind, row: usize) -> Option<usize> {
     let mut first = 0;
     for (kind, count) in kinds(system) {
@@ -103,7 +103,7 @@ fn number_of(system: &System, wanted: Kind, row: usize) -> Option<usize> {
     None
 }
 
-/// Writes an error to the console, where there is no system whose log it could go to.
+/// Writes to the console an error that has no system, and therefore no log.
 fn complain(message: &str) {
     let level = match IS_CONSOLE_DISABLED.load(Ordering::Relaxed) {
         true => NONE,
@@ -112,7 +112,7 @@ fn complain(message: &str) {
     Log::from_level(level).write(ERROR, message);
 }
 
-/// Creates a system from the deck of a path, [`DEFAULT_DECK`] where it is null.
+/// Creates a system from the deck at a path; [`DEFAULT_DECK`] if the path is null.
 ///
 /// # Safety
 /// The path is null or ends with a zero byte.
@@ -157,7 +157,8 @@ pub(crate) fn close(system: MoorDyn) -> c_int {
     }
 }
 
-/// Serves a call on a system or a part: handle, kind, panic guard, log, code. `body` gets the row of the part, from 0.
+/// Carries out a call on a system or a part: checks handle and kind, catches a panic, logs a failure and returns the code. `body` receives the
+/// row of the part, from 0.
 pub(crate) fn call<H: Handle>(
     handle: H,
     function: &str,
@@ -195,7 +196,7 @@ pub(crate) fn call<H: Handle>(
     }
 }
 
-/// Serves a call that gives one value.
+/// Carries out a call that returns one value.
 ///
 /// # Safety
 /// `target` is null or may be written to.
@@ -212,7 +213,7 @@ pub(crate) unsafe fn get<H: Handle, T>(
     })
 }
 
-/// Handle of a part of a kind by its number, from 1; null where there is none.
+/// Returns the handle of a part by its kind and number, from 1; null if there is none.
 pub(crate) fn part_of<H: Handle>(system: MoorDyn, function: &str, kind: Kind, number: c_uint) -> H {
     let mut part = 0;
     let _ = call(system, function, |held, _| {
@@ -228,7 +229,7 @@ pub(crate) fn part_of<H: Handle>(system: MoorDyn, function: &str, kind: Kind, nu
     H::of(part)
 }
 
-/// Row, from 0, of a part that belongs to a system.
+/// Returns the row, from 0, of a part that must belong to the system.
 pub(crate) fn part<H: Handle>(handle: H, held: &Held) -> Outcome<usize> {
     let all = kinds(held).iter().map(|(_, count)| count).sum();
     let mut numbers =
@@ -243,36 +244,36 @@ pub(crate) fn part<H: Handle>(handle: H, held: &Held) -> Outcome<usize> {
     }
 }
 
-/// Handle of a line by its row, from 0.
+/// Returns the handle of a line by its row, from 0.
 pub(crate) fn line_handle(held: &Held, row: usize) -> Outcome<MoorDynLine> {
     let number = number_of(held, Kind::Line, row);
     let number = number.ok_or_else(|| Failure::new(Code::Unhandled, "the line has no handle"))?;
     Ok(MoorDynLine::of(Handles::<Held>::part(held.handle, number)))
 }
 
-/// A count as C has it.
+/// Converts a count to C's unsigned int.
 pub(crate) fn count(number: usize) -> Outcome<c_uint> {
     c_uint::try_from(number)
         .map_err(|_| Failure::value(format!("{number} is more than C's unsigned int holds")))
 }
 
-/// A number as C has it.
+/// Converts a number to C's int.
 pub(crate) fn int(number: usize) -> Outcome<c_int> {
     c_int::try_from(number).map_err(|_| Failure::value(format!("{number} is more than C's int holds")))
 }
 
-/// A number of C that counts from 0.
+/// Converts a number of C that counts from 0.
 pub(crate) fn number(number: c_int) -> Outcome<usize> {
     usize::try_from(number).map_err(|_| Failure::value(format!("{number} is negative")))
 }
 
-/// Row of a number of C that counts from 1.
+/// Converts a number of C that counts from 1 to a row, from 0.
 pub(crate) fn index(number: c_int) -> Outcome<usize> {
     let row = number.checked_sub(1).and_then(|row| usize::try_from(row).ok());
     row.ok_or_else(|| Failure::value(format!("there is no number {number}: they begin with 1")))
 }
 
-/// Refuses anything but zero, with a sentence.
+/// Refuses a value other than zero, with a message.
 pub(crate) fn only_zero(value: f64, problem: &str) -> Outcome {
     match value == 0.0 {
         true => Ok(()),
@@ -280,7 +281,7 @@ pub(crate) fn only_zero(value: f64, problem: &str) -> Outcome {
     }
 }
 
-/// Wave number [1/m] of a circular frequency [rad/s]; NaN where it or gravity [m/s²] or depth [m] is not positive.
+/// Returns the wave number [1/m] for a circular frequency [rad/s]; NaN if the frequency, gravity [m/s²] or depth [m] is not positive.
 pub(crate) fn wave_number(frequency: f64, gravity: f64, depth: f64) -> f64 {
     let is_usable = [frequency, gravity, depth]
         .iter()
@@ -290,14 +291,14 @@ pub(crate) fn wave_number(frequency: f64, gravity: f64, depth: f64) -> f64 {
     found.and_then(Result::ok).unwrap_or(f64::NAN)
 }
 
-/// Turns messages in the console off or on, for a system and for later ones.
+/// Turns messages in the console off or on, for a system and for systems created later.
 pub(crate) fn disable_console(system: MoorDyn, is_disabled: bool) {
     IS_CONSOLE_DISABLED.store(is_disabled, Ordering::Relaxed);
     let level = if is_disabled { NONE } else { MESSAGE };
     let _ = SYSTEMS.with(system.number(), |held, _| held.log.set_console(level));
 }
 
-/// Values of the host.
+/// Returns the host's values as a slice.
 ///
 /// # Safety
 /// As [`pointers::slice`].
@@ -306,7 +307,7 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> Outcome<&'
     unsafe { pointers::slice(pointer, count) }.map_err(Failure::value)
 }
 
-/// Room of the host.
+/// Returns the host's values as a mutable slice.
 ///
 /// # Safety
 /// As [`pointers::slice_mut`].
@@ -315,7 +316,7 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> Outcome<
     unsafe { pointers::slice_mut(pointer, count) }.map_err(Failure::value)
 }
 
-/// One value of the host.
+/// Returns one value of the host.
 ///
 /// # Safety
 /// As [`pointers::slice`].
@@ -334,7 +335,7 @@ pub(crate) unsafe fn put<T>(target: *mut T, value: T) -> Outcome {
     unsafe { pointers::write(target, value) }.map_err(Failure::value)
 }
 
-/// Text of the host.
+/// Returns a text of the host.
 ///
 /// # Safety
 /// As [`pointers::text`].
@@ -343,7 +344,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Outcome<&'a str> {
     unsafe { pointers::text(pointer) }.map_err(Failure::value)
 }
 
-/// Path of the host.
+/// Returns a path of the host.
 ///
 /// # Safety
 /// As [`pointers::text`].
@@ -352,7 +353,7 @@ pub(crate) unsafe fn path<'a>(pointer: *const c_char) -> Outcome<&'a Path> {
     Ok(Path::new(unsafe { text(pointer) }?))
 }
 
-/// Copies a text to a host whose room is `*room` bytes, which becomes the room that it needs. With a null target only the latter.
+/// Copies a text to the host's buffer of `*room` bytes and sets `*room` to the size needed. A null target only gets the size.
 ///
 /// # Safety
 /// A target that is not null points to `*room` bytes.
@@ -362,7 +363,7 @@ pub(crate) unsafe fn copy_text(text: &str, target: *mut c_char, room: *mut usize
         let given = match target.is_null() {
             true => 0,
             false => match room.is_null() {
-                true => text.len() + 1, // as such hosts do after they asked for the room
+                true => text.len() + 1, // such hosts allocate the size that they have requested before
                 false => *one(room)?,
             },
         };
@@ -374,7 +375,7 @@ pub(crate) unsafe fn copy_text(text: &str, target: *mut c_char, room: *mut usize
     }
 }
 
-/// Copies words to a host that requested their number before; none where the target is null.
+/// Copies words to a host that has requested their number before; a null target gets none.
 ///
 /// # Safety
 /// A target that is not null has room for them.
@@ -387,19 +388,19 @@ pub(crate) unsafe fn copy_words(words: &[u64], target: *mut u64) -> Outcome {
     Ok(())
 }
 
-/// Words of a saved state, which begin with their number.
+/// Returns the words of a saved state, the first of which defines its length.
 ///
 /// # Safety
-/// A pointer that is not null points to words of a state; where the first ones are not those of a state of moorline, no others are read.
+/// A pointer that is not null points to words of a state; if the first ones are not those of a state of moorline, no others are read.
 pub(crate) unsafe fn words<'a>(pointer: *const u64) -> Outcome<&'a [u64]> {
     // SAFETY: by the caller's promise.
     let head = unsafe { slice(pointer, HEAD) }?;
     let head = head.first_chunk::<HEAD>().copied().unwrap_or_default();
-    // SAFETY: as above; the words say their number.
+    // SAFETY: as above; the first word defines their number.
     unsafe { slice(pointer, saved::length(head)?) }
 }
 
-/// Writes horizontal and vertical forces of lines: fairlead, fairlead, anchor, anchor.
+/// Writes the end forces of the first `*count` lines [N]: horizontal and vertical at the fairleads, then horizontal and vertical at the anchors.
 ///
 /// # Safety
 /// `count` points to a number, `targets` to as many values each.
@@ -422,7 +423,7 @@ pub(crate) unsafe fn end_tensions(held: &Held, count: *const c_int, targets: [*m
     Ok(())
 }
 
-/// Writes the motion of the water at a place [m]; null targets are left out.
+/// Writes the motion of the water at a position [m]; null targets are skipped.
 ///
 /// # Safety
 /// Targets that are not null have room for three values, and for one.

@@ -1,4 +1,4 @@
-//! The first interface: one system per process.
+//! First interface of MoorDyn: one system per process.
 //!
 //! Safety of every function here: the host keeps the promises listed in [`crate::edge`]; nothing else is relied on.
 #![allow(non_snake_case)]
@@ -12,7 +12,7 @@ use moorline_system::{Code, Failure};
 use crate::edge::{self, THE_SYSTEM};
 use crate::system::{MoorDyn_GetFASTtens, MoorDyn_Init, MoorDyn_Step};
 
-/// Creates and starts the one system of the first interface, in place of an earlier one.
+/// Creates and starts the system of the first interface; it replaces an earlier one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDynInit(x: *const f64, xd: *const f64, infilename: *const c_char) -> c_int {
     // SAFETY: the host's text and arrays.
@@ -50,13 +50,13 @@ pub unsafe extern "C" fn MoorDynClose() -> c_int {
     edge::close(THE_SYSTEM.replace(std::ptr::null_mut()))
 }
 
-/// Writes messages to the console unless `disable` is other than 0; holds for the next system too.
+/// Turns messages in the console on, or off if `disable` is not 0; also applies to systems created later.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SetDisableConsole(disable: c_int) {
     edge::disable_console(THE_SYSTEM.get(), disable != 0);
 }
 
-/// Returns the tension of the last segment of a line [N] by its number, from 1; NaN where there is none.
+/// Returns the tension of the last segment [N] of a line by its number, from 1; NaN if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetFairTen(l: c_int) -> f64 {
     let mut tension = f64::NAN;
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn GetFairTen(l: c_int) -> f64 {
     tension
 }
 
-/// Gives the tensions of the first `*numLines` lines as `MoorDyn_GetFASTtens`.
+/// Gets the tensions of the first `*numLines` lines [N] as `MoorDyn_GetFASTtens` does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetFASTtens(
     numLines: *const c_int,
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn GetFASTtens(
     unsafe { MoorDyn_GetFASTtens(THE_SYSTEM.get(), numLines, FairHTen, FairVTen, AnchHTen, AnchVTen) }
 }
 
-/// Gives the position [m] of a point by its number, from 1.
+/// Gets the position of a point [m] by its number, from 1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPointPos(l: c_int, pos: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -91,7 +91,7 @@ pub unsafe extern "C" fn GetPointPos(l: c_int, pos: *mut f64) -> c_int {
     }
 }
 
-/// Gives the force [N] on a point by its number, from 1.
+/// Gets the force on a point [N] by its number, from 1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPointForce(l: c_int, force: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn GetPointForce(l: c_int, force: *mut f64) -> c_int {
     }
 }
 
-/// Gives the position [m] of a node, from 0, of a line, from 1.
+/// Gets the position [m] of a node, counted from 0, of a line, counted from 1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetNodePos(LineNum: c_int, NodeNum: c_int, pos: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -114,7 +114,7 @@ pub unsafe extern "C" fn GetNodePos(LineNum: c_int, NodeNum: c_int, pos: *mut f6
     }
 }
 
-/// Is not modelled.
+/// Not supported: moorline does not model water kinematics from the host.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn externalWaveKinInit() -> c_int {
     edge::call(THE_SYSTEM.get(), "externalWaveKinInit", |_, _| {
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn externalWaveKinInit() -> c_int {
     })
 }
 
-/// Is not modelled; the log says so.
+/// Not supported, as `externalWaveKinInit`; writes an error to the log.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn getWaveKinCoordinates(_r: *mut f64) {
     edge::call(THE_SYSTEM.get(), "getWaveKinCoordinates", |_, _| {
@@ -130,7 +130,7 @@ pub unsafe extern "C" fn getWaveKinCoordinates(_r: *mut f64) {
     });
 }
 
-/// Is not modelled; the log says so.
+/// Not supported, as `externalWaveKinInit`; writes an error to the log.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn setWaveKin(_U: *const f64, _Ud: *const f64, _t: f64) {
     edge::call(THE_SYSTEM.get(), "setWaveKin", |_, _| {
@@ -138,6 +138,6 @@ pub unsafe extern "C" fn setWaveKin(_U: *const f64, _Ud: *const f64, _t: f64) {
     });
 }
 
-/// Does nothing: `MoorDynStep` writes the files of channels.
+/// Does nothing: `MoorDynStep` writes the output channels to their files.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn AllOutput(_t: f64, _dt: f64) {}

@@ -1,15 +1,15 @@
-//! Types of handles.
+//! Types of the handles.
 //!
-//! A handle is a number in the shape of a pointer: nothing follows it, and one that was closed is refused.
+//! A handle is a number with the type of a pointer: it is never dereferenced, and a closed one is refused.
 
 /// Kind of a handle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A whole system.
     System,
-    /// Its water.
+    /// The water of a system.
     Waves,
-    /// Its seabed.
+    /// The seabed of a system.
     Seafloor,
     /// A body.
     Body,
@@ -21,13 +21,13 @@ pub enum Kind {
     Line,
 }
 
-/// A handle of one kind.
+/// Handle of one kind.
 pub(crate) trait Handle: Copy {
-    /// Kind that its holder must have.
+    /// Kind of the part that the handle must refer to.
     const KIND: Kind;
-    /// Its number.
+    /// Returns the number of the handle.
     fn number(self) -> usize;
-    /// The handle of a number.
+    /// Returns the handle with a number.
     fn of(number: usize) -> Self;
 }
 

@@ -1,9 +1,9 @@
-//! moorline behind the C interface of MoorDyn: a library that its hosts load in place of `libmoordyn`.
+//! moorline behind the C interface of MoorDyn: a library that hosts load instead of `libmoordyn`.
 //!
-//! Every function is one translation to [`moorline_system`]; the unsafe code is the translation of pointers in [`edge`] and the functions
-//! themselves. The headers `include/MoorDyn.h` and `include/MoorDyn2.h` are written by cbindgen from these files.
+//! Every function translates one call to [`moorline_system`]; the unsafe code is the translation of pointers in [`edge`] and the functions
+//! themselves. cbindgen generates the header `include/MoorDyn2.h` from these files; `include/MoorDyn.h` includes it.
 //!
-//! Names and arguments: public headers of MoorDyn 2.7; the words are moorline's own.
+//! Source of names and arguments: public headers of MoorDyn 2.7; the descriptions are moorline's own.
 
 pub mod codes;
 mod edge;

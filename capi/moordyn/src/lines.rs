@@ -14,7 +14,7 @@ use crate::handles::MoorDynLine;
 const NO_WINCH: &str = "lines that are paid out or hauled in while they move are not driven through this interface: a moorline scene has winches";
 const NO_PRESSURE: &str = "bending by the pressure inside a line is not modelled";
 
-/// Gives a quantity of a node.
+/// Gets a vector quantity of a node.
 ///
 /// # Safety
 /// `out` is null or has room for three values.
@@ -32,7 +32,7 @@ unsafe fn vector(
     }
 }
 
-/// Gives the number of a line in the deck.
+/// Gets the number of a line, as in the deck.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineID(l: MoorDynLine, id: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -43,7 +43,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineID(l: MoorDynLine, id: *mut c_int) -> c_
     }
 }
 
-/// Gives the number of segments of a line.
+/// Gets the number of segments of a line.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineN(l: MoorDynLine, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -54,7 +54,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineN(l: MoorDynLine, n: *mut c_uint) -> c_i
     }
 }
 
-/// Gives the number of nodes of a line.
+/// Gets the number of nodes of a line.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNumberNodes(l: MoorDynLine, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -65,7 +65,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineNumberNodes(l: MoorDynLine, n: *mut c_ui
     }
 }
 
-/// Gives the unstretched length of a line [m].
+/// Gets the unstretched length of a line [m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineUnstretchedLength(l: MoorDynLine, ul: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineUnstretchedLength(l: MoorDynLine, ul: *m
     }
 }
 
-/// Sets the unstretched length of a line [m], before the start only.
+/// Sets the unstretched length of a line [m]; only before the start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetLineUnstretchedLength(l: MoorDynLine, ul: f64) -> c_int {
     edge::call(l, "MoorDyn_SetLineUnstretchedLength", |system, index| {
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn MoorDyn_SetLineUnstretchedLengthVel(l: MoorDynLine, v: 
     })
 }
 
-/// Gives 1 where a line has one constant axial stiffness, else 0.
+/// Gets 1 if a line has a constant axial stiffness, otherwise 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_IsLineConstantEA(l: MoorDynLine, b: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn MoorDyn_IsLineConstantEA(l: MoorDynLine, b: *mut c_int)
     }
 }
 
-/// Gives the axial stiffness of a line [N].
+/// Gets the axial stiffness of a line [N].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineConstantEA(l: MoorDynLine, EA: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -114,7 +114,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineConstantEA(l: MoorDynLine, EA: *mut f64)
     }
 }
 
-/// Sets the axial stiffness of a line [N], before the start only.
+/// Sets the axial stiffness of a line [N]; only before the start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetLineConstantEA(l: MoorDynLine, EA: f64) -> c_int {
     edge::call(l, "MoorDyn_SetLineConstantEA", |system, index| {
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn MoorDyn_SetLineConstantEA(l: MoorDynLine, EA: f64) -> c
     })
 }
 
-/// Gives 0: bending by pressure is not modelled.
+/// Gets 0: bending by internal pressure is not modelled.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_IsLinePressBend(l: MoorDynLine, b: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -133,7 +133,7 @@ pub unsafe extern "C" fn MoorDyn_IsLinePressBend(l: MoorDynLine, b: *mut c_int) 
     }
 }
 
-/// Refuses bending by pressure.
+/// Refuses to enable bending by internal pressure, which is not modelled.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetLinePressBend(l: MoorDynLine, b: c_int) -> c_int {
     edge::call(l, "MoorDyn_SetLinePressBend", |_, _| {
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn MoorDyn_SetLinePressBend(l: MoorDynLine, b: c_int) -> c
     })
 }
 
-/// Is not modelled.
+/// Not supported: bending by internal pressure is not modelled.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetLinePressInt(l: MoorDynLine, _p: *const f64) -> c_int {
     edge::call(l, "MoorDyn_SetLinePressInt", |_, _| {
@@ -149,56 +149,56 @@ pub unsafe extern "C" fn MoorDyn_SetLinePressInt(l: MoorDynLine, _p: *const f64)
     })
 }
 
-/// Gives the position [m] of a node of a line, from end A.
+/// Gets the position [m] at node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodePos(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodePos", i, (Quantity::Position, out)) }
 }
 
-/// Gives the velocity [m/s] of a node of a line, from end A.
+/// Gets the velocity [m/s] at node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeVel(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodeVel", i, (Quantity::Velocity, out)) }
 }
 
-/// Gives the sum of all forces but inertia [N] of a node of a line, from end A.
+/// Gets the sum of all forces except inertia [N] on node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeForce(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodeForce", i, (Quantity::Force, out)) }
 }
 
-/// Gives the tension, towards end B [N], of a node of a line, from end A.
+/// Gets the tension [N] at node `i` of a line, counted from 0 at end A, as a vector towards end B.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeTen(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodeTen", i, (Quantity::Tension, out)) }
 }
 
-/// Gives the force of bending stiffness [N] of a node of a line, from end A.
+/// Gets the bending force [N] on node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeBendStiff(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodeBendStiff", i, (Quantity::Bending, out)) }
 }
 
-/// Gives the weight less buoyancy [N] of a node of a line, from end A.
+/// Gets the weight less buoyancy [N] of node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeWeight(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodeWeight", i, (Quantity::Weight, out)) }
 }
 
-/// Gives the drag [N] of a node of a line, from end A.
+/// Gets the drag force [N] on node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeDrag(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodeDrag", i, (Quantity::Drag, out)) }
 }
 
-/// Gives the force of accelerated water [N] of a node of a line, from end A.
+/// Gets the force of the accelerated water [N] on node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeFroudeKrilov(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -212,14 +212,14 @@ pub unsafe extern "C" fn MoorDyn_GetLineNodeFroudeKrilov(l: MoorDynLine, i: c_ui
     }
 }
 
-/// Gives the force of the seabed [N] of a node of a line, from end A.
+/// Gets the seabed force [N] on node `i` of a line, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeSeabedForce(l: MoorDynLine, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { vector(l, "MoorDyn_GetLineNodeSeabedForce", i, (Quantity::Seabed, out)) }
 }
 
-/// Gives the curvature of a line at a node [1/m]; 0 without bending stiffness.
+/// Gets the curvature of a line at a node [1/m]; 0 without bending stiffness.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeCurv(l: MoorDynLine, i: c_uint, curv: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -230,7 +230,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineNodeCurv(l: MoorDynLine, i: c_uint, curv
     }
 }
 
-/// Gives the mass matrix of a node of a line, added mass included, by rows [kg].
+/// Gets the mass matrix of a node of a line, added mass included, row by row [kg].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineNodeM(l: MoorDynLine, i: c_uint, m: *mut [f64; 3]) -> c_int {
     // SAFETY: the host's array of three rows.
@@ -241,7 +241,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineNodeM(l: MoorDynLine, i: c_uint, m: *mut
     }
 }
 
-/// Gives the tension of the last segment of a line at end B [N].
+/// Gets the tension of the last segment of a line at end B [N].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineFairTen(l: MoorDynLine, t: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -252,7 +252,7 @@ pub unsafe extern "C" fn MoorDyn_GetLineFairTen(l: MoorDynLine, t: *mut f64) -> 
     }
 }
 
-/// Gives the greatest tension of all nodes of a line [N].
+/// Gets the greatest nodal tension of a line [N].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLineMaxTen(l: MoorDynLine, t: *mut f64) -> c_int {
     // SAFETY: the host's arguments.

@@ -24,7 +24,7 @@ fn no_attachment(index: c_uint, count: usize) -> Failure {
     ))
 }
 
-/// Gives the number of a body in the deck.
+/// Gets the number of a body, as in the deck.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyID(b: MoorDynBody, id: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -35,7 +35,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyID(b: MoorDynBody, id: *mut c_int) -> c_
     }
 }
 
-/// Gives the kind of a body: -1 coupled, 0 free, 1 fixed.
+/// Gets the kind of a body: -1 coupled, 0 free, 1 fixed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyType(b: MoorDynBody, t: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -46,7 +46,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyType(b: MoorDynBody, t: *mut c_int) -> c
     }
 }
 
-/// Gives position [m] and angles [rad] of a body, and their rates [m/s, rad/s].
+/// Gets the position [m] and angles [rad] of a body, and its velocity [m/s] and angular velocity [rad/s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyState(b: MoorDynBody, r: *mut f64, rd: *mut f64) -> c_int {
     edge::call(b, "MoorDyn_GetBodyState", |system, index| {
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyState(b: MoorDynBody, r: *mut f64, rd: *
     })
 }
 
-/// Gives the position of a body [m].
+/// Gets the position of a body [m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyPos(b: MoorDynBody, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyPos(b: MoorDynBody, out: *mut f64) -> c_
     }
 }
 
-/// Gives the roll, pitch and yaw of a body by Rx Ry Rz [rad].
+/// Gets roll, pitch and yaw of a body [rad], for the rotation Rx Ry Rz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyAngle(b: MoorDynBody, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -83,7 +83,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyAngle(b: MoorDynBody, out: *mut f64) -> 
     }
 }
 
-/// Gives the velocity of a body [m/s].
+/// Gets the velocity of a body [m/s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyVel(b: MoorDynBody, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyVel(b: MoorDynBody, out: *mut f64) -> c_
     }
 }
 
-/// Gives the angular velocity of a body [rad/s].
+/// Gets the angular velocity of a body [rad/s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyAngVel(b: MoorDynBody, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyAngVel(b: MoorDynBody, out: *mut f64) ->
     }
 }
 
-/// Gives force [N] and moment [N m] of the lines on a coupled body, about its reference point.
+/// Gets the force [N] and moment [N m] of the lines on a coupled body, about its reference point.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyForce(b: MoorDynBody, f: *mut f64) -> c_int {
     // SAFETY: the host's array of six values.
@@ -118,7 +118,7 @@ pub unsafe extern "C" fn MoorDyn_GetBodyForce(b: MoorDynBody, f: *mut f64) -> c_
     }
 }
 
-/// Gives the mass matrix of the end nodes on a coupled body, added mass included, by rows [kg, kg m, kg m²].
+/// Gets the mass matrix of the end nodes on a coupled body, added mass included, row by row [kg, kg m, kg m²].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBodyM(b: MoorDynBody, m: *mut [f64; 6]) -> c_int {
     // SAFETY: the host's array of six rows.
@@ -129,13 +129,13 @@ pub unsafe extern "C" fn MoorDyn_GetBodyM(b: MoorDynBody, m: *mut [f64; 6]) -> c
     }
 }
 
-/// Is not modelled: a body has no shape.
+/// Not supported: a body has no geometry.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SaveBodyVTK(b: MoorDynBody, _filename: *const c_char) -> c_int {
     edge::call(b, "MoorDyn_SaveBodyVTK", |_, _| Err(no_shape("a body")))
 }
 
-/// Gives the number of a point in the deck.
+/// Gets the number of a point, as in the deck.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointID(point: MoorDynPoint, id: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn MoorDyn_GetPointID(point: MoorDynPoint, id: *mut c_int)
     }
 }
 
-/// Gives the kind of a point: -1 coupled, 0 free, 1 fixed or carried by a body.
+/// Gets the kind of a point: -1 coupled, 0 free, 1 fixed or on a body.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointType(point: MoorDynPoint, t: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -157,7 +157,7 @@ pub unsafe extern "C" fn MoorDyn_GetPointType(point: MoorDynPoint, t: *mut c_int
     }
 }
 
-/// Gives the position of a point [m].
+/// Gets the position of a point [m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointPos(point: MoorDynPoint, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn MoorDyn_GetPointPos(point: MoorDynPoint, out: *mut f64)
     }
 }
 
-/// Gives the velocity of a point [m/s].
+/// Gets the velocity of a point [m/s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointVel(point: MoorDynPoint, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn MoorDyn_GetPointVel(point: MoorDynPoint, out: *mut f64)
     }
 }
 
-/// Gives the force of the lines on a point and of the point itself [N].
+/// Gets the force on a point [N]: from its lines and from its own loads.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointForce(point: MoorDynPoint, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -190,7 +190,7 @@ pub unsafe extern "C" fn MoorDyn_GetPointForce(point: MoorDynPoint, out: *mut f6
     }
 }
 
-/// Gives the mass matrix of a point and the end nodes on it, added mass included, by rows [kg].
+/// Gets the mass matrix of a point and its end nodes, added mass included, row by row [kg].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointM(point: MoorDynPoint, m: *mut [f64; 3]) -> c_int {
     // SAFETY: the host's array of three rows.
@@ -201,7 +201,7 @@ pub unsafe extern "C" fn MoorDyn_GetPointM(point: MoorDynPoint, m: *mut [f64; 3]
     }
 }
 
-/// Gives the number of line ends at a point.
+/// Gets the number of line ends attached to a point.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointNAttached(point: MoorDynPoint, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -212,7 +212,7 @@ pub unsafe extern "C" fn MoorDyn_GetPointNAttached(point: MoorDynPoint, n: *mut 
     }
 }
 
-/// Gives the handle of the line of attachment `i`, from 0, and its end there: 0 of A, 1 of B.
+/// Gets the line of attachment `i`, counted from 0, and the end of the line at the point: 0 for A, 1 for B.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPointAttached(
     point: MoorDynPoint,
@@ -234,13 +234,13 @@ pub unsafe extern "C" fn MoorDyn_GetPointAttached(
     })
 }
 
-/// Is not modelled: a point has no shape.
+/// Not supported: a point has no geometry.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SavePointVTK(point: MoorDynPoint, _filename: *const c_char) -> c_int {
     edge::call(point, "MoorDyn_SavePointVTK", |_, _| Err(no_shape("a point")))
 }
 
-/// Gives the number of a rod in the deck.
+/// Gets the number of a rod, as in the deck.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodID(rod: MoorDynRod, id: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -251,7 +251,7 @@ pub unsafe extern "C" fn MoorDyn_GetRodID(rod: MoorDynRod, id: *mut c_int) -> c_
     }
 }
 
-/// Gives the kind of a rod: 1, fixed or carried by a body, as moorline models no others.
+/// Gets the kind of a rod: always 1, fixed or on a body, since moorline models no other rods.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodType(rod: MoorDynRod, t: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
@@ -262,19 +262,19 @@ pub unsafe extern "C" fn MoorDyn_GetRodType(rod: MoorDynRod, t: *mut c_int) -> c
     }
 }
 
-/// Is not modelled: a rod only holds the ends of lines.
+/// Not supported: a rod only carries line ends.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodForce(rod: MoorDynRod, _f: *mut f64) -> c_int {
     edge::call(rod, "MoorDyn_GetRodForce", |_, _| Err(Failure::missing(NO_RODS)))
 }
 
-/// Is not modelled: a rod only holds the ends of lines.
+/// Not supported: a rod only carries line ends.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodM(rod: MoorDynRod, _m: *mut [f64; 6]) -> c_int {
     edge::call(rod, "MoorDyn_GetRodM", |_, _| Err(Failure::missing(NO_RODS)))
 }
 
-/// Gives the number of segments of a rod.
+/// Gets the number of segments of a rod.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodN(rod: MoorDynRod, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -285,7 +285,7 @@ pub unsafe extern "C" fn MoorDyn_GetRodN(rod: MoorDynRod, n: *mut c_uint) -> c_i
     }
 }
 
-/// Gives the number of nodes of a rod.
+/// Gets the number of nodes of a rod.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodNumberNodes(rod: MoorDynRod, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -296,7 +296,7 @@ pub unsafe extern "C" fn MoorDyn_GetRodNumberNodes(rod: MoorDynRod, n: *mut c_ui
     }
 }
 
-/// Gives the position [m] of a node of a rod, from end A.
+/// Gets the position [m] of node `i` of a rod, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodNodePos(rod: MoorDynRod, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -307,7 +307,7 @@ pub unsafe extern "C" fn MoorDyn_GetRodNodePos(rod: MoorDynRod, i: c_uint, out: 
     }
 }
 
-/// Gives the velocity [m/s] of a node of a rod, from end A.
+/// Gets the velocity [m/s] of node `i` of a rod, counted from 0 at end A.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodNodeVel(rod: MoorDynRod, i: c_uint, out: *mut f64) -> c_int {
     // SAFETY: the host's array of three values.
@@ -318,7 +318,7 @@ pub unsafe extern "C" fn MoorDyn_GetRodNodeVel(rod: MoorDynRod, i: c_uint, out: 
     }
 }
 
-/// Is not modelled: a rod only holds the ends of lines.
+/// Not supported: a rod only carries line ends.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SaveRodVTK(rod: MoorDynRod, _filename: *const c_char) -> c_int {
     edge::call(rod, "MoorDyn_SaveRodVTK", |_, _| Err(no_shape("a rod")))

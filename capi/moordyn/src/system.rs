@@ -13,14 +13,14 @@ use crate::handles::{
     Kind, MoorDyn, MoorDynBody, MoorDynLine, MoorDynPoint, MoorDynRod, MoorDynSeafloor, MoorDynWaves,
 };
 
-/// Creates a system from a deck, by default `Mooring/lines.txt`; null where the deck cannot be used, with the reason in the console.
+/// Creates a system from a deck, by default `Mooring/lines.txt`; returns null and writes the reason to the console if the deck cannot be used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Create(infilename: *const c_char) -> MoorDyn {
     // SAFETY: the host's arguments.
     unsafe { edge::create(infilename) }
 }
 
-/// Gives the number of coupled degrees of freedom.
+/// Gets the number of coupled degrees of freedom.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_NCoupledDOF(system: MoorDyn, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -31,7 +31,7 @@ pub unsafe extern "C" fn MoorDyn_NCoupledDOF(system: MoorDyn, n: *mut c_uint) ->
     }
 }
 
-/// Sets the least level of messages in the console.
+/// Sets the lowest level of messages written to the console.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetVerbosity(system: MoorDyn, verbosity: c_int) -> c_int {
     edge::call(system, "MoorDyn_SetVerbosity", |system, _| {
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn MoorDyn_SetVerbosity(system: MoorDyn, verbosity: c_int)
     })
 }
 
-/// Writes messages to a file too.
+/// Writes messages to a file as well.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetLogFile(system: MoorDyn, log_path: *const c_char) -> c_int {
     edge::call(system, "MoorDyn_SetLogFile", |system, _| {
@@ -50,7 +50,7 @@ pub unsafe extern "C" fn MoorDyn_SetLogFile(system: MoorDyn, log_path: *const c_
     })
 }
 
-/// Sets the least level of messages in the file.
+/// Sets the lowest level of messages written to the file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetLogLevel(system: MoorDyn, verbosity: c_int) -> c_int {
     edge::call(system, "MoorDyn_SetLogLevel", |system, _| {
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn MoorDyn_SetLogLevel(system: MoorDyn, verbosity: c_int) 
     })
 }
 
-/// Writes a message of the host.
+/// Writes a message of the host to the log.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Log(system: MoorDyn, level: c_int, msg: *const c_char) -> c_int {
     edge::call(system, "MoorDyn_Log", |system, _| {
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn MoorDyn_Log(system: MoorDyn, level: c_int, msg: *const 
     })
 }
 
-/// Starts in static equilibrium at coupled positions `x` [m, rad] that move by `xd` [m/s, rad/s].
+/// Starts in static equilibrium at the coupled positions `x` [m, rad], which move at `xd` [m/s, rad/s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Init(system: MoorDyn, x: *const f64, xd: *const f64) -> c_int {
     edge::call(system, "MoorDyn_Init", |system, _| {
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn MoorDyn_Init(system: MoorDyn, x: *const f64, xd: *const
     })
 }
 
-/// Starts as `MoorDyn_Init`, but on catenaries in place of the equilibrium, for a state that is loaded next.
+/// Starts as `MoorDyn_Init` does, but on catenaries instead of the equilibrium, for a state that is loaded next.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Init_NoIC(system: MoorDyn, x: *const f64, xd: *const f64) -> c_int {
     edge::call(system, "MoorDyn_Init_NoIC", |system, _| {
@@ -92,8 +92,8 @@ pub unsafe extern "C" fn MoorDyn_Init_NoIC(system: MoorDyn, x: *const f64, xd: *
     })
 }
 
-/// Steps from `*t` by `*dt` [s] with coupled positions `x` [m, rad] at the start, which move by `xd` [m/s, rad/s]; gives the forces `f` [N, N m] on the
-/// coupled objects at the end, and its time. A step of 0 s gives the present forces.
+/// Steps from `*t` by `*dt` [s] with the coupled positions `x` [m, rad] at the start of the step, which move at `xd` [m/s, rad/s]; gets the forces `f`
+/// [N, N m] on the coupled objects at the end of the step, and its time. A step of 0 s gets the current forces.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Step(
     system: MoorDyn,
@@ -109,39 +109,39 @@ pub unsafe extern "C" fn MoorDyn_Step(
     })
 }
 
-/// Closes a system; its handles and those of its parts are refused from then on.
+/// Closes a system; its handle and those of its parts become invalid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Close(system: MoorDyn) -> c_int {
     edge::close(system)
 }
 
-/// Gives the internal time step of the deck or the host [s]; moorline chooses its own.
+/// Gets the internal time step set by the deck or the host [s]; moorline chooses its own steps.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetDt(system: MoorDyn, dt: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { edge::get(system, "MoorDyn_GetDt", dt, |system, _| Ok(system.dt)) }
 }
 
-/// Sets an upper limit of the internal time step [s], which holds from the next start on.
+/// Sets an upper limit on the internal time step [s], which takes effect at the next start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetDt(system: MoorDyn, dt: f64) -> c_int {
     edge::call(system, "MoorDyn_SetDt", |system, _| system.set_dt(dt))
 }
 
-/// Gives the Courant number of the deck or the host [-]; moorline chooses its steps by the tolerance.
+/// Gets the Courant number set by the deck or the host [-]; moorline chooses its steps from the tolerance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetCFL(system: MoorDyn, cfl: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
     unsafe { edge::get(system, "MoorDyn_GetCFL", cfl, |system, _| Ok(system.cfl)) }
 }
 
-/// Keeps a Courant number [-], which has no effect.
+/// Stores a Courant number [-]; it has no effect.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetCFL(system: MoorDyn, cfl: f64) -> c_int {
     edge::call(system, "MoorDyn_SetCFL", |system, _| system.set_cfl(cfl))
 }
 
-/// Gives the name of the time scheme of the deck or the host. With a null name, only the room that it needs [bytes].
+/// Gets the name of the time scheme set by the deck or the host. With a null name, gets only the size that the name needs [bytes].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetTimeScheme(
     system: MoorDyn,
@@ -154,7 +154,7 @@ pub unsafe extern "C" fn MoorDyn_GetTimeScheme(
     })
 }
 
-/// Keeps the name of a time scheme, which has no effect.
+/// Stores the name of a time scheme; it has no effect.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_SetTimeScheme(system: MoorDyn, name: *const c_char) -> c_int {
     edge::call(system, "MoorDyn_SetTimeScheme", |system, _| {
@@ -174,7 +174,7 @@ pub unsafe extern "C" fn MoorDyn_SaveState(system: MoorDyn, filepath: *const c_c
     })
 }
 
-/// Goes back to the state of a file; a system that was not started then is.
+/// Restores the state from a file; starts the system if it has not been started.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_LoadState(system: MoorDyn, filepath: *const c_char) -> c_int {
     edge::call(system, "MoorDyn_LoadState", |system, _| {
@@ -194,7 +194,7 @@ pub unsafe extern "C" fn MoorDyn_Save(system: MoorDyn, filepath: *const c_char) 
     })
 }
 
-/// Goes back to the state of a file; a system that was not started then is.
+/// Restores the state from a file; starts the system if it has not been started.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Load(system: MoorDyn, filepath: *const c_char) -> c_int {
     edge::call(system, "MoorDyn_Load", |system, _| {
@@ -204,7 +204,7 @@ pub unsafe extern "C" fn MoorDyn_Load(system: MoorDyn, filepath: *const c_char) 
     })
 }
 
-/// Gives the number of bytes of the state and, unless `data` is null, the state in words of eight bytes.
+/// Gets the size of the state [bytes] and, unless `data` is null, the state in words of eight bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Serialize(system: MoorDyn, size: *mut usize, data: *mut u64) -> c_int {
     edge::call(system, "MoorDyn_Serialize", |system, _| {
@@ -219,7 +219,7 @@ pub unsafe extern "C" fn MoorDyn_Serialize(system: MoorDyn, size: *mut usize, da
     })
 }
 
-/// Goes back to a state; a system that was not started then is.
+/// Restores a state; starts the system if it has not been started.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_Deserialize(system: MoorDyn, data: *const u64) -> c_int {
     edge::call(system, "MoorDyn_Deserialize", |system, _| {
@@ -239,7 +239,7 @@ pub unsafe extern "C" fn MoorDyn_SaveVTK(system: MoorDyn, filename: *const c_cha
     })
 }
 
-/// Breaks a line off a point, from the next step on.
+/// Detaches a line from a point, from the next step on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_BreakLine(system: MoorDyn, point: MoorDynPoint, line: MoorDynLine) -> c_int {
     edge::call(system, "MoorDyn_BreakLine", |system, _| {
@@ -248,7 +248,7 @@ pub unsafe extern "C" fn MoorDyn_BreakLine(system: MoorDyn, point: MoorDynPoint,
     })
 }
 
-/// Gives horizontal and vertical forces at the fairleads and anchors of the first `*numLines` lines [N].
+/// Gets the horizontal and vertical forces at the fairleads and anchors of the first `*numLines` lines [N].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetFASTtens(
     system: MoorDyn,
@@ -264,7 +264,7 @@ pub unsafe extern "C" fn MoorDyn_GetFASTtens(
     })
 }
 
-/// Gives the number of bodies.
+/// Gets the number of bodies.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetNumberBodies(system: MoorDyn, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -275,7 +275,7 @@ pub unsafe extern "C" fn MoorDyn_GetNumberBodies(system: MoorDyn, n: *mut c_uint
     }
 }
 
-/// Gives the number of rods.
+/// Gets the number of rods.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetNumberRods(system: MoorDyn, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -286,7 +286,7 @@ pub unsafe extern "C" fn MoorDyn_GetNumberRods(system: MoorDyn, n: *mut c_uint) 
     }
 }
 
-/// Gives the number of points.
+/// Gets the number of points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetNumberPoints(system: MoorDyn, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -297,7 +297,7 @@ pub unsafe extern "C" fn MoorDyn_GetNumberPoints(system: MoorDyn, n: *mut c_uint
     }
 }
 
-/// Gives the number of lines.
+/// Gets the number of lines.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetNumberLines(system: MoorDyn, n: *mut c_uint) -> c_int {
     // SAFETY: the host's arguments.
@@ -308,25 +308,25 @@ pub unsafe extern "C" fn MoorDyn_GetNumberLines(system: MoorDyn, n: *mut c_uint)
     }
 }
 
-/// Returns the handle of a body by its number, from 1; null where there is none.
+/// Returns the handle of a body by its number, from 1; null if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetBody(system: MoorDyn, number: c_uint) -> MoorDynBody {
     edge::part_of(system, "MoorDyn_GetBody", Kind::Body, number)
 }
 
-/// Returns the handle of a rod by its number, from 1; null where there is none.
+/// Returns the handle of a rod by its number, from 1; null if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRod(system: MoorDyn, number: c_uint) -> MoorDynRod {
     edge::part_of(system, "MoorDyn_GetRod", Kind::Rod, number)
 }
 
-/// Returns the handle of a point by its number, from 1; null where there is none.
+/// Returns the handle of a point by its number, from 1; null if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetPoint(system: MoorDyn, number: c_uint) -> MoorDynPoint {
     edge::part_of(system, "MoorDyn_GetPoint", Kind::Point, number)
 }
 
-/// Returns the handle of a line by its number, from 1; null where there is none.
+/// Returns the handle of a line by its number, from 1; null if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetLine(system: MoorDyn, number: c_uint) -> MoorDynLine {
     edge::part_of(system, "MoorDyn_GetLine", Kind::Line, number)
@@ -338,13 +338,13 @@ pub unsafe extern "C" fn MoorDyn_GetWaves(system: MoorDyn) -> MoorDynWaves {
     edge::part_of(system, "MoorDyn_GetWaves", Kind::Waves, 1)
 }
 
-/// Returns the handle of the seabed; null where there is none.
+/// Returns the handle of the seabed; null if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetSeafloor(system: MoorDyn) -> MoorDynSeafloor {
     edge::part_of(system, "MoorDyn_GetSeafloor", Kind::Seafloor, 1)
 }
 
-/// Steps a system; the host's numbers change only where all of it succeeds.
+/// Steps a system; the host's time changes only if the whole step succeeds.
 ///
 /// # Safety
 /// The arrays have a value for each coupled degree of freedom.

@@ -11,8 +11,8 @@ use moorline_system::water::NO_HOST_WATER;
 use crate::edge;
 use crate::handles::{MoorDyn, MoorDynSeafloor, MoorDynWaves};
 
-/// Gives velocity `U` [m/s], acceleration `Ud` [m/s²], elevation [m] and dynamic pressure [Pa] of the water at a place [m]. The pressure of waves is
-/// not found: give null for it where there are waves.
+/// Gets velocity `U` [m/s], acceleration `Ud` [m/s²], surface elevation [m] and dynamic pressure [Pa] of the water at a position [m]. The pressure of
+/// waves is not computed: with waves, pass null for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetWavesKin(
     waves: MoorDynWaves,
@@ -31,13 +31,13 @@ pub unsafe extern "C" fn MoorDyn_GetWavesKin(
     })
 }
 
-/// Returns the wave number [1/m] of a circular frequency [rad/s] with gravity `g` [m/s²] over a depth `h` [m]; NaN where one of them is not positive.
+/// Returns the wave number [1/m] for a circular frequency [rad/s], gravity `g` [m/s²] and depth `h` [m]; NaN if one of them is not positive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn WaveNumber(Omega: f64, g: f64, h: f64) -> f64 {
     edge::wave_number(Omega, g, h)
 }
 
-/// Gives the depth of the seabed at a place [m], positive down.
+/// Gets the depth of the seabed at a horizontal position [m], positive down.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetDepthAt(
     seafloor: MoorDynSeafloor,
@@ -53,7 +53,7 @@ pub unsafe extern "C" fn MoorDyn_GetDepthAt(
     }
 }
 
-/// Gives the mean of the soundings [m].
+/// Gets the mean depth of the soundings [m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetAverageDepth(seafloor: MoorDynSeafloor, avgDepth: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn MoorDyn_GetAverageDepth(seafloor: MoorDynSeafloor, avgD
     }
 }
 
-/// Gives the least of the soundings [m].
+/// Gets the least depth of the soundings [m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetMinDepth(seafloor: MoorDynSeafloor, minDepth: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn MoorDyn_GetMinDepth(seafloor: MoorDynSeafloor, minDepth
     }
 }
 
-/// Is not modelled; gives 0 places.
+/// Not supported: moorline does not model water kinematics from the host; sets `n` to 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_ExternalWaveKinInit(system: MoorDyn, n: *mut c_uint) -> c_int {
     edge::call(system, "MoorDyn_ExternalWaveKinInit", |_, _| {
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn MoorDyn_ExternalWaveKinInit(system: MoorDyn, n: *mut c_
     })
 }
 
-/// Is not modelled; gives 0 places.
+/// Not supported, as `MoorDyn_ExternalWaveKinInit`; sets `n` to 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_ExternalWaveKinGetN(system: MoorDyn, n: *mut c_uint) -> c_int {
     edge::call(system, "MoorDyn_ExternalWaveKinGetN", |_, _| {
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn MoorDyn_ExternalWaveKinGetN(system: MoorDyn, n: *mut c_
     })
 }
 
-/// Is not modelled.
+/// Not supported, as `MoorDyn_ExternalWaveKinInit`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_ExternalWaveKinGetCoordinates(system: MoorDyn, _r: *mut f64) -> c_int {
     edge::call(system, "MoorDyn_ExternalWaveKinGetCoordinates", |_, _| {
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn MoorDyn_ExternalWaveKinGetCoordinates(system: MoorDyn, 
     })
 }
 
-/// Is not modelled.
+/// Not supported, as `MoorDyn_ExternalWaveKinInit`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_ExternalWaveKinSet(
     system: MoorDyn,

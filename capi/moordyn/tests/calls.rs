@@ -1,4 +1,4 @@
-//! Calls in any order and with any arguments: no panic, no crash, and only the codes of the interface.
+//! Calls in any order with any arguments cause no panic or crash and return only the codes of the interface.
 
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 use std::path::Path;
@@ -81,7 +81,7 @@ unsafe extern "C" {
     fn WaveNumber(frequency: f64, gravity: f64, depth: f64) -> f64;
 }
 
-/// Two lines, one on a coupled body with a rod of no length, the other on a coupled point.
+/// Two lines: one on a coupled body with a rod of zero length, the other on a coupled point.
 const DECK: &str = "\
 two lines
 --- LINE TYPES ---
@@ -131,7 +131,7 @@ const CODES: [c_int; 8] = [
     MOORDYN_UNHANDLED_ERROR,
 ];
 
-/// A host that calls anything.
+/// Host that makes arbitrary calls.
 struct Host {
     random: Random,
     deck: CString,
@@ -159,7 +159,7 @@ impl Host {
         (self.random.unit() * count as f64) as usize
     }
 
-    /// A handle that is open, closed, null or invented.
+    /// Returns a handle that is open, closed, null or arbitrary.
     fn handle(&mut self) -> Handle {
         match self.below(12) {
             0 => null_mut(),
@@ -171,7 +171,7 @@ impl Host {
         }
     }
 
-    /// A number that is usual, or not.
+    /// Returns a number that is usually in range.
     fn number(&mut self) -> f64 {
         match self.below(24) {
             0 => f64::NAN,
@@ -203,7 +203,7 @@ impl Host {
         std::array::from_fn(|_| 0.01 * self.random.unit())
     }
 
-    /// The pointer, or now and then null.
+    /// Returns the pointer, or occasionally null.
     fn or_null<T>(&mut self, pointer: *mut T) -> *mut T {
         if self.below(12) == 0 { null_mut() } else { pointer }
     }
@@ -215,7 +215,7 @@ impl Host {
         MOORDYN_SUCCESS
     }
 
-    /// One call; all arrays are as long as the interface wants them.
+    /// Makes one call; all arrays have the length that the interface requires.
     fn call(&mut self) -> c_int {
         match self.below(2) {
             0 => self.call_of_system(),
@@ -313,7 +313,7 @@ impl Host {
     }
 
     /// # Safety
-    /// A handle may be anything, so that there is nothing to promise.
+    /// Any handle is allowed, so the caller has no obligation.
     unsafe fn serialize(&mut self, handle: Handle) -> c_int {
         let mut size = 0;
         // SAFETY: room for the number and then for the words.
@@ -327,10 +327,10 @@ impl Host {
         }
     }
 
-    /// Words of a state, with a wrong one now and then.
+    /// Restores a state, sometimes with a wrong word.
     ///
     /// # Safety
-    /// A handle may be anything, so that there is nothing to promise.
+    /// Any handle is allowed, so the caller has no obligation.
     unsafe fn deserialize(&mut self, handle: Handle) -> c_int {
         let mut words = self.state.clone();
         words.resize(words.len().max(3), 0);
@@ -345,7 +345,7 @@ impl Host {
     }
 
     /// # Safety
-    /// A handle may be anything, so that there is nothing to promise.
+    /// Any handle is allowed, so the caller has no obligation.
     unsafe fn schemes(&mut self, handle: Handle) -> c_int {
         let mut name = [0 as c_char; 64];
         let mut room = self.below(name.len());
@@ -357,7 +357,7 @@ impl Host {
     }
 
     /// # Safety
-    /// A handle may be anything, so that there is nothing to promise.
+    /// Any handle is allowed, so the caller has no obligation.
     unsafe fn tensions(&mut self, handle: Handle) -> c_int {
         let count = self.below(4) as c_int - 1;
         let mut values = [[0.0_f32; 4]; 4];
@@ -366,10 +366,10 @@ impl Host {
         unsafe { MoorDyn_GetFASTtens(handle, &raw const count, self.or_null(a), b, c, d) }
     }
 
-    /// The first interface.
+    /// Calls the first interface.
     ///
     /// # Safety
-    /// Pointers are null or point to as many values as the interface wants.
+    /// Pointers are null or point to as many values as the interface requires.
     unsafe fn first(&mut self, x: *mut f64, xd: *mut f64, out: *mut f64) -> c_int {
         let deck = self.deck.clone();
         let (mut t, mut dt) = (0.0, self.number());
@@ -389,7 +389,7 @@ impl Host {
         }
     }
 
-    /// Some calls, after which all systems are closed.
+    /// Makes some calls, and then closes all systems.
     fn sequence(&mut self) {
         for _ in 0..12 {
             let code = self.call();
@@ -400,7 +400,7 @@ impl Host {
             // SAFETY: handles may be anything.
             let _ = unsafe { MoorDyn_Close(handle) };
             if self.below(2) == 0 {
-                self.handles.push(handle); // closed, and used again
+                self.handles.push(handle); // closed, but used again
             }
         }
         self.handles.truncate(4);
@@ -421,7 +421,7 @@ impl Host {
     }
 }
 
-/// Claims that sequences of calls end in codes other than that of a panic; returns the number of each code.
+/// Asserts that sequences of calls never return the code of a panic; returns the count of each code.
 fn assert_calm(sequences: usize, seed: u64) -> [usize; CODES.len()] {
     let folder = tempfile::tempdir().unwrap();
     // SAFETY: a number.

@@ -1,5 +1,5 @@
-//! The small hosts of `hosts/hosts.c` on the library, under valgrind: no error of memory, no leak of a closed system. Their forces are compared
-//! with MoorDyn's in `python_tests/test_libmoordyn.py`.
+//! The small hosts in `hosts/hosts.c` run on the library under valgrind without memory errors, and closed systems do not leak.
+//! `python_tests/test_libmoordyn.py` compares their forces with MoorDyn's.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
@@ -47,7 +47,7 @@ fn build(target: &Path) {
         .arg("-ldl"));
 }
 
-/// Motion of a swaying fairlead over some steps [s], as the program reads it.
+/// Motion of a swaying fairlead over `count` steps of `step` [s], in the format that the program reads.
 fn motion(step: f64, count: usize) -> Vec<u8> {
     let row = |k: usize| {
         let t = k as f64 * step;
@@ -56,7 +56,7 @@ fn motion(step: f64, count: usize) -> Vec<u8> {
     (0..count).flat_map(row).flat_map(f64::to_le_bytes).collect()
 }
 
-/// Runs a host, within a tool where one is given, and returns its forces.
+/// Runs a host, within a tool if one is given, and returns its forces.
 fn drive(tool: &[&str], program: &Path, host: &str) -> Vec<u8> {
     let place = tempfile::tempdir().unwrap();
     std::fs::write(place.path().join("deck"), DECK).unwrap();

@@ -1,6 +1,6 @@
-//! Files of output channels as MoorDyn writes them: one of the channels of OUTPUTS, and one of every line whose row has letters.
+//! Files of output channels in MoorDyn's format: one for the channels in OUTPUTS, and one for every line whose row has output letters.
 //!
-//! Two lines of names and units, then a row for every `dtOut`, in columns of fixed width: time in ten letters, every value in twenty.
+//! Two header lines with names and units, then a row every `dtOut`, in columns of fixed width: 10 characters for the time, 20 for every value.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -18,13 +18,13 @@ use crate::log::{Log, WARNING};
 use crate::nodes::{Quantity, damping, stretch, vector};
 use crate::system::System;
 
-/// Time after which rows are in the file.
+/// Interval after which buffered rows are flushed to the file.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Part of an interval by which a row may come early [-].
+/// Fraction of an interval by which a row may come early [-].
 const EARLY: f64 = 1e-6;
 
-/// Groups requested by the letters of a line's row, in the order of the columns: letter, ending of the names, unit.
+/// Groups requested by the letters of a line's row, in the order of the columns: letter, group, suffix of the names, unit.
 const LETTERS: [(char, Group, &str, &str); 10] = [
     ('p', Group::Node(Quantity::Position), "p", "(m)"),
     ('K', Group::Curvature, "Ku", "(1/m)"),
@@ -38,20 +38,20 @@ const LETTERS: [(char, Group, &str, &str); 10] = [
     ('b', Group::Node(Quantity::Seabed), "b", "(N)"),
 ];
 
-/// Columns that one letter requests.
+/// Columns requested by one letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Group {
-    /// A vector of every node.
+    /// Vector at every node.
     Node(Quantity),
-    /// Curvature of every node.
+    /// Curvature at every node.
     Curvature,
-    /// Tension without damping, strain or its rate of every segment.
+    /// Scalar of every segment, by index: 0 tension without damping, 1 strain, 2 strain rate.
     Stretch(usize),
     /// Damping force of every segment, a vector.
     Damping,
 }
 
-/// A table that is being written.
+/// Table being written.
 #[derive(Debug)]
 struct Table {
     path: PathBuf,
@@ -88,7 +88,7 @@ impl Table {
 
     fn row(&mut self, time: f64, values: impl Iterator<Item = f64>) -> Outcome {
         self.line.clear();
-        let _ = write!(self.line, "{time:>10.4}"); // a text takes any text
+        let _ = write!(self.line, "{time:>10.4}"); // writing to a string does not fail
         for value in values {
             push_scientific(value, &mut self.line);
         }
@@ -109,10 +109,10 @@ fn refusal(path: &Path, error: &std::io::Error) -> Failure {
     )
 }
 
-/// Adds a number in twenty letters: with seven decimals and a signed exponent of two digits or more, as C writes it.
+/// Appends a number in 20 characters: seven decimals and a signed exponent of at least two digits, as in C.
 fn push_scientific(value: f64, line: &mut String) {
     let start = line.len();
-    let _ = write!(line, "{value:.7e}"); // a text takes any text
+    let _ = write!(line, "{value:.7e}"); // writing to a string does not fail
     if let Some(at) = line[start..].find('e').map(|at| start + at + 1) {
         let is_negative = line[at..].starts_with('-');
         let digits = at + usize::from(is_negative);
@@ -128,7 +128,7 @@ fn push_scientific(value: f64, line: &mut String) {
     line.insert_str(start, &BLANKS[..missing]);
 }
 
-/// Files of a system.
+/// Channel files of a system.
 #[derive(Debug)]
 pub struct Files {
     interval: f64,
@@ -137,7 +137,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Begins the files that a deck requests; none where it disables them or requests nothing.
+    /// Creates the files that a deck requests; `None` if it disables output or requests none.
     ///
     /// # Errors
     /// The operating system refuses a file.
@@ -171,7 +171,7 @@ impl Files {
     /// Writes the row of a time [s] where an interval ended within the last step [s]. A step that the host repeats is written again, as by MoorDyn.
     ///
     /// # Errors
-    /// The operating system refuses.
+    /// The operating system refuses the write.
     pub fn row(&mut self, [time, step]: [f64; 2], simulation: &Simulation) -> Outcome {
         let ended = |time: f64| (time / self.interval + EARLY).floor();
         if self.interval > 0.0 && ended(time) == ended(time - step) {
@@ -207,7 +207,7 @@ fn main_table(deck: &Deck, simulation: &Simulation) -> Outcome<Option<(Channels,
     Ok(Some((channels, table)))
 }
 
-/// Groups of a line's letters; letters that request output that is not written are logged.
+/// Returns the groups for a line's letters; letters whose output is not available are logged.
 fn groups(letters: &str, number: usize, simulation: &Simulation, log: &mut Log) -> Vec<Group> {
     let lines = &simulation.model().lines;
     let line = lines.iter().find(|line| line.name == format!("line{number}"));
@@ -227,7 +227,7 @@ fn groups(letters: &str, number: usize, simulation: &Simulation, log: &mut Log) 
     wanted.filter_map(|(letter, ..)| known(*letter)).collect()
 }
 
-/// Names and units of the columns of a line with a number of segments.
+/// Returns names and units of the columns for a line with `segments` segments.
 fn head(groups: &[Group], segments: usize) -> (Vec<String>, Vec<String>) {
     let (mut names, mut units) = (Vec::new(), Vec::new());
     for (_, group, ending, unit) in LETTERS.iter().filter(|(_, group, ..)| groups.contains(group)) {
@@ -249,7 +249,7 @@ fn head(groups: &[Group], segments: usize) -> (Vec<String>, Vec<String>) {
     (names, units)
 }
 
-/// Values of a group, in the order of [`head`].
+/// Returns the values of a group, in the order of [`head`].
 fn values(group: Group, simulation: &Simulation, line: usize) -> Vec<f64> {
     let count = simulation.model().lines[line].segment_count();
     match group {
@@ -270,10 +270,10 @@ fn values(group: Group, simulation: &Simulation, line: usize) -> Vec<f64> {
 }
 
 impl System {
-    /// Writes the shape of all lines, or of one by its row in the deck, for ParaView.
+    /// Writes the shape of all lines, or of one line by its row in the deck, in ParaView format.
     ///
     /// # Errors
-    /// No such line, a system that was not started, or a file that the operating system refuses.
+    /// No such line, the system was not started, or the operating system refuses the file.
     pub fn save_vtk(&self, path: &Path, line: Option<usize>) -> Outcome {
         if let Some(line) = line {
             self.line(line)?;

@@ -1,4 +1,4 @@
-//! A deck as a scene, with its objects and degrees of freedom in the deck's own order.
+//! Deck converted to a scene, with objects and degrees of freedom in the deck's order.
 
 use std::path::{Path, PathBuf};
 
@@ -9,37 +9,37 @@ use moorline_decks::{BodyRow, Carrier, Lists, load, moordyn_lists};
 use crate::failure::{Code, Failure, Outcome};
 use crate::settings::Settings;
 
-/// Name that the reader gives to the one vessel of OpenFAST; the interface has coupled points in its place.
+/// Name that the reader gives to the vessel of OpenFAST; this interface has coupled points instead.
 const VESSEL: &str = "vessel";
 
-/// Lines at the top of a table of tension that MoorDyn skips.
+/// Number of header lines of a tension table that MoorDyn skips [-].
 const HEADS: usize = 3;
 
-/// Object that the host moves.
+/// Object moved by the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Coupled {
-    /// Point or vessel of the scene; `None` of a body that carries nothing.
+    /// Point or vessel of the scene; `None` for a body that carries nothing.
     pub body: Option<Body>,
-    /// First of its degrees of freedom.
+    /// Index of its first degree of freedom.
     pub first: usize,
-    /// Number of its degrees of freedom: 3 or 6.
+    /// Number of its degrees of freedom [-]: 3 or 6.
     pub size: usize,
 }
 
-/// A deck that was read.
+/// Deck as read from its file.
 #[derive(Debug)]
 pub struct Deck {
-    /// Scene with the laws of the settings.
+    /// Scene with the laws selected by the settings.
     pub scene: Scene,
     /// Objects in the deck's order.
     pub lists: Lists,
-    /// Objects that the host moves, in the order of their degrees of freedom.
+    /// Objects moved by the host, in the order of their degrees of freedom.
     pub coupled: Vec<Coupled>,
-    /// Indices in the scene of the points, by row.
+    /// Indices of the points in the scene, by row.
     points: Vec<Option<usize>>,
-    /// Path of the deck without its extension, to which those of output files are added.
+    /// Path of the deck without its extension; the paths of output files begin with it.
     pub stem: PathBuf,
-    /// Remarks of the reader.
+    /// Remarks from reading the deck.
     pub remarks: Vec<String>,
 }
 
@@ -81,17 +81,17 @@ impl Deck {
         })
     }
 
-    /// Number of coupled degrees of freedom.
+    /// Returns the number of coupled degrees of freedom.
     pub fn degrees_of_freedom(&self) -> usize {
         self.coupled.iter().map(|coupled| coupled.size).sum()
     }
 
-    /// Index in the scene of the point of a deck's row, counted from 0.
+    /// Returns the index in the scene of the point in a row of the deck, counted from 0.
     pub fn point(&self, row: usize) -> Option<usize> {
         *self.points.get(row)?
     }
 
-    /// The coupled object of a body's row, counted from 0.
+    /// Returns the coupled object of the body in a row, counted from 0.
     pub fn coupled_body(&self, row: usize) -> Option<&Coupled> {
         let before = self.lists.bodies[..row.min(self.lists.bodies.len())].iter();
         let moved = |body: &&BodyRow| body.carrier == Carrier::Host;
@@ -100,7 +100,7 @@ impl Deck {
     }
 }
 
-/// Refuses a deck whose objects a host would count differently from the scene.
+/// Refuses a deck whose objects a host would number differently from the scene.
 fn check(lists: &Lists, scene: &Scene) -> Outcome {
     if lists.is_of_farm {
         return Err(Failure::missing(
@@ -150,7 +150,7 @@ fn coupled(lists: &Lists, scene: &Scene) -> Vec<Coupled> {
     bodies.chain(points).map(place).collect()
 }
 
-/// Remarks on the laws of a scene that differ from MoorDyn's under any settings.
+/// Remarks on laws of a scene that differ from MoorDyn's whatever the settings are.
 fn other_laws(scene: &Scene) -> Vec<&'static str> {
     let seabed = scene.seabed.as_ref();
     let viscoelastic = scene
@@ -174,7 +174,7 @@ fn other_laws(scene: &Scene) -> Vec<&'static str> {
     laws.into_iter().filter(|law| law.0).map(|law| law.1).collect()
 }
 
-/// Remarks on tables of tension that MoorDyn reads differently: it skips three lines without reading them.
+/// Remarks on tension tables that MoorDyn reads differently, since it skips the first three lines.
 fn rows_of_tables(scene: &Scene, deck: &Path) -> Vec<String> {
     let tables = scene
         .line_types
@@ -196,7 +196,7 @@ fn rows_of_tables(scene: &Scene, deck: &Path) -> Vec<String> {
     files.filter_map(remark).collect()
 }
 
-/// A deck that cannot be used, with all of its mistakes.
+/// Failure for a deck that cannot be used, with all its mistakes.
 fn refusal(error: &LoadError) -> Failure {
     let mut message = error.to_string();
     if let LoadError::Scene { mistakes, .. } = error {

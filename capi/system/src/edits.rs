@@ -1,4 +1,4 @@
-//! Changes of lines by the host: properties before the start, breaking off at any time.
+//! Changes of lines by the host: properties before the start, detachment at any time.
 
 use moorline::dynamics::Choice;
 use moorline::simulation::Simulation;
@@ -6,7 +6,7 @@ use moorline::simulation::Simulation;
 use crate::failure::{Code, Failure, Outcome};
 use crate::system::{Start, System};
 
-/// Names of time schemes without their numbers.
+/// Names of time schemes without their order numbers.
 const SCHEMES: [&str; 11] = [
     "Euler", "LEuler", "Heun", "RK", "AB", "LAB", "BEuler", "Midpoint", "ACA", "Wilson", "LRK",
 ];
@@ -21,7 +21,7 @@ impl System {
         }
     }
 
-    /// Unstretched length of a line [m].
+    /// Returns the unstretched length of a line [m].
     ///
     /// # Errors
     /// No such line.
@@ -31,10 +31,10 @@ impl System {
         Ok(sections.map(|section| section.length).sum())
     }
 
-    /// Sets the unstretched length of a line [m], before the start.
+    /// Sets the unstretched length of a line [m]; only before the start.
     ///
     /// # Errors
-    /// No such line, a length that is not positive, or a system that was started.
+    /// No such line, a length that is not positive, or the system was started.
     pub fn set_unstretched_length(&mut self, line: usize, length: f64) -> Outcome {
         let present = self.unstretched_length(line)?;
         if !(length.is_finite() && length > 0.0) {
@@ -53,7 +53,7 @@ impl System {
         Ok(())
     }
 
-    /// Returns whether a line has one constant axial stiffness.
+    /// Returns whether a line has a constant axial stiffness.
     ///
     /// # Errors
     /// No such line.
@@ -70,7 +70,7 @@ impl System {
             .filter(|_| line_type.tension_strain.is_none()))
     }
 
-    /// Axial stiffness EA of a line [N].
+    /// Returns the axial stiffness EA of a line [N].
     ///
     /// # Errors
     /// No such line, or one whose stiffness is not constant.
@@ -79,10 +79,10 @@ impl System {
         self.stiffness(line)?.ok_or_else(none)
     }
 
-    /// Sets the axial stiffness EA of a line [N], before the start.
+    /// Sets the axial stiffness EA of a line [N]; only before the start.
     ///
     /// # Errors
-    /// As [`System::constant_stiffness`], a stiffness that is not positive, or a system that was started.
+    /// As [`System::constant_stiffness`], a stiffness that is not positive, or the system was started.
     pub fn set_constant_stiffness(&mut self, line: usize, stiffness: f64) -> Outcome {
         let present = self.constant_stiffness(line)?;
         if !(stiffness.is_finite() && stiffness > 0.0) {
@@ -105,7 +105,7 @@ impl System {
         Ok(())
     }
 
-    /// Sets an upper limit of the internal time step [s]; it holds from the start on.
+    /// Sets an upper limit on the internal time step [s]; it takes effect at the next start.
     ///
     /// # Errors
     /// A step that is not positive.
@@ -118,7 +118,7 @@ impl System {
         Ok(())
     }
 
-    /// Keeps a Courant number [-].
+    /// Stores a Courant number [-]; it has no effect.
     ///
     /// # Errors
     /// A number that is not positive.
@@ -132,10 +132,10 @@ impl System {
         Ok(())
     }
 
-    /// Keeps the name of a time scheme.
+    /// Stores the name of a time scheme; it has no effect.
     ///
     /// # Errors
-    /// A name that is not one of these schemes.
+    /// The name is not that of a known scheme.
     pub fn set_scheme(&mut self, name: &str) -> Outcome {
         let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
         if !SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(stem)) {
@@ -148,10 +148,10 @@ impl System {
         Ok(())
     }
 
-    /// Breaks a line off a point, by their order in the deck. It holds from the next step on.
+    /// Detaches a line from a point, both by their order in the deck, from the next step on.
     ///
     /// # Errors
-    /// The line does not end at the point, the system was not started, or the release of the line needs an integrator other than the present one.
+    /// The line does not end at the point, the system was not started, or the release of the line requires another integrator than the current one.
     pub fn break_line(&mut self, point: usize, line: usize) -> Outcome {
         self.line(line)?;
         let attached = self.point_attached(point)?;
@@ -174,7 +174,7 @@ impl System {
         Ok(())
     }
 
-    /// Builds the simulation again with an end that may be released, and goes on from the present state.
+    /// Rebuilds the simulation with a line end that can be released, and continues from the current state.
     fn loosen(&mut self, line: usize, at_b: bool) -> Outcome {
         if self.start.loose.iter().any(|(other, _)| *other == line) {
             return Err(Failure::missing(

@@ -1,4 +1,4 @@
-//! Reasons why a call fails, with the numbers that such hosts use.
+//! Reasons why a call fails, with the numbers of MoorDyn's interface.
 
 /// Kind of a failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,31 +10,31 @@ pub enum Code {
     InvalidInputFile = -1,
     /// A file cannot be written.
     InvalidOutputFile = -2,
-    /// An argument is of the wrong kind, or comes at the wrong time.
+    /// An argument is of the wrong kind, or the call comes at the wrong time.
     InvalidInput = -3,
     /// The computation did not stay finite.
     NotFinite = -4,
-    /// Memory.
+    /// Memory cannot be allocated.
     Memory = -5,
-    /// An argument has a value that cannot be used; null is one.
+    /// An argument has a value that cannot be used, such as null.
     InvalidValue = -6,
-    /// moorline does not model it.
+    /// moorline does not model the requested feature.
     NotImplemented = -7,
-    /// Anything else, faults of the library included.
+    /// Any other error, including faults of the library.
     Unhandled = -255,
 }
 
-/// Failure with a sentence for the log.
+/// Failure with a message for the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
     /// Kind.
     pub code: Code,
-    /// Sentence.
+    /// Message.
     pub message: String,
 }
 
 impl Failure {
-    /// A failure of a kind.
+    /// Returns a failure of a kind.
     pub fn new(code: Code, message: impl Into<String>) -> Failure {
         Failure {
             code,
@@ -42,12 +42,12 @@ impl Failure {
         }
     }
 
-    /// An argument whose value cannot be used.
+    /// Returns the failure for an argument whose value cannot be used.
     pub fn value(message: impl Into<String>) -> Failure {
         Failure::new(Code::InvalidValue, message)
     }
 
-    /// Something that moorline does not model.
+    /// Returns the failure for a feature that moorline does not model.
     pub fn missing(message: impl Into<String>) -> Failure {
         Failure::new(Code::NotImplemented, message)
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::failure::{Code, Failure, Outcome};
 
-/// Level from which on nothing is written.
+/// Level that disables all messages.
 pub const NONE: i32 = 4096;
 /// Level of errors.
 pub const ERROR: i32 = 3;
@@ -15,7 +15,7 @@ pub const WARNING: i32 = 2;
 /// Level of messages.
 pub const MESSAGE: i32 = 1;
 
-/// Receivers of messages, each with the least level that it takes.
+/// Destinations of messages, each with the lowest level that it accepts.
 #[derive(Debug)]
 pub struct Log {
     console: i32,
@@ -34,7 +34,7 @@ impl Default for Log {
 }
 
 impl Log {
-    /// A log that writes to the console from a level on.
+    /// Returns a log that writes messages from a level on to the console.
     pub fn from_level(console: i32) -> Log {
         Log {
             console,
@@ -42,20 +42,20 @@ impl Log {
         }
     }
 
-    /// Sets the least level of the console.
+    /// Sets the lowest level written to the console.
     pub fn set_console(&mut self, level: i32) {
         self.console = level;
     }
 
-    /// Sets the least level of the file.
+    /// Sets the lowest level written to the file.
     pub fn set_file_level(&mut self, level: i32) {
         self.file_level = level;
     }
 
-    /// Begins a file, in place of an older one.
+    /// Creates a log file; an existing one is overwritten.
     ///
     /// # Errors
-    /// The operating system refuses.
+    /// The operating system refuses the file.
     pub fn set_file(&mut self, path: &Path) -> Outcome {
         let refuse = |error| {
             Failure::new(
@@ -67,7 +67,7 @@ impl Log {
         Ok(())
     }
 
-    /// Writes a message of a level. A console or file that takes none is no failure of the call.
+    /// Writes a message at a level. A failure to write to the console or file is ignored.
     pub fn write(&mut self, level: i32, message: &str) {
         let word = match level {
             ERROR.. => "error: ",

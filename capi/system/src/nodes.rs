@@ -1,4 +1,4 @@
-//! Nodes of lines: places, tensions and the parts of the force on them. Lines count from 0 in the deck's order, nodes from end A.
+//! Nodes of lines: positions, tensions and force contributions. Lines count from 0 in the deck's order, nodes from 0 at end A.
 
 use moorline::dynamics::reaction;
 use moorline::elements::shear;
@@ -11,18 +11,18 @@ use crate::failure::{Failure, Outcome};
 use crate::objects::{node_mass, row, rows, tangent};
 use crate::system::System;
 
-/// Quantity of a node, a vector in global axes.
+/// Vector quantity of a node, in global axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Position [m].
     Position,
     /// Velocity [m/s].
     Velocity,
-    /// Sum of all forces on the node but inertia [N].
+    /// Sum of all forces on the node except inertia [N].
     Force,
     /// Tension, towards end B [N].
     Tension,
-    /// Force of bending stiffness [N].
+    /// Bending force [N].
     Bending,
     /// Weight less buoyancy [N].
     Weight,
@@ -30,13 +30,13 @@ pub enum Quantity {
     Drag,
     /// Force of the accelerated water, added mass included [N].
     FroudeKrylov,
-    /// Force of the seabed [N].
+    /// Seabed force [N].
     Seabed,
     /// Velocity of the water [m/s].
     Water,
 }
 
-/// A line of a simulation with its model, state and water.
+/// View of a line of a simulation: its model, state and water.
 struct View<'a> {
     simulation: &'a Simulation,
     model: &'a Model,
@@ -61,14 +61,14 @@ impl<'a> View<'a> {
         self.line.segment_count()
     }
 
-    /// Tension of a segment with its damping, along its direction from A to B [N].
+    /// Tension of a segment, damping included, along its direction from A to B [N].
     fn pull(&self, segment: usize) -> Vector3<f64> {
         let chord = self.state.position[segment + 1] - self.state.position[segment];
         let size = reaction::tension(self.line, self.state, segment, self.model.solver.negative_tension);
         size * chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
 
-    /// Tension of a node [N]: of the segment at an end, else the mean of the two next to it.
+    /// Nodal tension [N]: the tension of the segment at an end node, otherwise the mean of the two adjacent segments.
     fn tension(&self, node: usize) -> Vector3<f64> {
         match node {
             0 => self.pull(0),
@@ -77,7 +77,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Shear of a segment on its node towards end B [N]; the clamp of the nearer end counts.
+    /// Shear force of a segment on its node towards end B [N], with the clamp at the nearer line end.
     fn shear(&self, segment: usize) -> Vector3<f64> {
         if self.line.bending.is_none() {
             return Vector3::zeros();
@@ -135,7 +135,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Sum of all forces but inertia [N].
+    /// Sum of all forces on a node except inertia [N].
     fn force(&self, node: usize) -> Vector3<f64> {
         let before = (node > 0).then(|| self.pull(node - 1));
         let after = (node < self.last()).then(|| self.pull(node));
@@ -166,12 +166,12 @@ impl<'a> View<'a> {
     }
 }
 
-/// Quantity of a node of a line of a simulation [m, m/s, N].
+/// Returns a quantity of a node of a line [m, m/s, N].
 pub fn vector(simulation: &Simulation, line: usize, node: usize, quantity: Quantity) -> [f64; 3] {
     View::new(simulation, line).vector(node, quantity).into()
 }
 
-/// Tension of a segment without its damping [N], and strain [-] with its rate [1/s]; `None` of a viscoelastic line.
+/// Returns the tension of a segment without its damping [N], the strain [-] and the strain rate [1/s]; `None` for a viscoelastic line.
 pub fn stretch(simulation: &Simulation, line: usize, segment: usize) -> Option<[f64; 3]> {
     let view = View::new(simulation, line);
     if view.line.segments.viscoelastic.is_some() {
@@ -186,7 +186,7 @@ pub fn stretch(simulation: &Simulation, line: usize, segment: usize) -> Option<[
     Some([view.line.spring(segment, strain).tension, strain, rate])
 }
 
-/// Damping force of a segment along its direction from A to B [N]; `None` of a viscoelastic line.
+/// Returns the damping force of a segment along its direction from A to B [N]; `None` for a viscoelastic line.
 pub fn damping(simulation: &Simulation, line: usize, segment: usize) -> Option<[f64; 3]> {
     let [spring, ..] = stretch(simulation, line, segment)?;
     let view = View::new(simulation, line);
@@ -214,7 +214,7 @@ impl System {
         }
     }
 
-    /// A line's row.
+    /// Returns a line's row.
     ///
     /// # Errors
     /// No such line.
@@ -222,16 +222,16 @@ impl System {
         row(&self.deck.lists.lines, line, "line")
     }
 
-    /// Quantity of a node of a line [m, m/s, N].
+    /// Returns a quantity of a node of a line [m, m/s, N].
     ///
     /// # Errors
-    /// No such line or node, or a system that was not started.
+    /// No such line or node, or the system was not started.
     pub fn node_vector(&self, line: usize, node: usize, quantity: Quantity) -> Outcome<[f64; 3]> {
         let view = self.view_of_node(line, node)?;
         Ok(view.vector(node, quantity).into())
     }
 
-    /// Curvature of a line at a node [1/m]; 0 where the line has no bending stiffness.
+    /// Returns the curvature of a line at a node [1/m]; 0 if the line has no bending stiffness.
     ///
     /// # Errors
     /// As [`System::node_vector`].
@@ -241,7 +241,7 @@ impl System {
         Ok(bending.map_or(0.0, |nodes| nodes[node].curvature))
     }
 
-    /// Mass matrix of a node with its added mass, by rows [kg].
+    /// Returns the mass matrix of a node, added mass included, row by row [kg].
     ///
     /// # Errors
     /// As [`System::node_vector`].
@@ -250,16 +250,16 @@ impl System {
         Ok(rows(&node_mass(view.model, view.simulation, (line, node))))
     }
 
-    /// Tension of the last segment at end B [N].
+    /// Returns the tension of the last segment, at end B [N].
     ///
     /// # Errors
-    /// No such line, or a system that was not started.
+    /// No such line, or the system was not started.
     pub fn fairlead_tension(&self, line: usize) -> Outcome<f64> {
         let view = self.view(line)?;
         Ok(view.tension(view.last()).norm())
     }
 
-    /// Greatest tension of all nodes [N].
+    /// Returns the greatest nodal tension of a line [N].
     ///
     /// # Errors
     /// As [`System::fairlead_tension`].
@@ -270,8 +270,8 @@ impl System {
             .fold(0.0, f64::max))
     }
 
-    /// Horizontal and vertical force [N] at the fairlead and at the anchor of a line, as OpenFAST's first interface has them: those on the end
-    /// nodes, with the weight of the nodes' mass, added mass included, in the vertical one.
+    /// Returns the horizontal and vertical forces [N] at the fairlead and at the anchor of a line, as in OpenFAST's first interface: the forces on
+    /// the end nodes; the vertical one includes the weight of the nodal mass with its added mass.
     ///
     /// # Errors
     /// As [`System::fairlead_tension`].

@@ -11,13 +11,13 @@ use crate::deck::Coupled;
 use crate::failure::{Code, Failure, Outcome};
 use crate::system::System;
 
-/// Numbers of the kinds of motion.
+/// Numbers of the kinds of motion, as in MoorDyn's interface.
 pub mod kind {
-    /// The host moves it.
+    /// Moved by the host.
     pub const COUPLED: i32 = -1;
-    /// Forces move it.
+    /// Moved by forces.
     pub const FREE: i32 = 0;
-    /// It never moves.
+    /// Fixed, or carried by a body.
     pub const FIXED: i32 = 1;
 }
 
@@ -30,10 +30,10 @@ pub struct BodyState {
     pub rate: [f64; 6],
 }
 
-/// Six-by-six mass matrix by rows [kg, kg m, kg m²].
+/// Six-by-six mass matrix, row by row [kg, kg m, kg m²].
 pub type BodyMass = [[f64; 6]; 6];
 
-/// The row of an object, or a refusal.
+/// Returns the row of an object, or a refusal.
 pub(crate) fn row<'a, T>(rows: &'a [T], index: usize, what: &str) -> Outcome<&'a T> {
     rows.get(index).ok_or_else(|| {
         let message = format!("there is no {what} {}: the deck has {}", index + 1, rows.len());
@@ -42,7 +42,7 @@ pub(crate) fn row<'a, T>(rows: &'a [T], index: usize, what: &str) -> Outcome<&'a
 }
 
 impl System {
-    /// A body's row.
+    /// Returns a body's row.
     ///
     /// # Errors
     /// No such body.
@@ -50,7 +50,7 @@ impl System {
         row(&self.deck.lists.bodies, index, "body")
     }
 
-    /// A rod's row.
+    /// Returns a rod's row.
     ///
     /// # Errors
     /// No such rod.
@@ -58,7 +58,7 @@ impl System {
         row(&self.deck.lists.rods, index, "rod")
     }
 
-    /// Number of a point in the deck.
+    /// Returns the number of a point in the deck.
     ///
     /// # Errors
     /// No such point.
@@ -66,7 +66,7 @@ impl System {
         row(&self.deck.lists.points, index, "point").copied()
     }
 
-    /// Index of a point in the scene.
+    /// Returns the index of a point in the scene.
     fn scene_point(&self, index: usize) -> Outcome<usize> {
         self.point_number(index)?;
         let missing = || {
@@ -78,7 +78,7 @@ impl System {
         self.deck.point(index).ok_or_else(missing)
     }
 
-    /// Kind of a body's motion.
+    /// Returns the kind of a body's motion.
     ///
     /// # Errors
     /// No such body.
@@ -90,10 +90,10 @@ impl System {
         })
     }
 
-    /// Pose and motion of a body: those that the host gave, extended to the end of the last step.
+    /// Returns the pose and motion of a body as set by the host, extrapolated to the end of the last step.
     ///
     /// # Errors
-    /// No such body, or a system that was not started.
+    /// No such body, or the system was not started.
     pub fn body_state(&self, index: usize) -> Outcome<BodyState> {
         let body = self.body(index)?;
         self.simulation()?;
@@ -111,10 +111,10 @@ impl System {
         })
     }
 
-    /// Force [N] and moment [N m] about a coupled body's reference point.
+    /// Returns force [N] and moment [N m] about a coupled body's reference point.
     ///
     /// # Errors
-    /// No such body, one that does not move, or a system that was not started.
+    /// No such body, the body is not coupled, or the system was not started.
     pub fn body_force(&self, index: usize) -> Outcome<[f64; 6]> {
         self.body(index)?;
         let mut all = vec![0.0; self.deck.degrees_of_freedom()];
@@ -127,7 +127,7 @@ impl System {
         Ok(std::array::from_fn(|axis| all[coupled.first + axis]))
     }
 
-    /// Mass matrix of the end nodes that a coupled body carries, about its reference point: the host has the body's own.
+    /// Returns the mass matrix of the end nodes on a coupled body, about its reference point. The body's own mass belongs to the host.
     ///
     /// # Errors
     /// As [`System::body_force`].
@@ -139,7 +139,7 @@ impl System {
         }
     }
 
-    /// Mass matrix of the end nodes that a coupled object carries, about its reference point; zero for a point.
+    /// Returns the mass matrix of the end nodes on a coupled body, about its reference point; zero for a point.
     pub(crate) fn carried_mass(&self, coupled: &Coupled) -> Outcome<BodyMass> {
         let simulation = self.simulation()?;
         let place = &self.motion[0][coupled.first..];
@@ -163,7 +163,7 @@ impl System {
         Ok(sum)
     }
 
-    /// Kind of a point's motion; one that a body carries is fixed.
+    /// Returns the kind of a point's motion; a point on a body counts as fixed.
     ///
     /// # Errors
     /// No such point.
@@ -176,17 +176,17 @@ impl System {
         })
     }
 
-    /// State of a point.
+    /// Returns the state of a point.
     ///
     /// # Errors
-    /// No such point, or a system that was not started.
+    /// No such point, or the system was not started.
     pub fn point_state(&self, index: usize) -> Outcome<PointState> {
         let point = self.scene_point(index)?;
         Ok(self.simulation()?.state().points[point])
     }
 
-    /// Force on a point of its lines and of itself, without the inertia of nodes and point [N]; with it where the settings request reactions and the point
-    /// is not free.
+    /// Returns the force on a point from its lines and its own loads [N]. It excludes the inertia of nodes and point, unless the settings select
+    /// reactions and the point is not free.
     ///
     /// # Errors
     /// As [`System::point_state`].
@@ -198,7 +198,7 @@ impl System {
         })
     }
 
-    /// Mass matrix of a point with the end nodes of its lines, added mass included, by rows [kg].
+    /// Returns the mass matrix of a point and the end nodes of its lines, added mass included, row by row [kg].
     ///
     /// # Errors
     /// As [`System::point_state`].
@@ -207,7 +207,7 @@ impl System {
         Ok(rows(&end_mass(self.simulation()?, point)))
     }
 
-    /// Line, by its order in the deck, and end, 0 of A and 1 of B, of each attachment of a point.
+    /// Returns for each attachment of a point the line, by its order in the deck, and the end: 0 for A, 1 for B.
     ///
     /// # Errors
     /// No such point.
@@ -221,10 +221,10 @@ impl System {
         Ok(found)
     }
 
-    /// Place of a node of a rod, from end A [m], and its velocity [m/s].
+    /// Returns the position [m] and velocity [m/s] of a node of a rod, counted from 0 at end A.
     ///
     /// # Errors
-    /// No such rod or node, or a system that was not started.
+    /// No such rod or node, or the system was not started.
     pub fn rod_node(&self, index: usize, node: usize) -> Outcome<[[f64; 3]; 2]> {
         let rod = self.rod(index)?;
         self.simulation()?;
@@ -262,7 +262,7 @@ fn rotation(place: &[f64; 6]) -> UnitQuaternion<f64> {
     AngleOrder::Xyz.rotation(Vector3::from_row_slice(&place[3..]))
 }
 
-/// Rows of a matrix, in its unit.
+/// Rows of a matrix, in the same unit.
 pub(crate) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|row| [0, 1, 2].map(|column| matrix[(row, column)]))
 }
@@ -292,7 +292,7 @@ pub(crate) fn node_mass(
     Slender::new(masses).matrix(tangent(data, &shape.position, node))
 }
 
-/// Unit tangent of a line at a node [-]: the mean of the directions of the segments next to it.
+/// Unit tangent of a line at a node [-]: the mean direction of the adjacent segments.
 pub(crate) fn tangent(line: &Line, position: &[Vector3<f64>], node: usize) -> Vector3<f64> {
     let direction = |segment: usize| {
         let chord = position[segment + 1] - position[segment];
@@ -307,7 +307,7 @@ pub(crate) fn tangent(line: &Line, position: &[Vector3<f64>], node: usize) -> Ve
     both.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
 }
 
-/// Adds a mass [kg] at an arm [m] to a matrix about another point.
+/// Adds a mass matrix [kg] with a lever arm [m] to a matrix about another point.
 fn add_mass(sum: &mut BodyMass, mass: &Matrix3<f64>, arm: Vector3<f64>) {
     let cross = arm.cross_matrix();
     let [coupling, turning] = [mass * cross.transpose(), cross * mass * cross.transpose()];

@@ -1,6 +1,6 @@
-//! The state of a system as bytes: sealed in files, and in words of eight bytes for hosts.
+//! State of a system as bytes: sealed in files, and in words of eight bytes for hosts.
 //!
-//! Words: number of bytes, then the sealed bytes, filled up with zeros. The value holds the SHA-256 of the deck's scene, the start and the
+//! Words: the number of sealed bytes, then the sealed bytes, padded with zeros. The state contains the SHA-256 of the deck's scene, the start and the
 //! snapshot of the simulation, so that a state of another deck is refused.
 
 use std::path::Path;
@@ -14,13 +14,13 @@ use sha2::{Digest, Sha256};
 use crate::failure::{Code, Failure, Outcome};
 use crate::system::{Start, System};
 
-/// Mark of a state: a word.
+/// Mark of a state: one word.
 const MARK: [u8; WORD] = *b"moorlin3";
-/// Words with the length and the mark of a state.
+/// Number of words with the length and the mark of a state.
 pub const HEAD: usize = 2;
 const WORD: usize = size_of::<u64>();
 
-/// A state as it is written.
+/// State as it is written and read.
 #[derive(Debug, Serialize, Deserialize)]
 struct Body {
     version: String,
@@ -43,7 +43,7 @@ pub(crate) fn check_sum(scene: &Scene) -> [u8; 32] {
     Sha256::digest(scene.to_toml().as_bytes()).into()
 }
 
-/// Number of words of a state by its first [`HEAD`] words.
+/// Returns the number of words of a state from its first [`HEAD`] words.
 ///
 /// # Errors
 /// The words do not begin a state of moorline.
@@ -57,10 +57,10 @@ pub fn length(head: [u64; HEAD]) -> Outcome<usize> {
 }
 
 impl System {
-    /// The state as words.
+    /// Serialises the state as words.
     ///
     /// # Errors
-    /// A system that was not started.
+    /// The system was not started.
     pub fn serialize(&self) -> Outcome<Vec<u64>> {
         let mut bytes = self.sealed()?;
         let mut words = vec![bytes.len() as u64];
@@ -82,10 +82,10 @@ impl System {
         Ok(sealed::seal(&MARK, &body))
     }
 
-    /// Goes back to a state; a system that was not started then is.
+    /// Restores a state; starts the system if it has not been started.
     ///
     /// # Errors
-    /// The words are no state of this deck; the system is unchanged.
+    /// The words are not a state of this deck; the system is unchanged.
     pub fn deserialize(&mut self, words: &[u64]) -> Outcome {
         let head = words.first_chunk::<HEAD>().copied().ok_or_else(damaged)?;
         if length(head)? != words.len() {
@@ -132,7 +132,7 @@ impl System {
     /// Writes the state to a file.
     ///
     /// # Errors
-    /// A system that was not started, or a file that the operating system refuses.
+    /// The system was not started, or the operating system refuses the file.
     pub fn save(&self, path: &Path) -> Outcome {
         std::fs::write(path, self.sealed()?).map_err(|error| {
             let message = format!("cannot write {}: {error}", path.display());
@@ -140,7 +140,7 @@ impl System {
         })
     }
 
-    /// Goes back to the state of a file.
+    /// Restores the state from a file.
     ///
     /// # Errors
     /// The file cannot be read, or as [`System::deserialize`].

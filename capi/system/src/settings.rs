@@ -1,21 +1,21 @@
-//! Choices that a host of MoorDyn's interface cannot make through it, from environment variables.
+//! Settings that a host cannot make through MoorDyn's interface, from environment variables.
 //!
 //! | variable | words | default |
 //! |---|---|---|
-//! | `MOORLINE_FORCE` | `nodal`: force of the lumped end node without its inertia; `reaction`: the load on the support, with it | `nodal` |
+//! | `MOORLINE_FORCE` | `nodal`: force on the lumped end node without its inertia; `reaction`: the load on the support, including this inertia | `nodal` |
 //! | `MOORLINE_LAWS` | `moordyn`: damping acts in compression, contact as given in the deck at the nodes; `moorline`: neither | `moordyn` |
-//! | `MOORLINE_PATH` | `jump`: constant velocity from where the host is, as in MoorDyn, with a jump at the start of the step; `smooth`: a C1 path through the ends of the same steps; `predict`: the C1 path of moorline's own hosts | `jump` |
-//! | `MOORLINE_TOLERANCE` | target error of the fairlead tension by the time steps, 1e-12 to 0.5 | `0.005` |
+//! | `MOORLINE_PATH` | `jump`: constant velocity from the host's position, as in MoorDyn, with a jump at the start of the step; `smooth`: a C1 path through the ends of the same steps; `predict`: the C1 path of moorline's own hosts | `jump` |
+//! | `MOORLINE_TOLERANCE` | target error of the fairlead tension from the time steps, 1e-12 to 0.5 | `0.005` |
 
 use moorline::physics::tension_table::TensionTable;
 use moorline::scene::{ContactLaw, LineType, Reconstruction, Scene};
 
 use crate::failure::{Code, Failure, Outcome};
 
-/// Half the width of a corner of the tension curve, over the shorter of the two intervals next to it [-].
+/// Half-width of a corner of the tension curve, relative to the shorter adjacent interval [-].
 const CORNER: f64 = 1e-3;
 
-/// Meaning of the force on a coupled object.
+/// Definition of the force on a coupled object.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Force {
     /// Sum of the forces on the lumped end nodes, without their inertia.
@@ -25,13 +25,13 @@ pub enum Force {
     Reaction,
 }
 
-/// Laws of slack lines, of contact and of tension between the rows of a table.
+/// Laws for slack lines, contact, and tension between the rows of a table.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Laws {
-    /// Those of MoorDyn.
+    /// Laws of MoorDyn.
     #[default]
     Moordyn,
-    /// Those of moorline.
+    /// Laws of moorline.
     Moorline,
 }
 
@@ -41,22 +41,22 @@ pub enum Path {
     /// Constant velocity from the position that the host gives, with a jump at the start of the step.
     #[default]
     Jump,
-    /// C1 through the positions that constant velocities reach at the ends of the steps.
+    /// C1 path through the positions that constant velocities reach at the ends of the steps.
     Smooth,
-    /// C1 towards a predicted position.
+    /// C1 path towards a predicted position.
     Predict,
 }
 
-/// All choices.
+/// All settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Meaning of forces.
+    /// Definition of the force.
     pub force: Force,
-    /// Laws.
+    /// Laws of lines and contact.
     pub laws: Laws,
-    /// Paths.
+    /// Path within a step.
     pub path: Path,
-    /// Target error of the fairlead tension by the time steps [-].
+    /// Target error of the fairlead tension from the time steps [-].
     pub tolerance: f64,
 }
 
@@ -72,10 +72,10 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Reads the choices from variables by their names.
+    /// Reads the settings from variables by name.
     ///
     /// # Errors
-    /// A word that is none of those known.
+    /// A value is not allowed.
     pub fn read(variable: impl Fn(&str) -> Option<String>) -> Outcome<Settings> {
         let tolerance = variable("MOORLINE_TOLERANCE").map_or(Ok(0.005), |text| {
             let number = text.trim().parse::<f64>().ok();
@@ -105,7 +105,7 @@ impl Settings {
         })
     }
 
-    /// Writes the choices to a scene.
+    /// Applies the settings to a scene.
     pub fn apply(&self, scene: &mut Scene) {
         scene.solver.tolerance = self.tolerance;
         scene.solver.input_reconstruction = match self.path {
@@ -123,8 +123,8 @@ impl Settings {
     }
 }
 
-/// Makes the tension of a line type straight between the rows of its table, as in MoorDyn, and bases its damping ratio on MoorDyn's stiffness: the last
-/// tension over the last strain.
+/// Makes the tension of a line type linear between the rows of its table, as in MoorDyn, and bases its damping ratio on MoorDyn's stiffness: the last
+/// tension divided by the last strain.
 fn straighten(line_type: &mut LineType) {
     let Some(table) = &mut line_type.tension_strain else {
         return;
@@ -139,7 +139,7 @@ fn straighten(line_type: &mut LineType) {
     }
 }
 
-/// Rows of strain [-] and tension [N] with two more next to each inner one, so that the smooth curve through all of them is straight except at corners.
+/// Inserts two rows of strain [-] and tension [N] next to each inner row, so that the smooth curve through all rows is straight except at corners.
 fn with_corners(rows: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut all = vec![rows[0]];
     for three in rows.windows(3) {

@@ -1,4 +1,4 @@
-//! The life of a system: created from a deck, started at the host's positions, stepped.
+//! Life cycle of a system: created from a deck, started at the host's positions, stepped.
 
 use std::path::Path;
 
@@ -16,13 +16,13 @@ use crate::log::{Log, MESSAGE, WARNING};
 use crate::saved::check_sum;
 use crate::settings::{Force, Path as HostPath, Settings};
 
-/// Difference between the clocks of the host and the simulation that counts as rounding [s].
+/// Difference between the clocks of the host and the simulation that is attributed to rounding [s].
 const CLOCK_TOLERANCE: f64 = 1e-6;
 
-/// Words of remarks of the reader that do not hold behind this interface, which has MoorDyn's laws and files of single lines.
+/// Words of the reader's remarks that do not apply to this interface, which has MoorDyn's laws and writes files of single lines.
 const OVERRULED: [&str; 2] = ["negative_tension", "no files of single lines"];
 
-/// Scene keys that occur in notes, and the environment variables that replace them here.
+/// Scene keys that occur in notes, and the environment variables that take their place in this interface.
 const CHOICES: [(&str, &str); 3] = [
     ("solver.tolerance", "MOORLINE_TOLERANCE"),
     (
@@ -32,41 +32,41 @@ const CHOICES: [(&str, &str); 3] = [
     ("solver.input_reconstruction = \"smooth\"", "MOORLINE_PATH=smooth"),
 ];
 
-/// All that determines the simulation before its first step, in addition to the scene of the deck.
+/// Everything that determines the simulation before its first step, in addition to the scene of the deck.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Coupled positions [m] and angles [rad].
     pub place: Vec<f64>,
-    /// True if lines start as catenaries and not in equilibrium.
+    /// True if lines start as catenaries instead of in equilibrium.
     pub is_approximate: bool,
-    /// Lines that may be released at end A or B, by the order of the scene.
+    /// Line ends that can be released: index of the line in the scene, and true for end B.
     pub loose: Vec<(usize, bool)>,
     /// Time [s].
     pub time: f64,
 }
 
-/// A system.
+/// Mooring system of a host.
 #[derive(Debug)]
 pub struct System {
     /// The deck.
     pub deck: Deck,
     /// Messages.
     pub log: Log,
-    /// Name of the time scheme, of the deck or the host; it has no effect.
+    /// Name of the time scheme set by the deck or the host; it has no effect.
     pub scheme: String,
-    /// Courant number of the deck or the host [-]; it has no effect.
+    /// Courant number set by the deck or the host [-]; it has no effect.
     pub cfl: f64,
-    /// Internal step of the deck or the host [s].
+    /// Internal time step set by the deck or the host [s].
     pub dt: f64,
     pub(crate) settings: Settings,
     pub(crate) simulation: Option<Simulation>,
     pub(crate) start: Start,
     /// Check sum of the scene that was started.
     pub(crate) scene_sum: [u8; 32],
-    /// Coupled positions [m] and angles [rad] at the end of the last step, their rates [m/s, rad/s], and the accelerations with which these rates differ from
-    /// those of the step before [m/s², rad/s²].
+    /// Coupled positions [m] and angles [rad] at the end of the last step; their rates during it [m/s, rad/s]; and their accelerations, from the difference
+    /// between these rates and those of the step before [m/s², rad/s²].
     pub(crate) motion: [Vec<f64>; 3],
-    /// Time of the host less that of the simulation [s].
+    /// Host time minus simulation time [s].
     pub(crate) ahead: f64,
     files: Option<Files>,
     pub(crate) watch: Option<Watch>,
@@ -75,10 +75,10 @@ pub struct System {
 }
 
 impl System {
-    /// Reads a deck, with choices from the environment and messages to `log`.
+    /// Reads a deck, with settings from the environment; messages go to `log`.
     ///
     /// # Errors
-    /// The deck cannot be used, or a choice is unknown.
+    /// The deck cannot be used.
     pub fn create(path: &Path, settings: Settings, log: Log) -> Outcome<System> {
         let deck = Deck::read(path, &settings)?;
         let number = |keys: &[&str]| deck.lists.option(keys).and_then(|text| text.parse::<f64>().ok());
@@ -106,7 +106,7 @@ impl System {
         Ok(system)
     }
 
-    /// Starts at coupled positions `x` [m, rad] that move by `xd` [m/s, rad/s]: in static equilibrium or, `is_approximate`, on catenaries.
+    /// Starts at the coupled positions `x` [m, rad], which move at `xd` [m/s, rad/s]: in static equilibrium or, if `is_approximate`, on catenaries.
     ///
     /// # Errors
     /// Wrong or non-finite positions, or no equilibrium.
@@ -131,7 +131,7 @@ impl System {
         Ok(())
     }
 
-    /// Builds the simulation of a start; on failure the present one stays.
+    /// Builds the simulation of a start; a failure keeps the current one.
     fn begin(&mut self, start: Start) -> Outcome {
         let simulation = self.simulation_of(&start)?;
         self.watch = Some(Watch::new(&self.deck.scene, &simulation));
@@ -144,7 +144,7 @@ impl System {
         Ok(())
     }
 
-    /// Simulation of a start.
+    /// Returns the simulation of a start.
     pub(crate) fn simulation_of(&self, start: &Start) -> Outcome<Simulation> {
         if start.place.len() != self.deck.degrees_of_freedom() {
             return Err(Failure::value(
@@ -159,7 +159,7 @@ impl System {
         Ok(simulation)
     }
 
-    /// Scene of a start: its references are the positions of the host.
+    /// Returns the scene of a start, whose reference positions are the host's positions.
     fn scene_of(&self, start: &Start) -> Scene {
         let mut scene = self.deck.scene.clone();
         for coupled in &self.deck.coupled {
@@ -190,7 +190,7 @@ impl System {
         scene
     }
 
-    /// The simulation.
+    /// Returns the simulation.
     ///
     /// # Errors
     /// The system was not started.
@@ -221,11 +221,11 @@ impl System {
         }
     }
 
-    /// Steps from the host's time `t` to `t + dt` [s] with coupled positions `x` [m, rad] at its start, which move by `xd` [m/s, rad/s] throughout. A step
-    /// of 0 s changes nothing.
+    /// Steps from the host's time `t` to `t + dt` [s] with the coupled positions `x` [m, rad] at its start, which move at `xd` [m/s, rad/s]
+    /// throughout. A step of 0 s changes nothing.
     ///
     /// # Errors
-    /// Arguments that cannot be used, or a step that fails; the state is then that before the call.
+    /// Arguments that cannot be used, a step that fails (the simulation then keeps its state), or a channel file that cannot be written.
     pub fn step(&mut self, x: &[f64], xd: &[f64], t: f64, dt: f64) -> Outcome<f64> {
         self.check_motion(x, xd)?;
         if !t.is_finite() || !dt.is_finite() || dt < 0.0 {
@@ -257,7 +257,7 @@ impl System {
         Ok(time)
     }
 
-    /// Logs notes on the present state, each once, with environment variables in place of scene keys.
+    /// Logs notes on the current state, each once, with environment variables instead of scene keys.
     fn log_watch(&mut self) {
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             for note in watch.look(simulation) {
@@ -269,7 +269,7 @@ impl System {
         }
     }
 
-    /// Takes the host's clock at the first step; later it may differ only where nothing depends on time.
+    /// Adopts the host's clock at the first step. Afterwards the host's time may differ only if no load depends on time.
     fn follow_clock(&mut self, t: f64) -> Outcome {
         let gap = t - self.simulation()?.time() - self.ahead;
         if gap.abs() <= CLOCK_TOLERANCE * t.abs().max(1.0) {
@@ -306,7 +306,7 @@ impl System {
         Ok(())
     }
 
-    /// Passes the motion over a step [s] to the simulation, in the form that its paths need.
+    /// Passes the motion over a step of `dt` [s] to the simulation, in the form that the selected path needs.
     fn set_motion(&mut self, x: &[f64], xd: &[f64], dt: f64) {
         let Some(simulation) = &mut self.simulation else {
             return;
@@ -340,11 +340,11 @@ impl System {
         }
     }
 
-    /// Writes the forces on the coupled objects [N, N m], in the order of the degrees of freedom. As in MoorDyn, nodal forces on a body contain −M a of the
+    /// Computes the forces on the coupled objects [N, N m], in the order of the degrees of freedom. As in MoorDyn, nodal forces on a body contain −M a of the
     /// nodes that it carries, and those on a point do not.
     ///
     /// # Errors
-    /// Room for another number of forces, a system that was not started, or a force that is not finite.
+    /// A wrong number of forces, the system was not started, or a force is not finite.
     pub fn forces(&self, forces: &mut [f64]) -> Outcome {
         let simulation = self.simulation()?;
         if forces.len() != self.deck.degrees_of_freedom() {
@@ -378,7 +378,7 @@ impl System {
         Ok(())
     }
 
-    /// Time of the host [s].
+    /// Returns the host's time [s].
     ///
     /// # Errors
     /// The system was not started.
@@ -386,7 +386,7 @@ impl System {
         Ok(self.simulation()?.time() + self.ahead)
     }
 
-    /// Begins the files of channels, unless they are being written.
+    /// Creates the channel files, unless they are open.
     pub(crate) fn open_files(&mut self) -> Outcome {
         if self.files.is_none()
             && let Some(simulation) = &self.simulation
@@ -404,7 +404,7 @@ impl System {
     }
 }
 
-/// Roll, pitch and yaw in moorline's order from those of a host [rad], nearest to others [rad].
+/// Converts roll, pitch and yaw of a host to moorline's order [rad]; of equivalent angles, those nearest to `near` [rad].
 pub(crate) fn host_angles(angles: &[f64], near: Vector3<f64>) -> Vector3<f64> {
     let rotation = AngleOrder::Xyz.rotation(Vector3::from_row_slice(angles));
     AngleOrder::Zyx.angles(&rotation, near)

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::failure::{Failure, Outcome};
 use crate::system::System;
 
-/// Motion of the water at a place.
+/// Motion of the water at a position.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Flow {
     /// Velocity [m/s].
@@ -16,15 +16,15 @@ pub struct Flow {
     pub elevation: f64,
 }
 
-/// Message for every call that needs water from a host.
+/// Message of every call that needs water kinematics from a host.
 pub const NO_HOST_WATER: &str = "water kinematics that the host gives are not modelled: give waves and currents in the deck \
      (WaveKin 7 or 0, Currents 1 or 0)";
 
 impl System {
-    /// Motion of the water at a place [m], by current and waves, at the present time.
+    /// Returns the motion of the water at a position [m], from current and waves, at the current time.
     ///
     /// # Errors
-    /// A system that was not started, or a place that is not finite.
+    /// The system was not started, or the position is not finite.
     pub fn flow(&self, place: [f64; 3]) -> Outcome<Flow> {
         let simulation = self.simulation()?;
         if place.iter().any(|value| !value.is_finite()) {
@@ -49,10 +49,10 @@ impl System {
         })
     }
 
-    /// Depth of the seabed at a place, positive down [m].
+    /// Returns the depth of the seabed at a horizontal position [m], positive down [m].
     ///
     /// # Errors
-    /// A system that was not started, or one without a seabed.
+    /// The system was not started, the position is not finite, or there is no seabed.
     pub fn depth_at(&self, x: f64, y: f64) -> Outcome<f64> {
         let model = self.simulation()?.model();
         if !x.is_finite() || !y.is_finite() {
@@ -65,10 +65,10 @@ impl System {
         }
     }
 
-    /// Mean and least of the soundings [m], or the depth where the seabed is level.
+    /// Returns the mean and least depth of the soundings [m], or the depth of a level seabed twice.
     ///
     /// # Errors
-    /// No seabed.
+    /// The deck has no seabed.
     pub fn depths(&self) -> Outcome<[f64; 2]> {
         let seabed = self.deck.scene.seabed.as_ref();
         let seabed = seabed.ok_or_else(|| Failure::value("the deck has no seabed"))?;

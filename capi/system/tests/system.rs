@@ -1,4 +1,4 @@
-//! Meaning of the interface of MoorDyn's hosts: order of degrees of freedom, angles, forces, states, refusals.
+//! Semantics of MoorDyn's interface: order of degrees of freedom, angles, forces, states, refusals.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use moorline_system::objects::kind;
 use moorline_system::settings::{Force, Path, Settings};
 use moorline_system::{Code, System};
 
-/// A coupled point, a coupled body with two points and a fixed body with one; a free point between two lines.
+/// One coupled point, one coupled body with two points and one fixed body with one point; a free point between two lines.
 const DECK: &str = "\
 three lines
 --- LINE TYPES ---
@@ -80,7 +80,7 @@ fn forces(system: &System) -> [f64; 9] {
     forces
 }
 
-/// Steps of a swaying and turning body and point [s].
+/// Makes `count` steps of 0.02 s with a swaying and turning body and a swaying point; returns the forces [N, N m].
 fn sway(system: &mut System, from: usize, count: usize) -> Vec<[f64; 9]> {
     let step = 0.02;
     let row = |k: usize| {
@@ -234,7 +234,7 @@ fn a_reaction_has_the_inertia_of_the_end_nodes_and_a_nodal_force_has_not() {
     let (nodal, reaction) = (of(Force::Nodal), of(Force::Reaction));
     let mean = 68.0 / 8.0 * 100.0; // mass of half a segment [kg]
     let difference = (nodal[6] - reaction[6]).abs();
-    let acceleration = 0.4; // of the point, less than [m/s²]
+    let acceleration = 0.4; // upper bound for the point [m/s²]
     assert!(
         difference > 0.0 && difference < 5.0 * mean * acceleration,
         "{difference}"

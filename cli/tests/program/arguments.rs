@@ -1,8 +1,8 @@
-//! Arguments, and files that are no scenes: exit codes and messages.
+//! Arguments, and files that are not scenes: exit codes and messages.
 
 use super::*;
 
-/// Every command that reads a scene, before and after its name.
+/// Every command that reads a scene: its arguments before and after the name of the scene.
 const COMMANDS: [[&str; 2]; 4] = [
     ["check", ""],
     ["statics", ""],

@@ -8,12 +8,12 @@ use std::{
 
 use super::*;
 
-/// A scene with these lines in its output table.
+/// Folder with a scene that has these lines in its output table.
 fn scene_with(output: &str) -> Folder {
     folder_with(&[("scene.toml", &format!("{SCENE}{output}\n"))])
 }
 
-/// Files of the folders `whole` and `parts` are the same, but for the cost in the report.
+/// Checks that the folders `whole` and `parts` contain the same files, with the same content except in reports and Parquet files.
 fn assert_same(folder: &Folder, files: &[&str]) {
     let names = folder.names_in("whole");
     assert_eq!(names, folder.names_in("parts"));
@@ -140,7 +140,7 @@ fn a_run_leaves_nothing_of_an_earlier_one() {
     assert_eq!(folder.names_in("out").join(" "), left);
 }
 
-/// Runs a command until there are rows of results, acts on it, and waits for its end.
+/// Runs a command until there are rows of results, sends it a signal, and waits for its end.
 #[cfg(unix)]
 fn interrupted(folder: &Folder, command: &str, file: &str, signal: &str) -> Output {
     folder.piped(command, |child| {
@@ -184,7 +184,7 @@ fn an_interrupted_run_keeps_its_rows_and_its_report_and_says_how_to_continue() {
     }
 }
 
-/// The system may cut a write that SIGKILL falls into.
+/// SIGKILL may interrupt a write.
 #[cfg(unix)]
 #[test]
 fn a_killed_run_leaves_whole_rows_but_for_the_last_one() {
@@ -200,7 +200,7 @@ fn a_killed_run_leaves_whole_rows_but_for_the_last_one() {
     folder.refused(&format!("{command} --resume"), &["out/run.state: not found"]);
 }
 
-/// The limit on the size of files stands for a full disk.
+/// A limit on the size of files simulates a full disk.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_ends_a_run_without_half_a_row() {

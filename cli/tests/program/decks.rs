@@ -33,7 +33,7 @@ fn a_run_of_a_deck_writes_its_channels_beside_moorlines_columns() {
     let columns = folder.columns("run deck.dat -o out");
     let column = |name: &str| columns.get(name).unwrap_or_else(|| panic!("{name}: {columns:?}"));
     assert_eq!(column("time").len(), 13);
-    // at rest, the force of the end node is that on the point
+    // This is the tension of the last segment; the force on the point also includes half a segment's weight, except the part supported by the seabed.
     let apart = |channel: &str, force: &str| column(channel)[0] / column(force)[0] - 1.0;
     assert!(apart("FairTen2", "line2.tension_b").abs() < 1e-6);
     assert!(apart("AnchTen1", "line1.tension_a").abs() < 1e-6);

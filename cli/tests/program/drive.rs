@@ -1,10 +1,10 @@
-//! `moorline run` of a deck that is moved from the command line: motion file, regular motion, duration, depth, places.
+//! `moorline run` of a deck that is moved from the command line: motion file, regular motion, duration, depth, positions.
 
 use std::f64::consts::TAU;
 
 use super::*;
 
-/// A folder with a deck and a motion file.
+/// Folder with a deck and a motion file.
 fn driven(deck: &str, motion: &str) -> Folder {
     folder_with(&[("deck.txt", deck), ("motion.csv", motion)])
 }
@@ -14,7 +14,7 @@ fn run(deck: &str, motion: &str, arguments: &str) -> BTreeMap<String, Vec<f64>> 
     driven(deck, motion).columns(&format!("run deck.txt -o out {arguments}"))
 }
 
-/// A table of a heave and pitch that grow, every 0.1 s for `end` seconds.
+/// Table of growing heave and pitch motions, every 0.1 s for `end` seconds.
 fn heave_and_pitch(header: &str, end: f64) -> String {
     let count = (end / 0.1).round() as usize;
     let row = |i: usize| {

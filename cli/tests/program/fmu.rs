@@ -23,7 +23,7 @@ fn place_library() {
         let library = moorline::output::binaries::find_library().unwrap();
         let beside = Path::new(env!("CARGO_BIN_EXE_moorline")).with_file_name(library.file_name().unwrap());
         if library != beside {
-            let _ = fs::remove_file(&beside); // of an earlier build, or none
+            let _ = fs::remove_file(&beside); // of an earlier build, if any
             fs::hard_link(library, beside).unwrap();
         }
     });
@@ -88,8 +88,8 @@ fn the_demo_drives_an_fmu_that_gives_the_bits_of_a_run() {
 #[test]
 fn a_missing_fmu_library_is_named_with_how_to_build_it() {
     let folder = folder();
-    // The program alone, away from the library. A link, since a program that was just written may still count as open where other
-    // threads start processes.
+    // The program is alone, away from the library. It is a link, since a program that was just written may still count as open while other threads
+    // start processes.
     let bin = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
     let program = bin
         .path()

@@ -23,7 +23,7 @@ use std::process::{Child, Command, Output, Stdio};
 use tempfile::TempDir;
 use text::assert_says;
 
-/// A hanging line in still air, quick to run.
+/// A hanging line in still air, which runs quickly.
 const SCENE: &str = include_str!("../../../tests/scenes/rope.toml");
 
 const OPENFAST: &str = include_str!("../../../decks/tests/decks/openfast_v2.dat");
@@ -32,22 +32,22 @@ const C_STYLE: &str = include_str!("../../../decks/tests/decks/moordyn_c.txt");
 const FARM: &str = include_str!("../../../decks/tests/decks/farm.dat");
 const MAP: &str = include_str!("../../../decks/tests/decks/oc3.map");
 
-/// A folder in which the program runs.
+/// Folder in which the program runs.
 struct Folder(TempDir);
 
-/// A folder with the scene in it.
+/// Folder with the scene in it.
 fn folder() -> Folder {
     folder_with(&[("scene.toml", SCENE)])
 }
 
-/// A folder with files of these names and texts in it.
+/// Folder with files of these names and texts in it.
 fn folder_with(files: &[(&str, &str)]) -> Folder {
     let folder = Folder(tempfile::tempdir().unwrap());
     files.iter().for_each(|(name, text)| folder.write(name, text));
     folder
 }
 
-/// A folder with a scene of the repository in it, as `scene.toml`.
+/// Folder with a scene of the repository in it, as `scene.toml`.
 fn folder_of(name: &str) -> Folder {
     let path = format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     folder_with(&[("scene.toml", &fs::read_to_string(path).unwrap())])
@@ -66,7 +66,7 @@ impl Folder {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// The program with these arguments, which blanks divide, in the folder.
+    /// Returns the program with these arguments, separated by blanks, in the folder.
     fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_moorline"));
         command
@@ -91,26 +91,26 @@ impl Folder {
         child.wait_with_output().unwrap()
     }
 
-    /// Runs what must be done, and returns what it shows.
+    /// Runs a command that must succeed, and returns its output.
     fn done(&self, arguments: &str) -> String {
         let output = self.run(arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments}: {}", err(&output));
         out(&output)
     }
 
-    /// Runs what must be done and show all these parts.
+    /// Runs a command that must succeed and whose output must contain all these parts.
     fn shows(&self, arguments: &str, parts: &[&str]) {
         assert_says(&self.done(arguments), parts);
     }
 
-    /// Runs what must be done, and returns its remarks.
+    /// Runs a command that must succeed, and returns its remarks.
     fn remarks(&self, arguments: &str) -> String {
         let output = self.run(arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments}: {}", err(&output));
         err(&output)
     }
 
-    /// Runs what must be done, and reads the columns of its results by name.
+    /// Runs a command that must succeed, and reads the columns of its results by name.
     fn columns(&self, arguments: &str) -> BTreeMap<String, Vec<f64>> {
         self.done(arguments);
         let (names, rows) = table(&self.path("out/results.csv"));
@@ -119,22 +119,22 @@ impl Folder {
         columns.map(|(index, name)| (name, column(index))).collect()
     }
 
-    /// Runs what must be refused as wrong input with a message that has all these parts.
+    /// Runs a command that must be refused as wrong input with a message that contains all these parts.
     fn refused(&self, arguments: &str, parts: &[&str]) {
         self.ends(arguments, 2, parts);
     }
 
-    /// Runs a computation that must fail with a message that has all these parts.
+    /// Runs a computation that must fail with a message that contains all these parts.
     fn fails(&self, arguments: &str, parts: &[&str]) {
         self.ends(arguments, 1, parts);
     }
 
-    /// Runs what must end with this exit code and a message that has all these parts and no backtrace.
+    /// Runs a command that must end with this exit code and a message that contains all these parts and no backtrace.
     fn ends(&self, arguments: &str, code: i32, parts: &[&str]) {
         let output = self.run(arguments);
         let message = err(&output);
         assert_eq!(output.status.code(), Some(code), "{arguments}: {message}");
-        // a message that is broken into lines is compared as if it were not
+        // line breaks in a message are ignored
         let words = message.split_whitespace().filter(|word| *word != "│");
         assert_says(&words.collect::<Vec<_>>().join(" "), parts);
         assert!(!message.contains("panicked"), "{message}");
@@ -180,7 +180,7 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     (header, rows)
 }
 
-/// Adds the keys of all tables in it, arrays of tables included.
+/// Collects the keys of all tables in a value, including those in arrays.
 fn collect_keys(value: &serde_json::Value, keys: &mut Vec<String>) {
     match value {
         serde_json::Value::Object(table) => {
@@ -194,7 +194,7 @@ fn collect_keys(value: &serde_json::Value, keys: &mut Vec<String>) {
     }
 }
 
-/// Every key is on the page of the JSON.
+/// Checks that every key is documented on the page of the JSON output.
 fn assert_documented(json: &serde_json::Value) {
     let page = include_str!("../../../docs/json.md");
     let mut keys = Vec::new();

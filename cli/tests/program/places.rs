@@ -40,7 +40,7 @@ fn paths_may_have_spaces_and_any_letters_and_be_far_from_here() {
 
 #[test]
 fn a_closed_pipe_ends_the_program_in_silence() {
-    // a profile longer than a pipe holds, so that writing goes on after the reader has gone
+    // a profile longer than the pipe's buffer, so that writing continues after the reader has gone
     let folder = folder_with(&[("long.toml", &SCENE.replace("elements = 8", "elements = 1000"))]);
     let output = folder.piped("statics long.toml --json", |child| {
         let mut pipe = child.stdout.take().unwrap();
@@ -98,7 +98,7 @@ pub(super) fn send(signal: &str, child: &Child) {
     );
 }
 
-/// It waits for a scene that does not come.
+/// The program waits for a scene that is never written.
 #[cfg(unix)]
 #[test]
 fn a_run_that_is_interrupted_before_its_first_row_leaves_no_folder() {
@@ -118,7 +118,7 @@ fn a_run_that_is_interrupted_before_its_first_row_leaves_no_folder() {
     }
 }
 
-/// Each waits for a scene that does not come.
+/// Each command waits for a scene that is never written.
 #[cfg(unix)]
 #[test]
 fn every_command_that_is_interrupted_says_so_and_leaves_no_file() {
@@ -141,7 +141,7 @@ fn every_command_that_is_interrupted_says_so_and_leaves_no_file() {
     assert_eq!(folder.names(), ["scene.toml"]);
 }
 
-/// A pipe with a name, which nobody writes into or reads from.
+/// Makes a named pipe without writer or reader.
 #[cfg(unix)]
 fn make_pipe(path: &Path) {
     assert!(Command::new("mkfifo").arg(path).status().unwrap().success());

@@ -66,7 +66,7 @@ fn a_second_run_replaces_the_first_and_gives_the_same_numbers() {
     assert_eq!(read(), first);
 }
 
-/// The table's head, and its rows of a run that follows the scene's motion exactly and of one driven as by a host in steps of `step` [s].
+/// Header of the table, and rows of a run that follows the scene's motion exactly and of one driven as by a host in steps of `step` [s].
 fn exact_and_host(scene: &str, step: f64) -> (Vec<String>, [Vec<Vec<f64>>; 2]) {
     let folder = folder_with(&[("scene.toml", scene)]);
     let host = format!("--communication-step {step} --velocities");
@@ -88,7 +88,7 @@ fn a_run_driven_like_a_host_follows_the_exact_motion() {
     let tension = column(&header, "line1.tension_b");
     assert_eq!(exact.len(), host.len());
     for (exact, host) in exact.iter().zip(&host) {
-        // The same motion to the last bit; of the tension what the path between communication points costs.
+        // The motion is the same to the last bit; the tension differs by the error of the path between communication points.
         assert_eq!(exact[..7], host[..7]);
         assert!(
             (exact[tension] / host[tension] - 1.0).abs() < 0.01,
@@ -105,7 +105,7 @@ fn a_run_whose_inputs_mean_the_end_of_a_step_is_told_the_motion_there() {
     assert_eq!(exact.len(), host.len());
     for (exact, host) in exact.iter().zip(&host) {
         assert_eq!(exact[place], host[place]);
-        // one step late the tension would be up to a quarter off
+        // one step late, the tension would be off by up to a quarter
         let off = (exact[tension] / host[tension] - 1.0).abs();
         assert!(off < 0.02, "{exact:?} {host:?}");
     }

@@ -7,7 +7,7 @@ use super::*;
 #[test]
 fn an_equilibrium_that_does_not_exist_is_a_computation_that_failed() {
     let folder = folder();
-    // beyond λ = e the logarithmic measure of an incompressible line carries less and less
+    // beyond a stretch of λ = e, an incompressible line with logarithmic strain carries less and less tension
     let soft = SCENE.replace("mass = 0.05", "mass = 100.0\nstrain = { logarithmic = 0.5 }");
     folder.write(
         "soft.toml",
@@ -59,7 +59,7 @@ fn statics_as_json_has_the_documented_keys_and_balances() {
     assert_eq!(json["vessels"], serde_json::json!([]));
 }
 
-/// The number in this column, from 1, of the row of a table that begins with `name`.
+/// Number in a column, counted from 1, of the table row that begins with `name`.
 fn cell(text: &str, name: &str, column: usize) -> f64 {
     let row = text.lines().find_map(|line| line.strip_prefix(name));
     let cell = row.and_then(|cells| cells.split_whitespace().nth(column - 1));
@@ -70,11 +70,11 @@ fn cell(text: &str, name: &str, column: usize) -> f64 {
 
 #[test]
 fn statics_solves_the_equilibrium_whatever_shape_a_run_starts_on() {
-    // a parabola as deep as the catenary carries almost three times its tension
+    // a parabola as deep as the catenary has almost three times its tension
     let output = folder_of("seafem11").run("statics scene.toml");
     assert_eq!(output.status.code(), Some(0));
     assert_says(&err(&output), &["lines[0].initial: runs start on this shape"]);
-    // the catenary of SeaFEM case 11, to what 22 elements leave
+    // the catenary of SeaFEM case 11, within the error of 22 elements
     let horizontal = cell(&out(&output), "line1 horizontal force at end B [N]", 1);
     assert!((horizontal / 17.00889855 - 1.0).abs() < 1e-3, "{horizontal}");
     let folder = folder();

@@ -1,8 +1,8 @@
-//! `moorline accuracy`: studies of short scenes, and peers that are none.
+//! `moorline accuracy`: studies of short scenes, and peers that cannot run.
 
 use super::*;
 
-/// A folder with the scene and one in water that is studied in a moment.
+/// Folder with the scene and a short one in water.
 fn short_study() -> Folder {
     let folder = folder();
     let wet = format!(
@@ -123,7 +123,7 @@ fn a_study_takes_decks_and_motion_as_a_run_does() {
 fn peers_that_give_nothing_are_a_computation_that_failed_after_all_else_is_written() {
     use std::os::unix::fs::PermissionsExt;
     let folder = short_study();
-    // answers to `-c` as Python does that has the peers, and to nothing else
+    // replies to `-c` as a Python interpreter with the peers does, and to nothing else
     folder.write("python", "#!/bin/sh\n[ \"$1\" = -c ] && echo ready\n");
     fs::set_permissions(folder.path("python"), fs::Permissions::from_mode(0o755)).unwrap();
     let output = folder.run("accuracy short.toml -o out --peers ./python");

@@ -71,7 +71,7 @@ fn the_folder_of_another_sweep_is_refused_by_the_program() {
     );
 }
 
-/// Kills a sweep at a number of moments and compares its table with that of an undisturbed one.
+/// Kills a sweep at given moments and compares its table with that of an uninterrupted one.
 fn killed(seeds: usize, moments: &[u64]) {
     let scene = include_str!("../../../examples/sweep/semi.toml");
     let quick = scene.replace("duration = 600.0", "duration = 100.0");

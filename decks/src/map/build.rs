@@ -8,16 +8,16 @@ use super::deck::{Coordinate, Deck, Kind, Line, Node};
 use crate::draft::{Draft, SEA_WATER, constant_force, coordinates, nonzero};
 use crate::table::ROWS_MAX;
 
-/// A repetition of the deck.
+/// Repetition of the deck.
 #[derive(Clone, Copy)]
 struct Turn {
-    /// Number of those before it [-].
+    /// Number of preceding repetitions [-].
     number: usize,
     /// Angle about z [rad].
     angle: f64,
 }
 
-/// Makes the scene of a deck; mistakes are in things that it leaves to its host, or that cannot be modelled.
+/// Builds the scene of a deck; mistakes concern values that the deck leaves to its host, or features that are not modelled.
 pub(super) fn build(deck: &Deck, draft: &mut Draft<'_>) {
     draft.scene.title = deck.title.clone();
     draft.scene.water = Some(Water::still(SEA_WATER));
@@ -41,7 +41,7 @@ pub(super) fn build(deck: &Deck, draft: &mut Draft<'_>) {
     draft.check_vessels();
 }
 
-/// The word `depth` needs a depth.
+/// Refuses the word `depth` if no depth is given.
 fn needs_depth(deck: &Deck, draft: &mut Draft<'_>) {
     let mut coordinates = deck.nodes.iter().flat_map(|node| &node.position);
     let word = coordinates.find(|coordinate| coordinate.value == Coordinate::Depth);
@@ -72,7 +72,7 @@ fn line_types(deck: &Deck, draft: &mut Draft<'_>) {
     }
 }
 
-/// The deck as written, then its repetitions.
+/// Returns the deck as written and its repetitions.
 fn turns(deck: &Deck, draft: &mut Draft<'_>) -> Vec<Turn> {
     let most = deck.nodes.len().max(deck.lines.len());
     if let Some(last) = deck.repeat.last()
@@ -134,7 +134,7 @@ fn add_line(line: &Line, deck: &Deck, turn: Turn, draft: &mut Draft<'_>) {
     draft.add_line(made, &line.id.span, &format!("line {}", line.id.value), &parts);
 }
 
-/// The seabed that all lines meet, or none of them.
+/// Adds the seabed if all lines are in contact with it; refuses a deck in which only some are.
 fn seabed(deck: &Deck, draft: &mut Draft<'_>) {
     let omitting: Vec<_> = deck
         .lines
@@ -159,7 +159,7 @@ fn seabed(deck: &Deck, draft: &mut Draft<'_>) {
     }
 }
 
-/// The one friction coefficient [-] of all line types that lines use.
+/// Returns the friction coefficient [-], which must be the same for all line types in use.
 fn friction(deck: &Deck, draft: &mut Draft<'_>) -> f64 {
     let used = |name: &str| deck.lines.iter().any(|line| line.line_type.value == name);
     let mut types = deck.line_types.iter().filter(|kind| used(&kind.name.value));
@@ -197,7 +197,7 @@ fn remarks(deck: &Deck, draft: &mut Draft<'_>) {
     }
 }
 
-/// Number of a node or line in a repetition: the highest number of the file is added for each.
+/// Returns the number of a node or line in a repetition: each repetition adds the highest number in the file.
 fn repeated(number: usize, turn: Turn, numbers: impl Iterator<Item = usize>) -> usize {
     number.saturating_add(turn.number.saturating_mul(numbers.max().unwrap_or(0)))
 }
@@ -207,7 +207,7 @@ fn point_name(deck: &Deck, number: usize, turn: Turn) -> String {
     format!("point{}", repeated(number, turn, numbers))
 }
 
-/// A vector turned about z by an angle [rad]; the same bits for an angle of zero.
+/// Rotates a vector about z by an angle [rad]; an angle of zero returns identical bits.
 fn turned([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
     if angle == 0.0 {
         return [x, y, z];

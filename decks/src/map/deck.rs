@@ -15,9 +15,9 @@ pub(super) struct Deck {
     pub line_types: Vec<LineType>,
     pub nodes: Vec<Node>,
     pub lines: Vec<Line>,
-    /// Angles by which the whole is repeated about z [deg].
+    /// Angles about z at which the whole system is repeated [deg].
     pub repeat: Vec<Placed<f64>>,
-    /// Options that need nothing here.
+    /// Options that have no effect here.
     pub unneeded: Vec<Placed<String>>,
 }
 
@@ -46,9 +46,9 @@ pub(super) enum Kind {
 /// A coordinate of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Coordinate {
-    /// Metres; a first guess where the forces decide [m].
+    /// Coordinate [m]; an initial guess if forces determine it.
     Given(f64),
-    /// The seabed.
+    /// z of the seabed.
     Depth,
 }
 
@@ -62,7 +62,7 @@ pub(super) struct Node {
     pub mass: Placed<f64>,
     /// B [m³].
     pub volume: Placed<f64>,
-    /// FX, FY, FZ [N] of a node that the forces move; else 0.
+    /// FX, FY, FZ [N] of a node moved by forces; otherwise 0.
     pub force: [f64; 3],
 }
 
@@ -75,7 +75,7 @@ pub(super) struct Line {
     pub length: Placed<f64>,
     /// NodeAnch, NodeFair.
     pub ends: [Placed<usize>; 2],
-    /// The flag of a line that meets no seabed.
+    /// Flag of a line without seabed contact.
     pub omits_contact: Option<Placed<String>>,
 }
 
@@ -112,33 +112,33 @@ const LINES: &[Column] = &[
     column("NodeFair", "-", "NODEFAIR"),
 ];
 
-/// Flags in capitals that choose what MAP++ writes.
+/// Flags, in capitals, that control the output of MAP++.
 const OUTPUT_FLAGS: &str = "PLOT GX_POS GY_POS GZ_POS GX_A_POS GY_A_POS GZ_A_POS GX_FORCE GY_FORCE GZ_FORCE H_FAIR H_ANCH \
     V_FAIR V_ANCH TENSION_FAIR TENSION_ANCH X_EXCURSION Z_EXCURSION AZIMUTH ALTITUDE ALTITUDE_ANCH \
     ALTITUDE_A LINE_TENSION LAY_LENGTH DIAGNOSTIC X_POS Y_POS Z_POS X_FORCE Y_FORCE Z_FORCE \
     FAIR_TENSION ANCH_TENSION";
-/// The flag of a line that meets no seabed.
+/// Flag of a line without seabed contact.
 const OMIT_CONTACT: &str = "OMIT_CONTACT";
 
-/// Options in capitals that choose how MAP++ solves.
+/// Options, in capitals, that control the solution of MAP++.
 const UNNEEDED: &str = "HELP INNER_FTOL INNER_GTOL INNER_XTOL INNER_MAX_ITS OUTER_MAX_ITS OUTER_TOL OUTER_EPSILON \
     OUTER_BD OUTER_CD OUTER_FD INTEGRATION_DT KB_DEFAULT CB_DEFAULT LM_MODEL PG_COOKED \
     KRYLOV_ACCELERATOR REF_POSITION WAVE_KINEMATICS SEG_SIZE MSQS_TOL FD_EPSILON";
-/// The option that repeats the whole system about z.
+/// Option that repeats the whole system about z.
 const REPEAT: &str = "REPEAT";
 
-/// Kind of a section, in the order in which headers are compared with their words.
+/// Kind of a section, in the order in which headers are matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Table {
     LineTypes,
     Nodes,
     Lines,
     Options,
-    /// No section of MAP++.
+    /// Not a section of MAP++.
     Other,
 }
 
-/// Kinds of sections with their names and the words of their headers in capitals; the first that fits counts.
+/// Kinds of sections, their names, and the words of their headers in capitals; the first match counts.
 const HEADERS: [(Table, &str, &[&str]); 4] = [
     (
         Table::LineTypes,
@@ -154,7 +154,7 @@ const HEADERS: [(Table, &str, &[&str]); 4] = [
     (Table::Options, "SOLVER OPTIONS", &["OPTIONS"]),
 ];
 
-/// A header and the rows below it; the first two of them name columns and units.
+/// Header and the rows below it; the first two rows name columns and units.
 struct Section<'t> {
     table: Table,
     name: &'static str,
@@ -163,7 +163,7 @@ struct Section<'t> {
 }
 
 impl<'t> Section<'t> {
-    /// The section that a row begins; `None` where it is no header.
+    /// Returns the section that a row begins; `None` if the row is not a header.
     fn begun_by(row: &Row<'t>) -> Option<Section<'t>> {
         if !row.text.contains("---") {
             return None;
@@ -180,13 +180,13 @@ impl<'t> Section<'t> {
         })
     }
 
-    /// The rows below the names and units of the columns.
+    /// Returns the rows below the names and units of the columns.
     fn body(&self) -> &[Row<'t>] {
         self.rows.get(2..).unwrap_or_default()
     }
 }
 
-/// Cuts a text at its headers; the rows above the first are the title.
+/// Divides a text at its headers; the rows above the first header are the title.
 fn sections(text: &str) -> (Vec<Row<'_>>, Vec<Section<'_>>) {
     let mut title = Vec::new();
     let mut sections: Vec<Section<'_>> = Vec::new();
@@ -200,7 +200,7 @@ fn sections(text: &str) -> (Vec<Row<'_>>, Vec<Section<'_>>) {
     (title, sections)
 }
 
-/// Returns whether a text is a MAP++ file: its nodes have the ten columns that only MAP++ has.
+/// Returns whether a text is a MAP++ file, that is, has options or node entries that only MAP++ has.
 pub(crate) fn is_deck(text: &str) -> bool {
     let (_, sections) = sections(text);
     let nodes = sections.iter().find(|section| section.table == Table::Nodes);
@@ -216,7 +216,7 @@ pub(crate) fn is_deck(text: &str) -> bool {
     options_of_map || nodes.body().iter().take(ROWS_MAX).any(is_node_of_map)
 }
 
-/// A row of nodes that MoorDyn cannot mean: the seabed as a word, or forces to be found.
+/// Returns whether a row of nodes cannot be MoorDyn's: it has the word `depth`, or coordinates or forces to be found by iteration.
 fn is_node_of_map(row: &Row<'_>) -> bool {
     let fields = row.fields();
     let text = |column: usize| fields.get(column).map_or("", |field: &Field<'_>| field.text);
@@ -251,7 +251,7 @@ pub(super) fn read(text: &str, findings: &mut Findings) -> Deck {
             Table::Nodes => deck.nodes.extend(table(section, NODES, findings, node)),
             Table::Lines => deck.lines.extend(table(section, LINES, findings, line)),
             Table::Options => options(section, &mut deck, findings),
-            // Rows below the first header, which may be a title, are no section.
+            // Rows below the first header, which may be the title, are not a section.
             Table::Other if index == 0 || section.rows.is_empty() => {}
             Table::Other => findings.mistake(
                 "",
@@ -264,7 +264,7 @@ pub(super) fn read(text: &str, findings: &mut Findings) -> Deck {
     deck
 }
 
-/// Rows of a table, whose header is compared with the columns it is read by.
+/// Reads the rows of a table and compares its header with the columns by which they are read.
 fn table<T>(
     section: &Section<'_>,
     columns: &'static [Column],
@@ -301,7 +301,7 @@ fn node(cells: &mut Cells<'_, '_>) -> Node {
     let kind = cells.read(1, kind, Kind::Fix).value;
     let force = match kind {
         Kind::Connect => [7, 8, 9].map(|column| iterated(cells, column).value),
-        Kind::Fix | Kind::Vessel => [0.0; 3], // MAP++ finds these forces
+        Kind::Fix | Kind::Vessel => [0.0; 3], // MAP++ computes these forces
     };
     Node {
         id: cells.count(0, 1),
@@ -313,7 +313,7 @@ fn node(cells: &mut Cells<'_, '_>) -> Node {
     }
 }
 
-/// A number with or without the mark `#` of an unknown; the mark alone means zero.
+/// Reads a number with or without the mark `#` of an unknown; the mark alone means zero.
 fn iterated(cells: &mut Cells<'_, '_>, column: usize) -> Placed<f64> {
     let text = cells.fields[column].text;
     let value = match text.strip_prefix('#') {
@@ -395,7 +395,7 @@ fn options(section: &Section<'_>, deck: &mut Deck, findings: &mut Findings) {
     }
 }
 
-/// Checks that numbers and names differ, and that lines refer to existing nodes and line types.
+/// Checks that numbers and names are unique, and that lines refer to existing nodes and line types.
 fn check_numbers(deck: &Deck, findings: &mut Findings) {
     check_unique(deck.nodes.iter().map(|node| &node.id), "node", findings);
     check_unique(

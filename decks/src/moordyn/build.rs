@@ -10,14 +10,14 @@ use super::options::Meaning;
 use crate::draft::{Draft, SEA_WATER, constant_force, coordinates, nonzero};
 use crate::findings::Placed;
 
-/// Part of the depth by which positions typed with few digits may miss the seabed [-].
+/// Fraction of the depth by which coordinates written with few digits may miss the seabed [-].
 const ROUNDING: f64 = 1e-9;
-/// File of the components of waves.
+/// File with the wave components.
 const WAVES_FILE: &str = "wave_frequencies.txt";
-/// File of a steady current.
+/// File with a steady current.
 const CURRENT_FILE: &str = "current_profile.txt";
 
-/// Makes the scene of a deck without refusals; mistakes are in things that it leaves to its host.
+/// Builds the scene of a deck without refused features; mistakes that remain concern values that the deck leaves to its host.
 pub(super) fn build(deck: &Deck, draft: &mut Draft<'_>) {
     draft.scene.title = deck.title.clone();
     let bodies = deck.bodies.iter().map(|body| format!("body{}", body.id.value));
@@ -39,12 +39,12 @@ pub(super) fn build(deck: &Deck, draft: &mut Draft<'_>) {
     draft.check_vessels();
 }
 
-/// Name of the vessel that a turbine of a farm becomes.
+/// Name of the vessel for a turbine of a farm.
 fn turbine(number: usize) -> String {
     format!("turbine{number}")
 }
 
-/// The number of a property; refusals have left no other.
+/// Value of a numeric property; the other variants have been refused.
 fn plain(property: &Property) -> f64 {
     match property {
         Property::Number(value) => *value,
@@ -52,7 +52,7 @@ fn plain(property: &Property) -> f64 {
     }
 }
 
-/// The file in the folder of a deck that an option names: of waves by components (7), or of a steady current (1); `None` of other options.
+/// Name of the file in the deck's folder that an option refers to: wave components (7) or a steady current (1); `None` for other options.
 pub(super) fn water_file(key: &str, value: &str) -> Option<&'static str> {
     match (key.to_uppercase().as_str(), value) {
         ("WAVEKIN", "7") => Some(WAVES_FILE),
@@ -123,7 +123,7 @@ fn add_point(point: &Point, deck: &Deck, draft: &mut Draft<'_>) {
     draft.add_point(made, &point.id.span, &format!("point {}", point.id.value), &parts);
 }
 
-/// A point on what its deck attaches it to; the position [m] is in the frame of a vessel where it rides on one.
+/// Returns a point with its attachment. The position [m] is relative to the vessel if the point is carried by one.
 fn attached(
     name: String,
     attachment: &Placed<Attachment>,
@@ -152,7 +152,7 @@ fn attached(
     }
 }
 
-/// The host of a farm gives the places of its turbines.
+/// Refuses a turbine of a farm without a position, which the host of the farm provides.
 fn needs_position(number: usize, attachment: &Placed<Attachment>, deck: &Deck, draft: &mut Draft<'_>) {
     let several = deck.turbines().any(|other| other != number);
     let name = turbine(number);
@@ -186,7 +186,7 @@ fn on_body(point: scene::Point, body: &Body, draft: &mut Draft<'_>) -> scene::Po
     draft.aboard(point, &name, place, attitude(&turn))
 }
 
-/// Ends of a rod that lines hang on; refusals have left only rods that hold them.
+/// Adds the ends of a rod that lines are attached to. Rods that do more than hold lines have been refused.
 fn add_rod(rod: &Rod, deck: &Deck, draft: &mut Draft<'_>) {
     let words = format!("rod {}", rod.id.value);
     let mut used = false;
@@ -197,7 +197,7 @@ fn add_rod(rod: &Rod, deck: &Deck, draft: &mut Draft<'_>) {
             continue;
         }
         used = true;
-        // The two ends of a rod of no length are the same place, its end A.
+        // The two ends of a rod of zero length are the same point, end A.
         let place = &rod.ends[if rod.segments.value == 0 { 0 } else { index }];
         let position = place.each_ref().map(|coordinate| coordinate.value);
         let name = format!("rod{}{letter}", rod.id.value);
@@ -248,7 +248,7 @@ fn surroundings(deck: &Deck, draft: &mut Draft<'_>) {
     });
 }
 
-/// The depth of a deck [m], down to its deepest anchor even if WtrDpth is less.
+/// Returns the depth of a deck [m], increased to its deepest anchor if WtrDpth is less.
 fn down_to_the_anchors(given: &Placed<f64>, draft: &mut Draft<'_>) -> f64 {
     let depth = given.value;
     let Some(anchor) = draft.deepest_anchor() else {
@@ -266,7 +266,7 @@ fn down_to_the_anchors(given: &Placed<f64>, draft: &mut Draft<'_>) -> f64 {
     anchored
 }
 
-/// Waves and current from files in the folder of the deck.
+/// Reads waves and current from files in the folder of the deck.
 fn moving_water(deck: &Deck, water: &mut Water, draft: &mut Draft<'_>) {
     for (key, value) in &deck.options.surroundings {
         let Some(name) = water_file(key, &value.value) else {
@@ -296,7 +296,7 @@ fn moving_water(deck: &Deck, water: &mut Water, draft: &mut Draft<'_>) {
     }
 }
 
-/// The file of the depths of the seabed, named in the place of the depth or by itself.
+/// Returns the file of seabed depths, named instead of the depth or by its own option.
 fn soundings(deck: &Deck, draft: &mut Draft<'_>) -> Option<String> {
     let named = deck.options.depth.as_ref().and_then(|depth| match &depth.value {
         Property::Named(name) => Some(depth.with(name.clone())),
@@ -309,7 +309,7 @@ fn soundings(deck: &Deck, draft: &mut Draft<'_>) -> Option<String> {
     Some(file.value.trim_matches('"').to_string())
 }
 
-/// Friction of the seabed: the coefficient for all directions, or those across and along the line.
+/// Reads the friction of the seabed: one coefficient for all directions, or one across and one along the line.
 fn friction(deck: &Deck, draft: &mut Draft<'_>) -> Friction {
     let coefficient = |key: &str| {
         let mut all = deck.options.friction.iter();
@@ -362,8 +362,8 @@ fn add_line(line: &Line, deck: &Deck, draft: &mut Draft<'_>) {
     draft.add_line(made, &line.id.span, &format!("line {}", line.id.value), &parts);
 }
 
-/// Direction from A to B of a line that leaves a rod at its end A, or arrives at one at its end B, in global axes [-]: the line goes on
-/// where the rod ends.
+/// Returns the direction from A to B, in global axes [-], of a line that leaves a rod at line end A or arrives at a rod at line end B: the line
+/// continues the rod.
 fn clamp(end: &Placed<LineEnd>, leaves: bool, deck: &Deck, draft: &mut Draft<'_>) -> Option<[f64; 3]> {
     let LineEnd::Rod(id, at_b) = end.value else {
         return None;
@@ -383,16 +383,16 @@ fn clamp(end: &Placed<LineEnd>, leaves: bool, deck: &Deck, draft: &mut Draft<'_>
         _ => None,
     };
     let along = body.map_or(along, |body| applied(&turn_of(body), along));
-    // Leaving at B or arriving at A is along the rod, leaving at A or arriving at B is against it.
+    // A line that leaves at B or arrives at A is directed along the rod; one that leaves at A or arrives at B is directed against it.
     let sign = if leaves == at_b { 1.0 } else { -1.0 };
     Some(along.map(|part| sign * part))
 }
 
-/// Output channels, and the interval of output with a duration that holds one.
+/// Sets the output channels and the output interval, with a duration that holds one interval.
 fn output(deck: &Deck, draft: &mut Draft<'_>) {
     for placed in &deck.outputs {
         let name = &placed.value;
-        // MoorDyn warns of these and goes on.
+        // MoorDyn warns of these and continues.
         if ["FX", "FY", "FZ"].contains(&name.to_uppercase().as_str()) {
             let text =
                 format!("the output {name:?} names no object, and MoorDyn writes none for it: left out");
@@ -423,7 +423,7 @@ fn output(deck: &Deck, draft: &mut Draft<'_>) {
     }
 }
 
-/// A line type with the properties that resist the stretch of a line.
+/// Returns a line type with its axial stiffness and damping.
 fn stretch(kind: &LineType) -> scene::LineType {
     let mut line_type = scene::LineType::default();
     let (slow, damping) = match &kind.damping.value {
@@ -436,7 +436,7 @@ fn stretch(kind: &LineType) -> scene::LineType {
             line_type.dynamic_stiffness = Some(parts[1]);
             line_type.static_damping = Some(slow);
             let both = matches!(kind.damping.value, Property::Parts(_));
-            let fast = if both { damping } else { 0.0 }; // MoorDyn's reading of one BA
+            let fast = if both { damping } else { 0.0 }; // MoorDyn's interpretation of a single BA
             line_type.dynamic_damping = (fast >= 0.0).then_some(fast);
             line_type.damping_ratio = (fast < 0.0).then_some(-fast);
             return line_type;
@@ -465,7 +465,7 @@ fn line_type(kind: &LineType) -> scene::LineType {
     }
 }
 
-/// Direction of a rod from A to B, of length one; zero where the ends are one point.
+/// Unit vector of a rod from A to B [-]; zero if the ends coincide.
 fn axis(rod: &Rod) -> [f64; 3] {
     let along = [0, 1, 2].map(|axis| rod.ends[1][axis].value - rod.ends[0][axis].value);
     let length = along.iter().map(|part| part * part).sum::<f64>().sqrt();
@@ -476,17 +476,17 @@ fn axis(rod: &Rod) -> [f64; 3] {
     }
 }
 
-/// The turn of a body's axes.
+/// Rotation matrix of a body.
 fn turn_of(body: &Body) -> [[f64; 3]; 3] {
     rotation([0, 1, 2].map(|axis| body.attitude[axis].value.to_radians()))
 }
 
-/// A vector turned by a matrix of rows, in the unit of the vector.
+/// Product of a matrix, given by rows, and a vector.
 fn applied(turn: &[[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
     turn.map(|row| (0..3).map(|axis| row[axis] * vector[axis]).sum::<f64>())
 }
 
-/// Rows of the matrix that turns a body's axes into the global ones, R = Rx·Ry·Rz of the angles [rad], as in MoorDyn.
+/// Rows of the rotation matrix from body axes to global axes, R = Rx·Ry·Rz of the angles [rad], as in MoorDyn.
 fn rotation([roll, pitch, yaw]: [f64; 3]) -> [[f64; 3]; 3] {
     let ((s1, c1), (s2, c2), (s3, c3)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
     [
@@ -496,7 +496,7 @@ fn rotation([roll, pitch, yaw]: [f64; 3]) -> [[f64; 3]; 3] {
     ]
 }
 
-/// Roll, pitch and yaw [rad] of the same turn by R = Rz·Ry·Rx, as scenes have it.
+/// Roll, pitch and yaw [rad] of the same rotation in the order of scenes, R = Rz·Ry·Rx.
 fn attitude(turn: &[[f64; 3]; 3]) -> [f64; 3] {
     let pitch = (0.0 - turn[2][0]).clamp(-1.0, 1.0).asin();
     [turn[2][1].atan2(turn[2][2]), pitch, turn[1][0].atan2(turn[0][0])]

@@ -1,11 +1,11 @@
-//! Contents of a deck in its own terms: plain data with places, nothing interpreted.
+//! Contents of a deck in its own terms: plain data with their places in the file, not interpreted.
 
 use std::collections::BTreeMap;
 
 use super::options::Meaning;
 use crate::findings::Placed;
 
-/// Grammar that a deck is written in.
+/// Version of the format of a deck.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Version {
     /// Line types with nine columns.
@@ -35,7 +35,7 @@ pub(super) struct Deck {
     pub rods: Vec<Rod>,
     pub points: Vec<Point>,
     pub lines: Vec<Line>,
-    /// Rows of FAILURE: conditions at which lines come off.
+    /// Rows of FAILURE: conditions at which lines are released.
     pub failures: Vec<Placed<String>>,
     /// Rows of CONTROL: channels that change line lengths.
     pub controls: Vec<Placed<String>>,
@@ -47,12 +47,12 @@ pub(super) struct Deck {
 }
 
 impl Deck {
-    /// The body of a number.
+    /// Returns the body with a number.
     pub(super) fn body(&self, id: usize) -> Option<&Body> {
         self.bodies.iter().find(|body| body.id.value == id)
     }
 
-    /// Numbers of the turbines that points are attached to.
+    /// Returns the numbers of the turbines that points are attached to.
     pub(super) fn turbines(&self) -> impl Iterator<Item = usize> {
         self.points
             .iter()
@@ -63,14 +63,14 @@ impl Deck {
     }
 }
 
-/// A stiffness or damping: a number, or another entry that its column accepts.
+/// Stiffness or damping: a number, or another entry that its column allows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Property {
     /// A number, in the unit of its column.
     Number(f64),
-    /// Numbers joined by bars: static, dynamic, and what scales the latter.
+    /// Numbers joined by bars: static, dynamic, and the factor of the mean tension in the dynamic one.
     Parts(Vec<f64>),
-    /// The name of a file with a table, or of another law.
+    /// Name of a file with a table, or of another law.
     Named(String),
 }
 
@@ -96,11 +96,11 @@ pub(super) struct LineType {
     pub drag_tangential: Placed<f64>,
     /// CaAx, along the line [-].
     pub added_mass_tangential: Placed<f64>,
-    /// Cl [-] of vortex-induced vibration.
+    /// Cl [-], lift coefficient of vortex-induced vibration.
     pub lift: Option<Placed<f64>>,
 }
 
-/// A row of ROD TYPES; its numbers are read but not used yet.
+/// Row of ROD TYPES; its numbers are not used.
 #[derive(Debug)]
 pub(super) struct RodType {
     pub name: Placed<String>,
@@ -119,7 +119,7 @@ pub(super) struct Body {
     pub mass: Placed<f64>,
     /// Volume [m³].
     pub volume: Placed<f64>,
-    /// CG [m], I [kg m²], CdA [m²], Ca [-], each one number or several.
+    /// CG [m], I [kg m²], CdA [m²], Ca [-]; one or several numbers each.
     pub parts: [Placed<Vec<f64>>; 4],
 }
 
@@ -131,7 +131,7 @@ pub(super) struct Rod {
     pub attachment: Placed<Attachment>,
     /// Ends A and B [m].
     pub ends: [[Placed<f64>; 3]; 2],
-    /// NumSegs; 0 of a rod that is one point.
+    /// NumSegs; 0 for a rod of zero length.
     pub segments: Placed<usize>,
 }
 
@@ -146,7 +146,7 @@ pub(super) struct Point {
     pub mass: Placed<f64>,
     /// Volume [m³].
     pub volume: Placed<f64>,
-    /// FX, FY, FZ [N], in rows of twelve columns.
+    /// FX, FY, FZ [N], in rows with twelve columns.
     pub force: Option<[Placed<f64>; 3]>,
     /// CdA [m²].
     pub drag_area: Placed<f64>,
@@ -158,18 +158,18 @@ pub(super) struct Point {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Attachment {
     Fixed,
-    /// Moved by the host by itself.
+    /// Moved individually by the host.
     Coupled,
-    /// Rides on the one vessel.
+    /// Carried by the only vessel.
     Vessel,
     Free,
-    /// Rides on a body.
+    /// Carried by a body.
     Body(usize),
-    /// Rides on a turbine's platform, in a farm.
+    /// Carried by a turbine's platform, in a farm.
     Turbine(usize),
-    /// Held in place but free to turn (rods), on a body where there is a number.
+    /// Fixed but free to rotate (rods); on a body if a number is given.
     Pinned(Option<usize>),
-    /// Moved by the host but free to turn (rods and bodies).
+    /// Moved by the host but free to rotate (rods and bodies).
     CoupledPinned,
 }
 
@@ -184,35 +184,35 @@ pub(super) struct Line {
     pub length: Placed<f64>,
     /// NumSegs.
     pub segments: Placed<usize>,
-    /// Letters that request a separate file for the line.
+    /// Letters that request an output file for this line.
     pub outputs: Placed<String>,
 }
 
-/// Thing that a line ends at.
+/// Object at the end of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LineEnd {
     Point(usize),
-    /// A rod's end A (`false`) or B (`true`).
+    /// End A (`false`) or B (`true`) of a rod.
     Rod(usize, bool),
 }
 
 /// OPTIONS with an effect; absent ones are `None`.
 #[derive(Debug, Default)]
 pub(super) struct Options {
-    /// Options that are one number in the unit of the meaning, such as g [m/s²].
+    /// Numeric options, each in its own unit, such as g [m/s²].
     pub numbers: BTreeMap<Meaning, Placed<f64>>,
     /// WtrDpth [m].
     pub depth: Option<Placed<Property>>,
     /// Friction coefficients of the seabed [-], with their keys.
     pub friction: Vec<(String, Placed<f64>)>,
-    /// File of the seabed's depths.
+    /// File of seabed depths.
     pub soundings: Option<Placed<String>>,
-    /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
+    /// TmaxIC of 0: MoorDyn starts from the positions in the file, without dynamic relaxation.
     pub starts_at_once: Option<Placed<String>>,
-    /// A file with the state to start from: key and value.
+    /// File with the initial state: key and value.
     pub state_file: Option<Placed<String>>,
     /// Waves and currents: key and value.
     pub surroundings: Vec<(String, Placed<String>)>,
-    /// Keys that need nothing here.
+    /// Keys that have no effect here.
     pub unneeded: Vec<Placed<String>>,
 }

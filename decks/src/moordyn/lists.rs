@@ -1,4 +1,4 @@
-//! Lists of a deck in its own order, for hosts that count objects and degrees of freedom as MoorDyn does.
+//! Lists of a deck in its own order, for hosts that number objects and degrees of freedom as MoorDyn does.
 
 use super::deck::{Attachment, Deck};
 use super::sections::{self, Kind};
@@ -8,13 +8,13 @@ use crate::findings::{Findings, Placed};
 /// Origin of the motion of a body or rod.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Carrier {
-    /// It never moves.
+    /// Fixed in space.
     Fixed,
-    /// The host moves it.
+    /// Moved by the host.
     Host,
-    /// The forces on it move it.
+    /// Moved by the forces on it.
     Free,
-    /// The body of a number carries it.
+    /// Carried by the body with this number.
     Body(usize),
 }
 
@@ -27,7 +27,7 @@ pub struct RodRow {
     pub carrier: Carrier,
     /// Ends A and B [m].
     pub ends: [[f64; 3]; 2],
-    /// Number of segments; 0 of a rod that is one point.
+    /// Number of segments [-]; 0 for a rod of zero length.
     pub segments: usize,
 }
 
@@ -36,9 +36,9 @@ pub struct RodRow {
 pub struct LineRow {
     /// Number in the deck.
     pub number: usize,
-    /// Number of segments.
+    /// Number of segments [-].
     pub segments: usize,
-    /// Letters that request a separate file for the line.
+    /// Letters that request an output file for this line.
     pub outputs: String,
 }
 
@@ -51,7 +51,7 @@ pub struct BodyRow {
     pub carrier: Carrier,
     /// Reference position [m].
     pub position: [f64; 3],
-    /// Reference roll, pitch and yaw by R_x R_y R_z [rad].
+    /// Reference roll, pitch and yaw in the order R_x R_y R_z [rad].
     pub angles: [f64; 3],
 }
 
@@ -66,14 +66,14 @@ pub struct Lists {
     pub points: Vec<usize>,
     /// Lines.
     pub lines: Vec<LineRow>,
-    /// Rows of OPTIONS, the last of several of one key: key in capitals, and value.
+    /// Rows of OPTIONS: key in capitals, and value. The last row with a key counts.
     pub options: Vec<(String, String)>,
-    /// True if a point, rod or body rides on a turbine of a farm.
+    /// True if a point, rod or body is carried by a turbine of a farm.
     pub is_of_farm: bool,
 }
 
 impl Lists {
-    /// Value of the option of a key, or of another spelling of it, in capitals.
+    /// Returns the value of an option; `keys` are its spellings in capitals.
     pub fn option(&self, keys: &[&str]) -> Option<&str> {
         let mut options = self.options.iter().rev();
         let found = options.find(|(key, _)| keys.contains(&key.as_str()));
@@ -81,7 +81,7 @@ impl Lists {
     }
 }
 
-/// Lists of the text of a deck; those of a deck with mistakes, which [`load`](crate::load) reports, are incomplete.
+/// Returns the lists of a deck. Those of a deck with mistakes, which [`load`](crate::load) reports, are incomplete.
 pub fn lists(text: &str) -> Lists {
     let mut findings = Findings::default();
     let sections = sections::split(text, &mut findings);

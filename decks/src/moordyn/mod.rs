@@ -1,11 +1,11 @@
 //! MoorDyn input files, version 1 and 2, in the styles of OpenFAST and of MoorDyn-C.
 //!
 //! text -> [`sections`] (rows under headers) -> [`tables`], [`options`] (typed cells) -> [`deck`] -> [`build`] (a scene).
-//! [`refusals`] names features of decks that moorline does not model, [`traps`] what is often misread. Each stage reports all
-//! of its mistakes, and the next begins only where there are none.
+//! [`refusals`] reports features that moorline does not model, [`traps`] entries that are often misread. Each stage reports all its mistakes,
+//! and the next one runs only if there are none.
 //!
-//! Rules: a header is a line that holds `---`, recognised by the words in it; two lines below the header of a table name columns
-//! and units and are never read; columns count by their place; `#` begins a comment; options are `value key`.
+//! Rules: a header is a line that contains `---`, identified by its words; the two lines below the header of a table name columns
+//! and units and are not read; columns are identified by position; `#` starts a comment; options are `value key`.
 //! Source: the parsers of OpenFAST (`modules/moordyn/src/MoorDyn.f90`) and MoorDyn-C (`source/MoorDyn2.cpp`), and the input
 //! file documentation of MoorDyn v2.
 
@@ -26,7 +26,7 @@ use crate::findings::Findings;
 
 pub(crate) use sections::is_deck;
 
-/// Reads a deck with what it leaves to its host.
+/// Reads a deck; `supplement` contains the values that it leaves to its host.
 pub(crate) fn read<'s>(text: &str, supplement: &'s Supplement) -> Draft<'s> {
     let mut findings = Findings::default();
     let sections = sections::split(text, &mut findings);

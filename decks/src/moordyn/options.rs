@@ -7,12 +7,12 @@ use super::tables::word_property;
 use crate::findings::{Findings, Placed};
 use crate::table::{ROWS_MAX, is_one_of, left_out, placed_text};
 
-/// Keys in capitals that choose how MoorDyn solves, starts and writes: nothing here needs them.
+/// Keys, in capitals, that control the solution, start and output of MoorDyn and have no effect here.
 const UNNEEDED: &str = "DTM DT CFL TSCHEME DTIC ICDT CDSCALEIC ICDFAC THRESHIC ICTHRESH FILEIC ICGENDYNAMIC \
     GENDYNAMICIC ICFILE WRITELOG WRITEUNITS DISABLEOUTPUT DISABLEOUTTIME OUTSWITCH INERTIALF \
     INERTIALF_RAMPT ECHO DTWAVE UNIFYCURRENTGRID DTOUTSNAP";
 
-/// Meanings of the keys with an effect, with their spellings in capitals.
+/// Meanings of the keys with an effect, and the spellings of these keys in capitals.
 const NEEDED: [(Meaning, &str); 12] = [
     (Meaning::Gravity, "G GRAVITY"),
     (Meaning::Density, "RHO RHOW WTRDNSTY"),
@@ -43,15 +43,15 @@ pub(super) enum Meaning {
     SeabedDamping,
     /// Friction coefficients of the seabed [-].
     Friction,
-    /// Slope of friction with velocity, where MoorDyn's fades in [N s/m or -].
+    /// Slope of MoorDyn's friction against velocity below its limit [N s/m or -].
     FrictionDamping,
-    /// Static over kinetic friction [-].
+    /// Ratio of static to kinetic friction [-].
     StaticFriction,
     /// dtOut [s].
     OutputInterval,
     /// TmaxIC [s].
     Relaxation,
-    /// File of the seabed's depths.
+    /// File of seabed depths.
     Soundings,
     /// Waves and currents.
     Surroundings,
@@ -62,7 +62,7 @@ fn meaning(key: &str) -> Option<Meaning> {
     known.map(|(meaning, _)| *meaning)
 }
 
-/// Keys that name a file with a state to start from.
+/// Keys of a file with the initial state.
 const STATE_FILES: &str = "FILEIC ICFILE";
 
 /// A row of OPTIONS.
@@ -72,7 +72,7 @@ struct Choice {
 }
 
 impl Choice {
-    /// Returns whether another row gives the same option.
+    /// Returns whether another row sets the same option.
     fn repeats(&self, other: &Choice) -> bool {
         let (a, b) = (&self.key.value, &other.key.value);
         let several = [Meaning::Friction, Meaning::Surroundings].map(Some);
@@ -81,7 +81,7 @@ impl Choice {
     }
 }
 
-/// Reads the rows of OPTIONS. As in MoorDyn, an unknown key is left out and the last of several values counts, both with a remark.
+/// Reads the rows of OPTIONS. As in MoorDyn, an unknown key is ignored and the last of several values counts, both with a remark.
 pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
     let mut options = Options::default();
     let choices = choices(rows, findings);
@@ -145,7 +145,7 @@ fn take(options: &mut Options, meaning: Meaning, Choice { key, value }: &Choice,
             Ok(depth) => options.depth = Some(value.with(depth)),
             Err(problem) => wrong(problem),
         },
-        // 0 is none of these, and times to come to rest in other than 0 change nothing here.
+        // 0 means none of these; relaxation times other than 0 have no effect here.
         Meaning::Surroundings | Meaning::Soundings | Meaning::Relaxation
             if is_zero != (meaning == Meaning::Relaxation) =>
         {

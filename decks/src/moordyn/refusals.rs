@@ -1,4 +1,4 @@
-//! Refusals of features that a deck can have and moorline cannot model: a function for every feature, so that each can be lifted by itself.
+//! Refusals of features of decks that moorline does not model: one function per feature, so that each can be removed on its own.
 
 use moorline::scene::rows::shown;
 
@@ -41,7 +41,7 @@ fn laws_of_line_types(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Viscoelastic EA that depends on the load.
+/// Refuses a viscoelastic EA that depends on the load.
 fn stiffness_law(stiffness: &Property) -> Option<&'static str> {
     match stiffness {
         Property::Parts(parts) if parts.len() != 2 => Some(
@@ -52,7 +52,7 @@ fn stiffness_law(stiffness: &Property) -> Option<&'static str> {
     }
 }
 
-/// BA from a table, a ratio for a viscoelastic line, viscoelastic BA with a single EA.
+/// Refuses BA from a table, a damping ratio for a viscoelastic line, and a viscoelastic BA with a single EA.
 fn damping_law(damping: &Property, visco: bool) -> Option<String> {
     let problem = match damping {
         Property::Number(value) if *value < 0.0 && visco => {
@@ -74,7 +74,7 @@ fn damping_law(damping: &Property, visco: bool) -> Option<String> {
     Some(problem.to_string())
 }
 
-/// Bodies that the forces move, and mass, volume and drag of those that the host moves.
+/// Refuses bodies that are moved by forces, and mass, volume and drag of bodies that the host moves.
 fn bodies(deck: &Deck, findings: &mut Findings) {
     for body in &deck.bodies {
         let at = || format!("body {}", body.id.value);
@@ -112,7 +112,7 @@ fn bodies(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Pinned points, and points on bodies that do not exist.
+/// Refuses pinned points, and points on bodies that do not exist.
 fn points(deck: &Deck, findings: &mut Findings) {
     for point in &deck.points {
         let problem = match point.attachment.value {
@@ -130,7 +130,7 @@ fn no_body(id: usize) -> String {
     format!("no body has the number {id}")
 }
 
-/// Rods, save those that only hold the end of a line: fixed ones, and ones of no length on what the host moves.
+/// Refuses rods except those that only hold the end of a line: fixed rods, and rods of zero length on objects that the host moves.
 fn rods(deck: &Deck, findings: &mut Findings) {
     for rod in &deck.rods {
         let at = format!("rod {}", rod.id.value);
@@ -165,7 +165,7 @@ fn rods(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Waves and currents from options and files.
+/// Refuses waves and currents that are not read from decks.
 fn waves_and_currents(deck: &Deck, findings: &mut Findings) {
     let surroundings = deck.options.surroundings.iter();
     for (key, value) in surroundings.filter(|(key, value)| water_file(key, &value.value).is_none()) {
@@ -175,7 +175,7 @@ fn waves_and_currents(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Sections of which no row is modelled.
+/// Refuses the rows of sections that are not modelled at all.
 fn whole_sections(deck: &Deck, findings: &mut Findings) {
     for (section, rows, problem) in [
         (

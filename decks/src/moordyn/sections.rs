@@ -1,4 +1,4 @@
-//! A deck cut at its headers.
+//! Division of a deck into sections at its headers.
 
 use moorline::scene::rows::{Row, number, shown};
 
@@ -21,7 +21,7 @@ pub(super) enum Kind {
     Outputs,
 }
 
-/// Kinds with their names in messages and the words of their headers, in capitals; the first that fits counts, as in MoorDyn.
+/// Kinds, their names in messages, and the words of their headers in capitals; the first match counts, as in MoorDyn.
 const KINDS: [(Kind, &str, &[&str]); 11] = [
     (Kind::LineTypes, "LINE TYPES", &["LINE DICTIONARY", "LINE TYPES"]),
     (Kind::RodTypes, "ROD TYPES", &["ROD DICTIONARY", "ROD TYPES"]),
@@ -60,27 +60,27 @@ impl Kind {
             .map_or("", |(_, name, _)| name)
     }
 
-    /// Returns whether two lines below the header name columns and units.
+    /// Returns whether the two lines below the header name columns and units.
     fn is_table(self) -> bool {
         !matches!(self, Kind::Options | Kind::Outputs)
     }
 }
 
-/// A header and the rows below it, without comments.
+/// Header and the rows below it, without comments.
 #[derive(Debug)]
 pub(super) struct Section<'t> {
     pub kind: Kind,
     pub header: Row<'t>,
-    /// Number of rows, which decks of version 1 give below the header.
+    /// Number of rows, which decks of version 1 state below the header.
     count: Option<Placed<Option<usize>>>,
-    /// The line that names the columns of a table.
+    /// Line with the names of the columns of a table.
     pub names: Option<Row<'t>>,
-    /// The line of their units.
+    /// Line with their units.
     pub units: Option<Row<'t>>,
     pub rows: Vec<Row<'t>>,
 }
 
-/// A deck in parts.
+/// Deck divided into sections.
 #[derive(Debug, Default)]
 pub(super) struct Sections<'t> {
     /// Rows above the first section.
@@ -89,12 +89,12 @@ pub(super) struct Sections<'t> {
 }
 
 impl<'t> Sections<'t> {
-    /// The section of a kind.
+    /// Returns the section of a kind.
     pub(super) fn get(&self, kind: Kind) -> Option<&Section<'t>> {
         self.list.iter().find(|section| section.kind == kind)
     }
 
-    /// Rows of a kind; none where the section is missing.
+    /// Returns the rows of a kind; empty if the section is missing.
     pub(super) fn rows(&self, kind: Kind) -> &[Row<'t>] {
         self.get(kind).map_or(&[], |section| &section.rows)
     }
@@ -111,7 +111,7 @@ fn kind_of(row: &Row<'_>) -> Option<Kind> {
     known.map(|(kind, ..)| *kind)
 }
 
-/// Returns whether a text is a MoorDyn file: it has a header of such files.
+/// Returns whether a text is a MoorDyn file, that is, has a header of such files.
 pub(crate) fn is_deck(text: &str) -> bool {
     let mut rows = Row::all(text).map(|row| row.before('#'));
     rows.any(|row| {
@@ -120,10 +120,10 @@ pub(crate) fn is_deck(text: &str) -> bool {
     })
 }
 
-/// Cuts a deck at its headers.
+/// Divides a deck at its headers.
 pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> {
     let mut sections = Sections::default();
-    // Rows below an unknown header are one mistake.
+    // All rows below an unknown header count as one mistake.
     let mut unknown: Option<Row<'t>> = None;
     for whole in Row::all(text) {
         let row = whole.before('#');
@@ -157,10 +157,10 @@ pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> 
     sections
 }
 
-/// Begins a section; returns a header that heads none.
+/// Begins a section; returns the header if it is unknown.
 fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findings) -> Option<Row<'t>> {
     let Some(kind) = kind_of(&header) else {
-        // The title of the file looks like a header too.
+        // The title of the file looks like a header as well.
         return (!sections.list.is_empty()).then_some(header);
     };
     if sections.get(kind).is_some() {
@@ -178,7 +178,7 @@ fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findin
     None
 }
 
-/// `3  NLines - number of lines`.
+/// Reads a row such as `3  NLines - number of lines`.
 fn count(row: &Row<'_>) -> Option<Placed<Option<usize>>> {
     let fields = row.fields();
     let [value, key, ..] = fields.as_slice() else {
@@ -206,7 +206,7 @@ fn add<'t>(section: &mut Section<'t>, row: Row<'t>) {
     }
 }
 
-/// Checks the number of rows, beyond which MoorDyn v1 reads none.
+/// Checks the stated number of rows; MoorDyn v1 reads no rows beyond it.
 fn check_count(section: &Section<'_>, findings: &mut Findings) {
     let Some(count) = &section.count else {
         return;
@@ -222,7 +222,7 @@ fn check_count(section: &Section<'_>, findings: &mut Findings) {
     findings.wrong(section.kind.name(), count, problem);
 }
 
-/// Checks that no row of the table stands in place of names and units, where it would be lost.
+/// Checks that the lines for names and units contain no row of the table, which would not be read.
 fn check_names(section: &Section<'_>, findings: &mut Findings) {
     for row in [&section.names, &section.units].into_iter().flatten() {
         let fields = row.fields();

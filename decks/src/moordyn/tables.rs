@@ -1,4 +1,4 @@
-//! Rows -> typed cells: every table of a deck by the place of its columns.
+//! Rows -> typed cells: every table of a deck, read by column position.
 
 use moorline::scene::rows::{Row, number, shown};
 
@@ -197,7 +197,7 @@ fn missing_sections(sections: &Sections<'_>, findings: &mut Findings) {
             }
             Some(_) => continue,
         };
-        // LINES may hang on rods alone.
+        // LINES may be attached to rods only.
         if kind == Kind::Points && !sections.rows(Kind::Rods).is_empty() {
             continue;
         }
@@ -213,7 +213,7 @@ fn check_size(section: &Section<'_>, findings: &mut Findings) {
     }
 }
 
-/// The words above the first section that are neither rules nor the echo flag.
+/// Returns the words above the first section, without rules and the echo flag.
 fn title(sections: &Sections<'_>) -> String {
     table::title(sections.preamble.iter().filter(|row| {
         let fields = row.fields();
@@ -224,7 +224,7 @@ fn title(sections: &Sections<'_>) -> String {
     }))
 }
 
-/// Version 1 has nine columns of line types, none of them EI.
+/// Returns the version: version 1 has nine columns of line types, without EI.
 fn version(sections: &Sections<'_>) -> Version {
     let Some(section) = sections.get(Kind::LineTypes) else {
         return Version::Two;
@@ -240,7 +240,7 @@ fn version(sections: &Sections<'_>) -> Version {
     }
 }
 
-/// Rows of a table that have as many cells as one of the lists of columns.
+/// Reads the rows of a table whose number of cells matches one of the lists of columns.
 fn read_rows<T>(
     sections: &Sections<'_>,
     kind: Kind,
@@ -264,7 +264,7 @@ fn line_types(sections: &Sections<'_>, version: Version, findings: &mut Findings
         Version::One => &[LINE_TYPES_1][..],
         Version::Two => &[&of_two[..10], &of_two[..11], of_two],
     };
-    // Version 1 has the four coefficients in another order, and no EI.
+    // Version 1 has the four coefficients in a different order, and no EI.
     let [drag, added_mass, drag_along, added_mass_along] = match version {
         Version::One => [7, 5, 8, 6],
         Version::Two => [6, 7, 8, 9],
@@ -284,13 +284,13 @@ fn line_types(sections: &Sections<'_>, version: Version, findings: &mut Findings
     })
 }
 
-/// EA, BA or EI: a number, numbers joined by bars, or a name.
+/// Reads EA, BA or EI: a number, numbers joined by bars, or a name.
 fn property(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Property> {
     let value = word_property(cells.fields[column].text);
     cells.read(column, value, Property::Number(0.0))
 }
 
-/// Property that a word gives.
+/// Converts a word to a property.
 pub(super) fn word_property(word: &str) -> Result<Property, String> {
     let problem = match number(word) {
         Ok(value) => return Ok(Property::Number(value)),
@@ -300,7 +300,7 @@ pub(super) fn word_property(word: &str) -> Result<Property, String> {
     if let Ok(parts) = parts {
         return Ok(Property::Parts(parts));
     }
-    // A word that begins like a number is a slip, not a name of a file.
+    // A word that begins like a number is a typing error, not a file name.
     let name = word.starts_with(char::is_alphabetic) || word.contains(['/', '\\', '|']);
     let not_finite = ["nan", "inf", "infinity"].contains(&word.to_lowercase().as_str());
     match name && !not_finite {
@@ -335,7 +335,7 @@ fn bodies(sections: &Sections<'_>, findings: &mut Findings) -> Vec<Body> {
     })
 }
 
-/// One number or several joined by bars.
+/// Reads one number, or several joined by bars.
 fn parts(cells: &mut Cells<'_, '_>, column: usize, counts: &[usize]) -> Placed<Vec<f64>> {
     let numbers: Result<Vec<f64>, String> = cells.fields[column].text.split('|').map(number).collect();
     let numbers = numbers.and_then(|numbers| match counts.contains(&numbers.len()) {
@@ -385,7 +385,7 @@ fn points(sections: &Sections<'_>, findings: &mut Findings) -> Vec<Point> {
     )
 }
 
-/// Words and numbers by turns: "Body1Pinned" -> "BODY", 1, "PINNED".
+/// Splits a word into letters, number and letters: "Body1Pinned" -> "BODY", 1, "PINNED".
 fn decomposed(word: &str) -> (String, Option<usize>, String) {
     let upper = word.to_uppercase();
     let first = upper.find(|c: char| c.is_ascii_digit()).unwrap_or(upper.len());
@@ -395,12 +395,12 @@ fn decomposed(word: &str) -> (String, Option<usize>, String) {
     (letters.to_string(), digits.parse().ok(), tail.to_string())
 }
 
-/// Attachment that a word gives.
+/// Reads an attachment.
 fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
     let word = cells.fields[column].text;
     let (letters, id, tail) = decomposed(word);
     let pinned = ["PINNED", "PIN"].contains(&tail.as_str());
-    // The numbers after these have no meaning.
+    // A number after one of these words has no meaning.
     let unnumbered = match letters.as_str() {
         "FIXED" | "FIX" | "ANCHOR" => Some((Attachment::Fixed, "Fixed")),
         "COUPLED" | "CPLD" => Some((Attachment::Coupled, "Coupled")),
@@ -432,7 +432,7 @@ fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
     cells.read(column, value, Attachment::Fixed)
 }
 
-/// "3", "Point3", "Con3" or "R1A".
+/// Converts "3", "Point3", "Con3" or "R1A" to a line end.
 fn line_end(word: &str) -> Option<LineEnd> {
     let (letters, id, tail) = decomposed(word);
     match (letters.as_str(), id?, tail.as_str()) {
@@ -450,7 +450,7 @@ fn exists(end: LineEnd, deck: &Deck) -> bool {
     }
 }
 
-/// Returns whether rows of LINES have the length before the ends (version 1), by the contents of the columns, then by the header, then
+/// Returns whether rows of LINES have the length before the ends (version 1). Decides by the contents of the columns, then by the header, then
 /// by the version of the line types.
 fn length_comes_first(section: &Section<'_>, deck: &Deck) -> bool {
     let fits = |row: &&Row<'_>, ends: usize, length: usize, count: usize| {
@@ -524,7 +524,7 @@ fn whole_rows(sections: &Sections<'_>, kind: Kind) -> Vec<Placed<String>> {
         .collect()
 }
 
-/// Names of channels, several in a row perhaps, up to END.
+/// Reads the names of channels, one or several per row, up to END.
 fn outputs(sections: &Sections<'_>) -> Vec<Placed<String>> {
     let mut names = Vec::new();
     for row in sections.rows(Kind::Outputs).iter().take(ROWS_MAX) {
@@ -538,7 +538,7 @@ fn outputs(sections: &Sections<'_>) -> Vec<Placed<String>> {
     names
 }
 
-/// The columns that rows of a section are read by, where there is a choice.
+/// Returns the columns by which rows of a section are read, if there are alternatives.
 pub(super) fn columns_of(section: &Section<'_>, deck: &Deck) -> Option<&'static [Column]> {
     Some(match section.kind {
         Kind::LineTypes if deck.version == Version::One => LINE_TYPES_1,

@@ -1,4 +1,4 @@
-//! Remarks on what is right in a deck but often meant otherwise.
+//! Remarks on entries that are valid in a deck but often meant differently.
 
 use moorline::scene::plausibility::{DRAG_ON_BAR, MASS_PER_VOLUME, dense};
 
@@ -9,10 +9,10 @@ use super::tables::columns_of;
 use crate::findings::Findings;
 use crate::table::{check_units, compare_header};
 
-/// BA [N s] below which a ratio without its minus sign is likelier.
+/// BA [N s] below which a damping ratio without its minus sign is more likely.
 const RATIO_LIKE: f64 = 10.0;
 
-/// Remarks on a deck.
+/// Adds remarks on a deck.
 pub(super) fn remark(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
     headers(deck, sections, findings);
     for kind in &deck.line_types {
@@ -46,7 +46,7 @@ fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
     }
 }
 
-/// A negative BA is a ratio of critical damping of a segment, a positive one is BA itself; the header has no influence.
+/// Remarks on BA: a negative value is the ratio of critical damping of a segment, a positive one is BA itself; the header has no influence.
 fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Findings) {
     let Property::Number(value) = kind.damping.value else {
         return;
@@ -79,8 +79,8 @@ fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Fin
     }
 }
 
-/// The diameter is that of a cylinder of the line's volume, not that of a chain's bar. A drag coefficient that refers to the bar makes that
-/// certain: a scene is then silent, and other lines are noted as in a scene.
+/// Remarks on a chain whose diameter is that of the bar, although in a deck it is that of a cylinder with the line's volume, and whose drag
+/// coefficient refers to the bar. For such a line the scene gives no note; the note on other lines is the scene's.
 fn chain_diameter(kind: &LineType, findings: &mut Findings) {
     let (diameter, mass) = (kind.diameter.value, kind.mass.value);
     if diameter <= 0.0 || mass <= 0.0 || kind.drag_normal.value < DRAG_ON_BAR {
@@ -129,7 +129,7 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Start of a run: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0, or takes a state from another file.
+/// Remarks on the start: MoorDyn relaxes from the positions in the file, not at all if `TmaxIC` is 0, or reads a state from another file.
 fn start(deck: &Deck, findings: &mut Findings) {
     let at_once = &deck.options.starts_at_once;
     let start = match at_once {
@@ -157,7 +157,7 @@ fn line_files(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Mass, volume and drag of fixed points, which have none in a scene.
+/// Remarks on mass, volume and drag of fixed points, which a scene does not have.
 fn masses_of_fixed_points(deck: &Deck, findings: &mut Findings) {
     let is_fixed = |attachment: Attachment| match attachment {
         Attachment::Body(id) => deck.body(id).map(|body| body.attachment.value) == Some(Attachment::Fixed),

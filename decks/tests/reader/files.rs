@@ -1,6 +1,6 @@
-//! Decks and scenes that name files next to them: waves, currents, soundings of the seabed, tables of tension.
+//! Decks and scenes that refer to other files: waves, currents, soundings of the seabed, tension tables.
 //!
-//! claim: what a file says is in the scene, the converted scene is the same, and what is wrong is refused with file and line.
+//! claim: the contents of a file are in the scene, the converted scene is the same, and mistakes are refused with file and line.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use tempfile::tempdir;
 
 use crate::*;
 
-/// Writes a file and others next to it to a folder and loads it.
+/// Writes a file and the files that it refers to into a folder, and loads it.
 fn with_files(folder: &Path, text: &str, files: &[(&str, &str)]) -> Result<LoadedScene, LoadError> {
     for (name, text) in files.iter().chain(&[("mooring.dat", text)]) {
         fs::write(folder.join(name), text).unwrap();
@@ -19,13 +19,13 @@ fn with_files(folder: &Path, text: &str, files: &[(&str, &str)]) -> Result<Loade
     load(&folder.join("mooring.dat"))
 }
 
-/// Claims that a scene that was loaded is converted to the same scene.
+/// Asserts that a loaded scene is converted to the same scene.
 fn assert_converted(loaded: &LoadedScene) {
     let text = loaded.to_commented_toml();
     assert_eq!(Scene::from_toml(&text).unwrap(), loaded.scene, "{text}");
 }
 
-/// A MoorDyn deck of a buoyed line that asks for waves and a current.
+/// A MoorDyn deck of a buoyed line with waves and a current.
 fn in_waves() -> String {
     VERSION_1.replace("80     WtrDpth", "80     WtrDpth\n7  WaveKin\n1  Currents")
 }
@@ -48,7 +48,7 @@ fn a_deck_of_moordyn_brings_its_waves_and_current_from_files() {
     let mut simulation = Simulation::new(&loaded.scene).unwrap();
     let waves = simulation.model().waves.clone().unwrap();
     for t in [0.0, 2.0, 31.0] {
-        // MoorDyn's sum: |A| sin(ωt + arg A) at the origin
+        // MoorDyn's elevation: Σ |A| sin(ωt + arg A) at the origin
         let expected = 1.2 * (0.6 * t + 0.5 * PI).sin() + 0.4 * (0.9_f64 * t).sin();
         assert_relative_eq!(waves.elevation(0.0, 0.0, t), expected, epsilon = 1e-12);
     }
@@ -127,7 +127,7 @@ fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_seabed() {
     assert_says(&error.list(), &["mooring.dat:27:1: OPTIONS, bathymetry: ", lack]);
 }
 
-/// A deck with one rope whose EA and BA are these words.
+/// A deck with one rope, with these entries for EA and BA.
 fn rope(ea: &str, ba: &str) -> String {
     format!(
         "MoorDyn input\n---- LINE TYPES ----\nName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx\n(-) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)\n\

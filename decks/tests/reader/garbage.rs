@@ -1,11 +1,11 @@
-//! Broken decks by the hundred.
+//! Hundreds of broken decks.
 
 use crate::chance::Chance;
 use crate::*;
 
 const DECKS: [&str; 5] = [OPENFAST, VERSION_1, C_STYLE, FARM, MAP];
 
-/// Cells of the tables that hold numbers: line of the text and number of the word.
+/// Cells of the tables that contain numbers: line index and word index.
 fn number_cells(text: &str) -> Vec<(usize, usize)> {
     let mut cells = Vec::new();
     let mut inside = false;
@@ -25,7 +25,7 @@ fn number_cells(text: &str) -> Vec<(usize, usize)> {
     cells
 }
 
-/// The text with one word of one line replaced; an empty word takes the column out.
+/// Replaces one word in one line of the text; an empty word removes the cell.
 fn with_word(text: &str, (line, word): (usize, usize), new: &str) -> String {
     let rewritten = text.lines().enumerate().map(|(number, old)| {
         if number != line {
@@ -40,7 +40,7 @@ fn with_word(text: &str, (line, word): (usize, usize), new: &str) -> String {
     rewritten.collect::<Vec<_>>().join("\n")
 }
 
-/// Mutations that no deck survives.
+/// Every mutation breaks the deck.
 #[test]
 fn two_hundred_broken_decks_are_refused_with_file_and_line() {
     let mut chance = Chance::new(20_240_229);
@@ -55,7 +55,7 @@ fn two_hundred_broken_decks_are_refused_with_file_and_line() {
         }
         let error = match load_bytes(broken.as_bytes(), &supplement) {
             Err(error) => error.list(),
-            // Words that MAP++ does not use may be anything, and comments behind a row too.
+            // Words that MAP++ does not use, and comments after a row, may be anything.
             Ok(_) if text == MAP => continue,
             Ok(_) => panic!("trial {trial} is no mistake:\n{broken}"),
         };

@@ -1,4 +1,4 @@
-//! Decks of MoorDyn and MAP++: what is read of them, what is refused and where, and that a converted deck is the same system.
+//! Decks of MoorDyn and MAP++: contents read, mistakes refused with their places, and conversion to the same system.
 
 #[path = "../../../tests/common/chance.rs"]
 mod chance;
@@ -35,7 +35,7 @@ fn read(name: &str) -> LoadedScene {
     load(&deck(name)).unwrap_or_else(|error| panic!("{}", error.list()))
 }
 
-/// Depth and places that the host of the decks gives that leave them out.
+/// Depth and positions from the host, for the decks without them.
 fn supplement() -> Supplement {
     let at = |name: &str, x| (name.to_string(), [x, 0.0, 0.0]);
     Supplement {
@@ -45,7 +45,7 @@ fn supplement() -> Supplement {
     }
 }
 
-/// Depth that the host of the MAP++ deck gives.
+/// Depth from the host of the MAP++ deck.
 fn deep() -> Supplement {
     Supplement {
         depth: Some(320.0),
@@ -53,7 +53,7 @@ fn deep() -> Supplement {
     }
 }
 
-/// A deck as bytes of a file with a name that says nothing.
+/// Loads bytes from a file whose name does not reveal the format.
 fn load_bytes(bytes: &[u8], supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("input");
@@ -65,17 +65,17 @@ fn load_text(text: &str) -> Result<LoadedScene, LoadError> {
     load_bytes(text.as_bytes(), &Supplement::default())
 }
 
-/// A deck of MAP++ as text, with the depth of its host.
+/// Loads the text of a MAP++ deck, with the depth from its host.
 fn load_deep(text: &str) -> Result<LoadedScene, LoadError> {
     load_bytes(text.as_bytes(), &deep())
 }
 
-/// A deck as text that is right.
+/// Loads the text of a deck without mistakes.
 fn loaded(text: &str) -> LoadedScene {
     load_text(text).unwrap_or_else(|error| panic!("{}", error.list()))
 }
 
-/// Every mistake on a line, without the folder: `input:7:32: …`.
+/// Lists the mistakes, one per line, without the folder: `input:7:32: …`.
 fn said_by(result: Result<LoadedScene, LoadError>) -> String {
     let listed = result
         .err()
@@ -94,13 +94,13 @@ fn said(text: &str) -> String {
     said_by(load_text(text))
 }
 
-/// The deck with one part of its text replaced, which must be there.
+/// Replaces a part of the deck's text, which must be there.
 fn with(text: &str, old: &str, new: &str) -> String {
     assert!(text.contains(old), "{old:?} is not in the deck");
     text.replacen(old, new, 1)
 }
 
-/// The words of `check` on a scene, in one line.
+/// Returns the sentences of `check` on a scene, in one line.
 fn in_words(scene: &Scene) -> String {
     scene.in_words().split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! Scenes that are read from decks.
+//! Scenes read from decks.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use moorline::scene::{Drive, InitialShape, LoadedScene, PointKind, Scene, TimeFu
 
 use crate::*;
 
-/// The scenes are kept in `tests/decks/converted`; `MOORLINE_UPDATE=1` writes them anew.
+/// The expected scenes are in `tests/decks/converted`; `MOORLINE_UPDATE=1` writes them again.
 #[test]
 fn a_deck_is_converted_to_the_scene_that_is_kept_with_units_and_lines_and_rests_the_same_to_the_last_bit() {
     for name in [
@@ -31,7 +31,7 @@ fn a_deck_is_converted_to_the_scene_that_is_kept_with_units_and_lines_and_rests_
         let back = Scene::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(back, loaded.scene, "{name}");
         if name != "moordyn_c.txt" {
-            // whose cable bends, which has its own tests
+            // the cable in this deck has bending stiffness, which has its own tests
             let [first, second] = [&loaded.scene, &back].map(|scene| Simulation::new(scene).unwrap());
             assert_eq!(first.snapshot(), second.snapshot(), "{name}");
         }
@@ -68,7 +68,7 @@ fn the_words_for_a_deck_tell_of_its_vessel_and_of_where_points_are_on_it() {
         &words,
         &["point7: carried by body1, at (5, 0, 15) m in the frame of the vessel"],
     );
-    // In its body's frame the point is above z = 0, but the body lies deep, and turned.
+    // Relative to its body the point is above z = 0, but the body is deep below the surface, and rotated.
     assert!(!notes(&read("moordyn_c.txt")).contains("above z = 0"));
     assert_says(
         &words,
@@ -314,7 +314,7 @@ fn a_deck_that_gives_no_time_to_come_to_rest_starts_from_its_positions() {
     assert_eq!(place, [150.0, 0.0, -60.0]);
     let lines = &at_once.scene.lines;
     assert!(lines.iter().all(|line| line.initial == InitialShape::Catenary));
-    // a line between held points lies on its closed form
+    // a line between fixed or coupled points lies on its closed-form catenary
     let line = simulation.model().line_index("line2").unwrap();
     let catenary = simulation.catenary(line).unwrap();
     for node in simulation.profile(line) {
@@ -339,7 +339,7 @@ fn product(a: Matrix, b: Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-/// Rotations by roll, pitch and yaw [rad] about x, y and z.
+/// Rotation matrices of roll, pitch and yaw [rad] about x, y and z.
 fn elementary([roll, pitch, yaw]: [f64; 3]) -> [Matrix; 3] {
     let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
     [
@@ -378,7 +378,7 @@ fn the_motion_of_a_decks_vessel_turns_it_as_moordyn_does_and_an_fmu_as_it_says()
     };
     loaded.scene.drive(&drive).unwrap();
     for line in &mut loaded.scene.lines {
-        line.initial = InitialShape::Straight; // where the body is does not depend on an equilibrium
+        line.initial = InitialShape::Straight; // the position of the body does not depend on an equilibrium
     }
     let mut simulation = Simulation::new(&loaded.scene).unwrap();
     let index = simulation.model().point_index("point7").unwrap();
@@ -392,7 +392,7 @@ fn the_motion_of_a_decks_vessel_turns_it_as_moordyn_does_and_an_fmu_as_it_says()
     near(&simulation, expected);
     simulation.advance(0.1).unwrap();
     near(&simulation, expected);
-    // the moment is that of the force at this place
+    // the moment is that of the force at this position
     let force = simulation.end_force(index);
     let [_, _, _, mx, ..] = simulation.vessel_force(0);
     let origin = [2.0, 0.0, -20.0];
@@ -401,7 +401,7 @@ fn the_motion_of_a_decks_vessel_turns_it_as_moordyn_does_and_an_fmu_as_it_says()
         (mx - moment).abs() < 1e-6 * moment.abs().max(1.0),
         "{mx} {moment}"
     );
-    // a host is given the same attitude in the FMU's order
+    // a host that gives the same attitude in the FMU's order
     let mut host = Simulation::new(&loaded.scene).unwrap();
     for moving in host.model().moving(0.0) {
         host.set_body(moving.body, moving.pose, [None; 6]);

@@ -1,4 +1,4 @@
-//! Every mistake once, in `tests/decks/refusals`: the first mistakes listed for a changed deck.
+//! Every mistake once: `tests/decks/refusals` contains the first mistakes listed for each changed deck.
 
 use crate::*;
 

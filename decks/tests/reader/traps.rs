@@ -1,17 +1,17 @@
-//! Small decks after the traps of the field: each is read, solved at its own mesh, and its trap is named in a note.
+//! Small decks with common traps: each is read and solved on its own mesh, and a note reports its trap.
 
 use moorline::scene::PointKind;
 
 use crate::*;
 
-/// Deviation of the force at end B from that of the closed form [-].
+/// Maximum relative deviation of the tension at end B from the closed form [-].
 const DEVIATION_MAX: f64 = 5e-3;
 
-/// A deck of `tests/decks/traps`: file, what its host gives, number of lines that have a closed form, and a claim on the scene. Lines have
-/// none where their tension is a table, or where a free point joins them.
+/// A deck in `tests/decks/traps`: file, values from its host, number of lines with a closed form, and a condition on the scene. A line has no
+/// closed form if its tension is a table, or if a free point joins it to another.
 type Trap = (&'static str, fn() -> Supplement, usize, fn(&Scene) -> bool);
 
-/// Parts of the notes on each deck, each of another note.
+/// Parts of the expected notes on each deck, each from a different note.
 const NOTES: &str = include_str!("traps.txt");
 
 fn nothing() -> Supplement {
@@ -99,14 +99,14 @@ const TRAPS: &[Trap] = &[
     ("unknown_words.map", deep_116, 2, |scene| scene.seabed.is_some()),
 ];
 
-/// Parts of the notes on a deck.
+/// Returns the parts of the expected notes on a deck.
 fn notes_on(file: &str) -> Vec<&'static str> {
     let mut lines = NOTES.lines();
     assert!(lines.any(|line| line == file), "no notes on {file}");
     lines.map_while(|line| line.strip_prefix("    ")).collect()
 }
 
-/// Mistakes in the reading or the solution of a deck.
+/// Returns the errors in the reading or the solution of a deck.
 fn slips((file, supplement, closed, holds): &Trap) -> Vec<String> {
     let path = deck("traps").join(file);
     let loaded = match load_with(&path, &supplement()) {

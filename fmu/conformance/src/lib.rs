@@ -1,7 +1,7 @@
-//! The ABI of every FMI function against the standard's C headers, as bindgen reads them in `fmi-sys`.
+//! Comparison of the ABI of every FMI function with the standard's C headers, as read by bindgen in `fmi-sys`.
 //!
-//! Each function that the FMU exports has the type of that name in `moorline-host` (asserted in `fmu/src/fmi2.rs` and
-//! `fmi3.rs`). Here each of those types must be the one of `fmi-sys`, so a wrong argument anywhere fails to compile.
+//! Each function that the FMU exports has the type of the same name in `moorline-host` (asserted in `fmu/src/fmi2.rs` and
+//! `fmi3.rs`). Here each of those types must equal the one in `fmi-sys`, so a wrong argument fails to compile.
 //! Without the feature `fmi-sys` this package is empty.
 #![cfg(feature = "fmi-sys")]
 
@@ -11,7 +11,7 @@ use fmi_sys::fmi2 as standard;
 use moorline_host::{fmi2 as own, fmi2_functions, fmi3_functions};
 
 /// Asserts that the types of all functions are those of the C headers. Two functions of FMI 2.0 take a structure that
-/// each side declares for itself; they are compared below.
+/// both packages declare separately; they are compared below.
 macro_rules! assert_same_fmi2 {
     () => {};
     (fmi2Instantiate: $type:ident = fn($($a:ty),*) -> $r:ty; $($rest:tt)*) => {
@@ -34,7 +34,7 @@ macro_rules! assert_same_fmi3 {
 }
 fmi3_functions!(assert_same_fmi3);
 
-/// `fmi2Instantiate` with either side's callbacks and, for the rest, the standard's types.
+/// Type of `fmi2Instantiate` with the callbacks of either package and otherwise the types of `fmi-sys`.
 type Instantiate<Callbacks> = unsafe extern "C" fn(
     standard::fmi2String,
     standard::fmi2Type,
@@ -47,13 +47,13 @@ type Instantiate<Callbacks> = unsafe extern "C" fn(
 const _: fn(own::fmi2InstantiateTYPE) -> Instantiate<own::fmi2CallbackFunctions> = |f| f;
 const _: fn(Instantiate<standard::fmi2CallbackFunctions>) -> standard::fmi2InstantiateTYPE = |f| Some(f);
 
-/// `fmi2NewDiscreteStates` with either side's event information.
+/// Type of `fmi2NewDiscreteStates` with the event information of either package.
 type NewDiscreteStates<Info> =
     unsafe extern "C" fn(standard::fmi2Component, *mut Info) -> standard::fmi2Status;
 const _: fn(own::fmi2NewDiscreteStatesTYPE) -> NewDiscreteStates<own::fmi2EventInfo> = |f| f;
 const _: fn(NewDiscreteStates<standard::fmi2EventInfo>) -> standard::fmi2NewDiscreteStatesTYPE = |f| Some(f);
 
-/// Asserts that two structures have the same size, alignment, field types and field places.
+/// Asserts that two structures have the same size, alignment, field types and field offsets.
 macro_rules! assert_same_structure {
     ($name:ident: $($field:ident)*) => {
         const _: () = {
@@ -69,7 +69,7 @@ assert_same_structure!(fmi2EventInfo:
     newDiscreteStatesNeeded terminateSimulation nominalsOfContinuousStatesChanged valuesOfContinuousStatesChanged
     nextEventTimeDefined nextEventTime);
 
-/// Asserts that constants have the numbers of the C headers; bindgen puts the enumeration's name before theirs.
+/// Asserts that constants have the values of the C headers; bindgen prefixes them with the name of the enumeration.
 macro_rules! assert_same_numbers {
     ($($own:ident = $standard:ident)*) => { $(const _: () = assert!(own::$own == standard::$standard);)* };
 }

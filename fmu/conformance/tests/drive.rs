@@ -1,6 +1,6 @@
 //! The `fmi` crate, a host by other authors, opens and drives the FMU in both versions.
 //!
-//! The FMU is packaged by the command line in the environment variable MOORLINE, which `run_tests.py` sets.
+//! `run_tests.py` sets the environment variable MOORLINE to the path of the command-line program, which packages the FMU.
 
 use std::fs::File;
 use std::io::{Cursor, Read as _, Write as _};
@@ -17,7 +17,7 @@ use fmi::traits::FmiImport as _;
 
 const SCENE: &str = include_str!("../../../tests/scenes/hand.toml");
 
-/// Value references of `hand.x` and `rope.tension_b`: positions in the table, the same in both versions.
+/// Value references of `hand.x` and `rope.tension_b`: indices in the table of variables, the same in both versions.
 const HAND_X: u32 = 1;
 const TENSION_B: u32 = 10;
 
@@ -37,8 +37,8 @@ fn package(version: &str) -> PathBuf {
     fmu
 }
 
-/// The FMU without units on its variables: version 0.8 of the crate refuses the attribute `unit`, which the standard
-/// allows on every Float64 (FMI 3.0.2, section 2.4.7). The token does not notice, since the FMU computes its own.
+/// Removes the units of the variables from an FMU: version 0.8 of the crate refuses the attribute `unit`, which the standard
+/// allows on every Float64 (FMI 3.0.2, section 2.4.7). The token stays valid, since the FMU computes its own.
 fn without_units(fmu: &Path) -> Cursor<Vec<u8>> {
     let mut archive = zip::ZipArchive::new(File::open(fmu).unwrap()).unwrap();
     let mut copy = zip::ZipWriter::new(Cursor::new(Vec::new()));

@@ -1,4 +1,4 @@
-//! The .fmu container: unpacked into a separate folder, the library found by the platform's name.
+//! The .fmu container: unpacked into a separate folder; the platform's name selects the library.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(crate) fn unpack(path: &Path) -> Result<TempDir, HostError> {
     Ok(folder)
 }
 
-/// Path of the library in an unpacked FMU.
+/// Returns the path of the library in an unpacked FMU.
 pub(crate) fn library_path(
     folder: &Path,
     version: FmiVersion,

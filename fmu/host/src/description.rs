@@ -10,7 +10,7 @@ use crate::{FmiVersion, HostError};
 pub enum Causality {
     /// Set before the simulation.
     Parameter,
-    /// Follows from parameters.
+    /// Computed from parameters.
     CalculatedParameter,
     /// Set by the host.
     Input,
@@ -48,11 +48,11 @@ pub struct Variable {
     pub kind: VariableType,
     /// Number of values [-]: 1 for a scalar.
     pub size: usize,
-    /// Unit, as written.
+    /// Unit, as written in the description.
     pub unit: Option<String>,
 }
 
-/// Data of an FMU's description that a host needs.
+/// Contents of an FMU's description that a host needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
     /// Version of the interface.
@@ -63,7 +63,7 @@ pub struct Description {
     pub token: String,
     /// Name of the library without extension.
     pub model_identifier: String,
-    /// Variables in their order.
+    /// Variables in the order of the description.
     pub variables: Vec<Variable>,
     /// Start of the default experiment [s].
     pub start_time: f64,

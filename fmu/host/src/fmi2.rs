@@ -8,7 +8,7 @@ use std::ffi::{c_char, c_int, c_uint, c_void};
 
 /// An FMU instance.
 pub type fmi2Component = *mut c_void;
-/// The host's own pointer, handed back in every callback.
+/// Pointer of the host, passed back in every callback.
 pub type fmi2ComponentEnvironment = *mut c_void;
 /// A saved state.
 pub type fmi2FMUstate = *mut c_void;
@@ -55,7 +55,7 @@ pub const fmi2DoStepStatus: fmi2StatusKind = 0;
 pub const fmi2PendingStatus: fmi2StatusKind = 1;
 /// Time that the last successful step reached [s].
 pub const fmi2LastSuccessfulTime: fmi2StatusKind = 2;
-/// Status kind of a request by the FMU to end the simulation.
+/// Whether the FMU has requested the end of the simulation.
 pub const fmi2Terminated: fmi2StatusKind = 3;
 
 /// Host's log function; `printf` format and arguments.
@@ -81,7 +81,7 @@ pub struct fmi2CallbackFunctions {
     pub freeMemory: fmi2CallbackFreeMemory,
     /// End of an asynchronous step.
     pub stepFinished: fmi2StepFinished,
-    /// Handed back in the callbacks.
+    /// Pointer passed back in the callbacks.
     pub componentEnvironment: fmi2ComponentEnvironment,
 }
 
@@ -103,7 +103,7 @@ pub struct fmi2EventInfo {
     pub nextEventTime: fmi2Real,
 }
 
-/// Passes every function of FMI 2.0, with its type's name and signature, to the macro of the given name.
+/// Passes every function of FMI 2.0, with the name and signature of its type, to the given macro.
 #[macro_export]
 macro_rules! fmi2_functions {
     ($callback:ident) => {

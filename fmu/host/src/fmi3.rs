@@ -8,7 +8,7 @@ use std::ffi::{c_char, c_uint, c_void};
 
 /// An FMU instance.
 pub type fmi3Instance = *mut c_void;
-/// The host's own pointer, handed back in every callback.
+/// Pointer of the host, passed back in every callback.
 pub type fmi3InstanceEnvironment = *mut c_void;
 /// A saved state.
 pub type fmi3FMUState = *mut c_void;
@@ -86,7 +86,7 @@ pub type fmi3LockPreemptionCallback = Option<unsafe extern "C" fn()>;
 /// Ends a critical section (scheduled execution).
 pub type fmi3UnlockPreemptionCallback = Option<unsafe extern "C" fn()>;
 
-/// Passes every function of FMI 3.0, with its type's name and signature, to the macro of the given name.
+/// Passes every function of FMI 3.0, with the name and signature of its type, to the given macro.
 #[macro_export]
 macro_rules! fmi3_functions {
     ($callback:ident) => {

@@ -1,4 +1,4 @@
-//! An opened FMU: its unpacked folder, its description, its loaded library.
+//! Opened FMU: its unpacked folder, description and loaded library.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub enum HostError {
     /// The description cannot be used.
     #[error("modelDescription.xml: {0}")]
     Description(String),
-    /// The standard names no folder for this platform.
+    /// FMI defines no binaries folder for this platform.
     #[error("FMI names no binaries folder for this platform")]
     Platform,
     /// The library cannot be loaded.
@@ -44,10 +44,10 @@ pub enum HostError {
     /// The reference results of the FMU are missing or cannot be used.
     #[error("reference results: {0}")]
     Reference(String),
-    /// A text or a length that C cannot take.
+    /// A text or a number of values that cannot be passed to C.
     #[error("{0}")]
     Argument(String),
-    /// A call did not succeed.
+    /// A call returned a status other than success.
     #[error("{function} returned {status:?}: {log}")]
     Call {
         /// The function of the standard.
@@ -66,7 +66,7 @@ pub(crate) enum Api {
     Three(Box<fmi3::Functions>),
 }
 
-/// Library before folder: it must be unloaded before its file is removed.
+/// Contents of an opened FMU. `library` precedes `folder`, since it must be unloaded before its file is removed.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     pub(crate) api: Api,
@@ -75,7 +75,7 @@ pub(crate) struct Loaded {
     pub(crate) folder: TempDir,
 }
 
-/// An opened FMU. Instances keep it open.
+/// Opened FMU. Its instances keep it open.
 #[derive(Debug, Clone)]
 pub struct Fmu(pub(crate) Arc<Loaded>);
 
@@ -83,7 +83,7 @@ impl Fmu {
     /// Unpacks an FMU into a separate folder and loads its library.
     ///
     /// # Errors
-    /// A container, description or library that cannot be used.
+    /// The container, description or library cannot be used.
     pub fn open(path: &Path) -> Result<Fmu, HostError> {
         let folder = archive::unpack(path)?;
         let text = std::fs::read_to_string(folder.path().join("modelDescription.xml")).map_err(|e| {
@@ -95,7 +95,7 @@ impl Fmu {
         let description = Description::from_xml(&text)?;
         let library_path =
             archive::library_path(folder.path(), description.version, &description.model_identifier)?;
-        // SAFETY: loading runs the library's initialisers. That is what opening an FMU means; the user chose the file.
+        // SAFETY: loading runs the library's initialisers. Opening an FMU includes this; the user chose the file.
         let library = unsafe { libloading::Library::new(&library_path) }.map_err(|e| HostError::Library {
             path: library_path,
             problem: e.to_string(),
@@ -116,22 +116,22 @@ impl Fmu {
         })))
     }
 
-    /// The FMU's description.
+    /// Returns the FMU's description.
     pub fn description(&self) -> &Description {
         &self.0.description
     }
 
-    /// Folder the FMU is unpacked in.
+    /// Returns the folder that contains the unpacked FMU.
     pub fn folder(&self) -> &Path {
         self.0.folder.path()
     }
 
-    /// The loaded library, for functions outside the standard.
+    /// Returns the loaded library, for functions outside the standard.
     pub fn library(&self) -> &libloading::Library {
         &self.0.library
     }
 
-    /// Value reference of a variable.
+    /// Returns the value reference of a variable.
     ///
     /// # Errors
     /// No variable has this name.
@@ -139,7 +139,7 @@ impl Fmu {
         Ok(self.variable(name)?.reference)
     }
 
-    /// Variable of a name.
+    /// Returns the variable of this name.
     ///
     /// # Errors
     /// No variable has this name.
@@ -152,7 +152,7 @@ impl Fmu {
         found.ok_or_else(|| HostError::UnknownVariable(name.to_string()))
     }
 
-    /// Makes a co-simulation instance; `logging` turns the FMU's log on.
+    /// Creates a co-simulation instance; `logging` turns the FMU's log on.
     ///
     /// # Errors
     /// The FMU refuses; the error holds its log.
@@ -160,7 +160,7 @@ impl Fmu {
         Slave::new(self, name, &self.description().token, logging)
     }
 
-    /// Does the same as [`Fmu::instantiate`] with another token than the description's: an FMU must refuse it.
+    /// Works like [`Fmu::instantiate`], with a token other than the description's: an FMU must refuse it.
     ///
     /// # Errors
     /// The FMU refuses; the error holds its log.

@@ -14,7 +14,7 @@
 //! # Ok(()) }
 //! ```
 
-/// From the list of a standard's functions: a pointer type for each, and the table that a host resolves.
+/// Generates from the list of a standard's functions a pointer type for each and the table that a host resolves.
 macro_rules! function_table {
     ($($name:ident: $type:ident = fn($($argument:ty),*) -> $result:ty;)*) => {
         $(

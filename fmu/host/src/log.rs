@@ -1,4 +1,4 @@
-//! Log messages of the FMU, caught through the callbacks of both versions.
+//! Log messages of the FMU, received through the callbacks of both versions.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;
@@ -12,7 +12,7 @@ use crate::fmi3::fmi3Status;
 pub struct LogMessage {
     /// Severity.
     pub status: Status,
-    /// Category, one of those the description declares.
+    /// Category, one of those in the description.
     pub category: String,
     /// Text.
     pub text: String,
@@ -41,7 +41,7 @@ impl Log {
     }
 }
 
-/// Reads a text of the FMU.
+/// Copies a text of the FMU.
 ///
 /// # Safety
 /// `text` is null or ends with a zero byte and lives during the call.
@@ -72,7 +72,7 @@ pub(crate) unsafe extern "C" fn log_message(
     }
 }
 
-/// The fixed part of an `fmi2CallbackLogger` call, and the first of the variable arguments.
+/// Fixed arguments of an `fmi2CallbackLogger` call, and the first variable argument.
 #[cfg(not(all(target_vendor = "apple", target_arch = "aarch64")))]
 unsafe extern "C" fn logger(
     environment: *mut c_void,
@@ -89,7 +89,7 @@ unsafe extern "C" fn logger(
     }
 }
 
-/// As above where variable arguments are on the stack, out of reach: the format alone.
+/// As above for a platform that passes variable arguments on the stack, where they cannot be read: the message is the format alone.
 #[cfg(all(target_vendor = "apple", target_arch = "aarch64"))]
 unsafe extern "C" fn logger(
     environment: *mut c_void,
@@ -104,7 +104,7 @@ unsafe extern "C" fn logger(
     }
 }
 
-/// The logger as FMI 2.0 declares it, variadic.
+/// Returns the logger with the variadic type of FMI 2.0.
 pub(crate) fn variadic_logger() -> fmi2CallbackLogger {
     // SAFETY: stable Rust cannot define a variadic function. On the platforms of the six-argument form a variadic call
     // passes pointers and integers where a call with fixed arguments does (System V x86-64, Windows x64, AAPCS64), and

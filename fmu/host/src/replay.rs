@@ -1,4 +1,4 @@
-//! Replay of the reference results that an FMU holds, by the layered standard FMI-LS-REF.
+//! Replay of the reference results in an FMU, according to the layered standard FMI-LS-REF.
 
 use std::path::Path;
 
@@ -8,29 +8,29 @@ use quick_xml::events::{BytesStart, Event};
 use crate::description::{attribute, broken, number, required};
 use crate::{Fmu, HostError, Slave, VariableType};
 
-/// The greatest deviation from the reference results.
+/// Greatest deviation from the reference results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deviation {
     /// The variable.
     pub variable: String,
     /// Time [s].
     pub time: f64,
-    /// Deviation over the greatest magnitude of the variable in the reference [-].
+    /// Deviation relative to the greatest magnitude of the variable in the reference [-].
     pub relative: f64,
 }
 
-/// A replayed experiment.
+/// Result of a replayed experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
-    /// Steps made [-].
+    /// Number of steps made [-].
     pub steps: usize,
     /// End of the experiment [s].
     pub end: f64,
     /// Number of variables compared [-].
     pub variables: usize,
-    /// Greatest deviation that the experiment allows [-].
+    /// Greatest relative deviation that the experiment allows [-].
     pub tolerance: f64,
-    /// The greatest deviation found; none where nothing deviates.
+    /// Greatest deviation found; `None` if nothing deviates.
     pub greatest: Option<Deviation>,
 }
 
@@ -42,10 +42,10 @@ impl Replay {
     }
 }
 
-/// Replays the first experiment of an FMU: the stimuli at t are set before the step from t, to the next row of the references.
+/// Replays the first experiment of an FMU: the stimuli at t are set before the step from t to the next row of the references.
 ///
 /// # Errors
-/// An FMU without an experiment or with one that cannot be read, and the FMU's own errors.
+/// The FMU has no experiment, or the experiment cannot be read or run.
 pub fn replay(fmu: &Fmu) -> Result<Replay, HostError> {
     let file = fmu.folder().join(EXPERIMENTS_FILE);
     let experiment = Experiment::read(&file)?;
@@ -91,7 +91,7 @@ fn refuse(file: &Path, problem: impl std::fmt::Display) -> HostError {
     HostError::Reference(format!("{}: {problem}", file.display()))
 }
 
-/// Comparison with the references, row by row.
+/// Row-by-row comparison with the references.
 struct Compared<'r> {
     names: &'r [String],
     /// Greatest magnitude of each variable in the references.
@@ -138,7 +138,7 @@ impl<'r> Compared<'r> {
     }
 }
 
-/// An experiment of the layered standard.
+/// Experiment of the layered standard.
 struct Experiment {
     stimuli: String,
     references: String,
@@ -147,11 +147,11 @@ struct Experiment {
     step: Option<f64>,
 }
 
-/// Difference between a step of the table and that of the experiment that is rounding of the times, relative to the step [-].
+/// Greatest difference between a step of the table and the step of the experiment that is attributed to rounding, relative to the step [-].
 const ROUNDING: f64 = 1e-6;
 
 impl Experiment {
-    /// Step between two times [s]: that of the experiment, save for a last one that is shorter.
+    /// Returns the step between two times [s]: the step of the experiment if it matches, otherwise the difference (a shorter last step).
     fn step_between(&self, start: f64, end: f64) -> f64 {
         let step = end - start;
         let same = self.step.filter(|same| (same - step).abs() < ROUNDING * step);
@@ -177,7 +177,7 @@ impl Experiment {
                     "References" => references = Some(table_of(&tag)?),
                     _ => {}
                 },
-                // the first experiment ends
+                // the end of the first experiment
                 Event::End(tag) if tag.name().as_ref() == "Experiment" => break,
                 Event::Eof => break,
                 _ => {}
@@ -193,7 +193,7 @@ impl Experiment {
     }
 }
 
-/// Name of the table that an element refers to.
+/// Returns the file name of the table that an element refers to.
 fn table_of(tag: &BytesStart<'_>) -> Result<String, HostError> {
     let source = required(tag, "source")?;
     match attribute(tag, "type")?.as_deref() {
@@ -204,9 +204,9 @@ fn table_of(tag: &BytesStart<'_>) -> Result<String, HostError> {
     }
 }
 
-/// A table of numbers in time.
+/// Table of numbers against time.
 struct Table {
-    /// Names of the columns behind the time.
+    /// Names of the columns after the time.
     names: Vec<String>,
     /// Time [s] and values.
     rows: Vec<Vec<f64>>,

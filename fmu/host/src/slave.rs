@@ -1,4 +1,4 @@
-//! One co-simulation instance, the same calls for both versions of FMI.
+//! Co-simulation instance with the same calls for both versions of FMI.
 
 use std::ffi::{CString, c_void};
 use std::path::Path;
@@ -10,12 +10,12 @@ use crate::fmu::{Api, Loaded};
 use crate::log::{Log, log_message, variadic_logger};
 use crate::{Fmu, HostError, LogMessage, Status};
 
-/// A co-simulation instance; freed when dropped.
+/// Co-simulation instance; freed when dropped.
 #[derive(Debug)]
 pub struct Slave {
     handle: *mut c_void,
     log: Box<Log>,
-    /// The FMU may keep a pointer to it.
+    /// Callbacks, to which the FMU may keep a pointer.
     _callbacks: Box<fmi2CallbackFunctions>,
     /// Keeps the library loaded.
     fmu: Fmu,
@@ -25,7 +25,7 @@ pub struct Slave {
 // 2.2.3); `&mut self` in every call ensures that. The log is behind a mutex.
 unsafe impl Send for Slave {}
 
-/// A state saved by [`Slave::save_state`]; it belongs to the instance that made it.
+/// State saved by [`Slave::save_state`]; it belongs to the instance that saved it.
 #[derive(Debug)]
 pub struct SavedState(*mut c_void);
 
@@ -91,7 +91,7 @@ impl Slave {
         })
     }
 
-    /// Calls the function of the FMU's version and turns its status into a result.
+    /// Calls the function of the FMU's version and converts its status to a result.
     fn call(
         &mut self,
         names: [&'static str; 2],
@@ -113,25 +113,25 @@ impl Slave {
         })
     }
 
-    /// Messages since the last call of this function; a failed call takes its own into its error.
+    /// Returns the messages since the last call of this function; the messages of a failed call are in its error instead.
     pub fn take_log(&mut self) -> Vec<LogMessage> {
         self.log.take()
     }
 
-    /// The FMU this is an instance of.
+    /// Returns the FMU of this instance.
     pub fn fmu(&self) -> &Fmu {
         &self.fmu
     }
 
-    /// The C handle, for functions outside the standard; valid while the slave lives.
+    /// Returns the C handle, for functions outside the standard; valid during the lifetime of the slave.
     pub fn handle(&self) -> *mut c_void {
         self.handle
     }
 
-    /// Sets the start [s] and, where known, the end [s] of the simulation, and begins initialization.
+    /// Sets the start time [s] and, if known, the end time [s], and enters initialization mode.
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<Status, HostError> {
         let (defined, stop) = (stop.is_some(), stop.unwrap_or(0.0));
         self.call(
@@ -149,10 +149,10 @@ impl Slave {
         )
     }
 
-    /// Ends initialization.
+    /// Leaves initialization mode.
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn exit_initialization(&mut self) -> Result<Status, HostError> {
         self.call(
             ["fmi2ExitInitializationMode", "fmi3ExitInitializationMode"],
@@ -163,10 +163,10 @@ impl Slave {
         )
     }
 
-    /// Sets real variables; arrays take all their values.
+    /// Sets real variables; an array takes all its values.
     ///
     /// # Errors
-    /// The FMU's own; different numbers of references and values in FMI 2.0.
+    /// Errors of the FMU; in FMI 2.0, different numbers of references and values.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<Status, HostError> {
         self.check_lengths(references.len(), values.len())?;
         self.call(
@@ -188,10 +188,10 @@ impl Slave {
         )
     }
 
-    /// Reads real variables; arrays fill all their values.
+    /// Reads real variables; an array fills all its values.
     ///
     /// # Errors
-    /// The FMU's own; different numbers of references and values in FMI 2.0.
+    /// Errors of the FMU; in FMI 2.0, different numbers of references and values.
     pub fn get_real(&mut self, references: &[u32], values: &mut [f64]) -> Result<Status, HostError> {
         self.check_lengths(references.len(), values.len())?;
         let (target, length) = (values.as_mut_ptr(), values.len());
@@ -209,7 +209,7 @@ impl Slave {
     /// Reads one integer variable.
     ///
     /// # Errors
-    /// The FMU's own, or no such variable.
+    /// Errors of the FMU, or no such variable.
     pub fn integer(&mut self, name: &str) -> Result<i32, HostError> {
         let reference = self.fmu.reference(name)?;
         let mut value = 0;
@@ -224,10 +224,10 @@ impl Slave {
         Ok(value)
     }
 
-    /// Reads one real variable by name; look up references once where it is read often.
+    /// Reads one real variable by name; for frequent access, look up the reference once and use [`Slave::get_real`].
     ///
     /// # Errors
-    /// The FMU's own, or no such variable.
+    /// Errors of the FMU, or no such variable.
     pub fn real(&mut self, name: &str) -> Result<f64, HostError> {
         let reference = self.fmu.reference(name)?;
         let mut value = [0.0];
@@ -235,10 +235,10 @@ impl Slave {
         Ok(value[0])
     }
 
-    /// Computes from `time` [s] to `time + step` [s].
+    /// Advances from `time` [s] to `time + step` [s].
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn do_step(&mut self, time: f64, step: f64) -> Result<Status, HostError> {
         self.call(
             ["fmi2DoStep", "fmi3DoStep"],
@@ -266,7 +266,7 @@ impl Slave {
     /// Ends the simulation.
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn terminate(&mut self) -> Result<Status, HostError> {
         self.call(
             ["fmi2Terminate", "fmi3Terminate"],
@@ -277,10 +277,10 @@ impl Slave {
         )
     }
 
-    /// Back to just after instantiation.
+    /// Returns to the state after instantiation.
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn reset(&mut self) -> Result<Status, HostError> {
         self.call(
             ["fmi2Reset", "fmi3Reset"],
@@ -291,16 +291,16 @@ impl Slave {
         )
     }
 
-    /// Saves the whole state. Give it back with [`Slave::free_state`].
+    /// Saves the whole state. Free it with [`Slave::free_state`].
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn save_state(&mut self) -> Result<SavedState, HostError> {
         let mut state = ptr::null_mut();
         let target = &raw mut state;
         self.call(
             ["fmi2GetFMUstate", "fmi3GetFMUState"],
-            // SAFETY: the handle is live; a null state asks for a new one.
+            // SAFETY: the handle is live; a null state requests a new one.
             |f, handle| unsafe { (f.fmi2GetFMUstate)(handle, target) },
             // SAFETY: as above.
             |f, handle| unsafe { (f.fmi3GetFMUState)(handle, target) },
@@ -308,10 +308,10 @@ impl Slave {
         Ok(SavedState(state))
     }
 
-    /// Goes back to a saved state.
+    /// Restores a saved state.
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn restore_state(&mut self, state: &SavedState) -> Result<Status, HostError> {
         self.call(
             ["fmi2SetFMUstate", "fmi3SetFMUState"],
@@ -325,7 +325,7 @@ impl Slave {
     /// Frees a saved state.
     ///
     /// # Errors
-    /// The FMU's own.
+    /// Errors of the FMU.
     pub fn free_state(&mut self, mut state: SavedState) -> Result<Status, HostError> {
         let target = &raw mut state.0;
         self.call(
@@ -337,7 +337,7 @@ impl Slave {
         )
     }
 
-    /// FMI 2.0 has one value per reference.
+    /// Refuses unequal lengths in FMI 2.0, which has one value per reference.
     fn check_lengths(&self, references: usize, values: usize) -> Result<(), HostError> {
         if references == values || matches!(self.fmu.0.api, Api::Three(_)) {
             return Ok(());
@@ -372,7 +372,7 @@ fn joined(messages: &[LogMessage]) -> String {
     texts.join("; ")
 }
 
-/// Path as the URI that FMI 2.0 requires (RFC 3986: everything but unreserved characters, `/` and `:` escaped).
+/// Converts a path to the URI that FMI 2.0 requires (RFC 3986: all characters are escaped except unreserved ones, `/` and `:`).
 fn file_uri(path: &Path) -> String {
     let path = path.to_string_lossy().replace('\\', "/");
     let mut uri = String::from(if path.starts_with('/') {

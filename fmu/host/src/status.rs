@@ -1,4 +1,4 @@
-//! The status that both versions of FMI share.
+//! Status shared by both versions of FMI.
 
 /// Status returned by a call; the same numbers in FMI 2.0 and 3.0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -17,7 +17,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Reads a status as C passes it; an unknown one counts as fatal.
+    /// Converts a C status; an unknown one is treated as fatal.
     pub fn from_c(status: u32) -> Status {
         match status {
             0 => Status::Ok,

@@ -6,14 +6,14 @@ use super::{Instance, Outcome, Refusal};
 use crate::saved::Phase;
 
 impl Instance {
-    /// Row of a value reference.
+    /// Returns the table row of a value reference.
     pub(super) fn variable(interface: &Interface, reference: u32) -> Result<&Variable, Refusal> {
         interface
             .variable(reference)
             .ok_or_else(|| unknown(interface, reference))
     }
 
-    /// Row of a value reference that the host accesses by a type.
+    /// Returns the table row of a value reference that the host accesses as `kind`.
     #[inline]
     fn typed(interface: &Interface, kind: Kind, reference: u32) -> Result<&Variable, Refusal> {
         match interface.variable(reference) {
@@ -23,7 +23,7 @@ impl Instance {
         }
     }
 
-    /// Reads variables of one type, arrays with all their values.
+    /// Reads variables of one type. An array contributes all its values.
     pub(crate) fn get(&mut self, kind: Kind, references: &[u32], values: &mut [f64]) -> Outcome {
         if self.phase == Phase::Initialization && self.asks_for_results(references) {
             self.solve_statics()?;
@@ -109,7 +109,7 @@ impl Instance {
         })
     }
 
-    /// Refusal of an access whose number of values differs from that of the variables.
+    /// Returns the refusal of an access with a wrong number of values.
     #[cold]
     fn wrong_count(&self, references: &[u32], count: usize) -> Refusal {
         let size = |&reference: &u32| self.interface.variable(reference).map_or(1, Variable::size);
@@ -120,7 +120,7 @@ impl Instance {
         ))
     }
 
-    /// Refuses access by a type that no variable has.
+    /// Refuses access by a type that none of the variables has.
     pub(crate) fn refuse_type(&self, kind: &str, references: &[u32]) -> Outcome {
         match references.first() {
             None => Ok(()),
@@ -128,7 +128,7 @@ impl Instance {
         }
     }
 
-    /// Sets variables of one type: all of them or, where one is refused, none.
+    /// Sets variables of one type: all of them, or none if one is refused.
     pub(crate) fn set(&mut self, kind: Kind, references: &[u32], values: &[f64]) -> Outcome {
         if self.time_reference.is_some_and(|time| references.contains(&time)) {
             return Err("time is not to be set".into());
@@ -154,7 +154,7 @@ impl Instance {
         self.set_inputs(references, values)
     }
 
-    /// Sets the parameters among some variables.
+    /// Sets the parameters among the given variables.
     fn set_parameters(&mut self, references: &[u32], values: &[f64]) -> Outcome {
         let mut scene = self.scene.clone();
         for (variable, own) in with_values(&self.interface, references, values) {
@@ -163,14 +163,14 @@ impl Instance {
                 set.map_err(|problem| format!("{}: {problem}", variable.name))?;
             }
         }
-        // the model is built once, when values are needed, however many calls set parameters
+        // the model is built once, when results are needed, however many calls set parameters
         scene.check().map_err(|e| e.to_string())?;
         self.scene = scene;
         self.simulation = None;
         Ok(())
     }
 
-    /// Sets the inputs among some variables; the statics are solved again where they are given during initialization.
+    /// Sets the inputs among the given variables; inputs that change the equilibrium invalidate the statics during initialization.
     fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Outcome {
         let steps = matches!(self.phase, Phase::Step | Phase::Intermediate);
         for (variable, own) in with_values(&self.interface, references, values) {
@@ -186,7 +186,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Refuses a value that a variable cannot take, or not in this phase.
+    /// Refuses a value out of range, or a variable that cannot be set in this phase.
     #[inline]
     fn check_settable(&self, variable: &Variable, value: f64) -> Outcome {
         let is_in_range = match (variable.causality, self.phase) {
@@ -221,8 +221,9 @@ impl Instance {
         Refusal(format!("{}: {problem}", variable.name))
     }
 
-    /// Time derivatives of inputs (FMI 2.0). The first derivative of a displacement is its velocity. That of a velocity is accepted but not used, since the
-    /// path through the communication points has its own. Those of the flow of the water, whose accelerations are inputs, are not used either.
+    /// Sets time derivatives of inputs (FMI 2.0). The first derivative of a displacement is its velocity. Derivatives of velocities are accepted but
+    /// not used, since the path through the communication points defines the acceleration. Derivatives of the water flow are not used either, since its
+    /// accelerations are inputs.
     pub(crate) fn set_input_derivatives(
         &mut self,
         references: &[u32],
@@ -247,7 +248,7 @@ impl Instance {
             }
             self.check_settable(variable, value)?;
             match variable.binding {
-                // The rates of roll, pitch and yaw are no angular velocity: the path through the poses has its own.
+                // The rates of roll, pitch and yaw are not the angular velocity, which the path through the poses defines.
                 Binding::Displacement { body, axis } if axis < 3 => targets.push((body, axis, value)),
                 _ => {}
             }
@@ -259,7 +260,7 @@ impl Instance {
     }
 }
 
-/// Variables with their values, after the numbers of both are checked.
+/// Pairs variables with their values; the caller has checked both counts.
 fn with_values<'a>(
     interface: &'a Interface,
     references: &'a [u32],
@@ -274,7 +275,7 @@ fn with_values<'a>(
     })
 }
 
-/// Refusal of a value reference that no variable has.
+/// Returns the refusal of a value reference that no variable has.
 #[cold]
 fn unknown(interface: &Interface, reference: u32) -> Refusal {
     Refusal(format!(

@@ -9,7 +9,7 @@ use super::{Instance, Outcome, Refusal};
 use crate::saved::Phase;
 
 impl Instance {
-    /// Derivative of unknowns in the direction `seed` of the knowns.
+    /// Computes the derivative of the unknowns in the direction `seed` of the knowns.
     pub(crate) fn directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -28,7 +28,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Derivatives of the sum of the unknowns times `seed` with respect to the knowns.
+    /// Computes the derivatives of the `seed`-weighted sum of the unknowns with respect to the knowns.
     pub(crate) fn adjoint_derivative(
         &mut self,
         unknowns: &[u32],
@@ -45,7 +45,7 @@ impl Instance {
         Ok(())
     }
 
-    /// First derivatives in time of outputs.
+    /// Computes the first time derivatives of outputs.
     pub(crate) fn output_derivatives(
         &mut self,
         references: &[u32],
@@ -64,7 +64,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Passes the columns of the derivatives of unknowns, of `size` values, with respect to each known to `take`.
+    /// Passes to `take` the derivatives of the unknowns, `size` values in total, with respect to each known in turn.
     fn for_columns(
         &mut self,
         unknowns: &[u32],
@@ -85,7 +85,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Variables by their references, which have `size` values together.
+    /// Returns the variables with these references; refuses variables that do not have `size` values in total.
     fn outputs(&self, references: &[u32], size: usize) -> Result<Vec<&Variable>, Refusal> {
         let row = |&reference: &u32| Self::variable(&self.interface, reference);
         let rows: Vec<&Variable> = references.iter().map(row).collect::<Result<_, _>>()?;
@@ -94,7 +94,7 @@ impl Instance {
     }
 }
 
-/// Reason why there is nothing to differentiate.
+/// Error message before the simulation exists.
 const NO_SIMULATION: &str = "out of order: derivatives are available from initialization mode on";
 
 /// Refuses a wrong number of values.

@@ -1,9 +1,8 @@
-//! Communication steps in parts: between them a host of FMI 3.0 reads outputs and sets inputs, and may end the step.
+//! Communication steps in parts: between parts, an FMI 3.0 host reads outputs, sets inputs and may end the step.
 //!
-//! Source: FMI 3.0.2 section 4.2.2, intermediate update mode and early return. A step longer than the interval of the scene is divided into equal
-//! parts no longer than it. The host must have announced all displacements, and the flow of the water where it gives that: a body that it did
-//! not move between would stand still there.
-//! Where inputs hold for the end of the step, nothing is to be given within it.
+//! Source: FMI 3.0.2 section 4.2.2, intermediate update mode and early return. A step longer than the output interval of the scene is divided into
+//! equal parts no longer than this interval. The host must have announced all displacements and, if it sets the water flow, all flow inputs:
+//! otherwise, a body that it does not move between parts would be at rest there. A step is not divided if the inputs refer to its end.
 
 use moorline::interface::{Binding, Interface};
 use moorline::scene::Reconstruction;
@@ -11,23 +10,23 @@ use moorline::scene::Reconstruction;
 use super::{Instance, Outcome, Refusal};
 use crate::saved::{Phase, Snapshot};
 
-/// Part of a step by which a quotient of times may be rounded [-].
+/// Rounding error accepted in a quotient of times [-].
 const ROUNDING: f64 = 1e-6;
-/// Parts of a communication step, at most [-].
+/// Maximum number of parts of a communication step [-].
 const PARTS_MAX: f64 = 1e6;
 
-/// A communication step that is made in parts.
+/// Communication step made in parts.
 pub(crate) struct Parts {
     start: f64,
     length: f64,
     count: u32,
     done: u32,
-    /// State before the first part, where there are several.
+    /// State before the first part; `None` if there is only one part.
     before: Option<Box<Snapshot>>,
 }
 
 impl Parts {
-    /// Time at the end of a number of parts [s].
+    /// Returns the time at the end of the first `parts` parts [s].
     fn at(&self, parts: u32) -> f64 {
         self.start + self.length * (f64::from(parts) / f64::from(self.count))
     }
@@ -39,7 +38,7 @@ impl Parts {
 }
 
 impl Instance {
-    /// Records which variables the host accesses within steps; its callback is used if it announces all displacements and all of the flow.
+    /// Records the variables that the host accesses within steps; its callback is used if they include all displacements and flow inputs.
     pub(crate) fn announce(&mut self, references: &[u32]) {
         let mut rows = self.interface.variables().iter().enumerate();
         self.is_updated = !references.is_empty()
@@ -51,10 +50,10 @@ impl Instance {
             });
     }
 
-    /// Divides a communication step of a length from a time [s].
+    /// Divides the communication step of `length` [s] that begins at `start` [s].
     ///
     /// # Errors
-    /// During an update by the host.
+    /// Refused during an update by the host.
     pub(crate) fn divide(&self, start: f64, length: f64) -> Result<Parts, Refusal> {
         self.expect_no_update()?;
         let divides = self.is_updated
@@ -74,7 +73,7 @@ impl Instance {
         })
     }
 
-    /// Makes the next part; an error leaves the instance as it was before the first one. Between parts only the host's update is allowed.
+    /// Makes the next part; an error restores the state before the first one. Between parts only the host's update is allowed.
     pub(crate) fn make_part(&mut self, parts: &mut Parts) -> Outcome {
         if parts.done > 0 {
             self.phase = Phase::Step;

@@ -1,5 +1,5 @@
 //! A small scene, packaged with the library that Cargo built for this test program.
-#![allow(dead_code)] // each test file uses a part
+#![allow(dead_code)] // each test file uses some of it
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -9,10 +9,10 @@ use moorline::output::package;
 use moorline::scene::Scene;
 use moorline_host::{FmiVersion, Fmu};
 
-/// One chain on a seabed, 20 elements.
+/// Scene of one chain on a seabed, 20 elements.
 pub(crate) const SCENE: &str = include_str!("../../../tests/scenes/chain.toml");
 
-/// A copy of the library that this program was built with, which later builds leave alone.
+/// Copies the library that this program was built with, so that later builds do not replace it.
 fn copy_library() -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(env!("CARGO_CRATE_NAME"));
     std::fs::create_dir_all(&folder).unwrap();
@@ -22,7 +22,7 @@ fn copy_library() -> PathBuf {
     copy
 }
 
-/// The packaged scene, written once for each test program and version.
+/// Packages the scene, once per test program and FMI version.
 fn package(version: FmiVersion, text: &str) -> &'static Path {
     static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
     static PACKAGED: [OnceLock<PathBuf>; 2] = [OnceLock::new(), OnceLock::new()];

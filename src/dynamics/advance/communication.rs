@@ -1,5 +1,5 @@
-//! Communication step of one network: its integrator takes as many internal steps as it needs, and repeats with
-//! shorter ones where those were too long.
+//! Communication step of one network: its integrator takes as many internal steps as it needs, and repeats the
+//! communication step with shorter ones if they were too long.
 
 use super::Counters;
 use super::Done;
@@ -16,11 +16,11 @@ use crate::elements::{self, copy_network};
 use crate::model::{Kinematics, Model, Network, State};
 use crate::scene::Integrator;
 
-/// Greatest number of internal steps of a communication step [-].
+/// Maximum number of internal steps of a communication step [-].
 const SUBSTEPS_MAX: f64 = 1e7;
-/// Greatest number of parts of a communication step in waves [-]: each evaluates the waves at every node.
+/// Maximum number of parts of a communication step in waves [-]: each part evaluates the waves at every node.
 const PARTS_MAX: f64 = 1e5;
-/// Greatest number of retries of a failed step with half the internal step [-].
+/// Maximum number of retries of a failed communication step, each with half the internal step [-].
 const RETRIES_MAX: u32 = 6;
 
 /// Refuses a communication step of `length` [s] that needed too many internal steps for the first `passed` [s].
@@ -42,7 +42,6 @@ pub(super) fn within_guard(
     Err(StepError::new(time, &model.lines[0], 0, cause))
 }
 
-/// An integrator and its scratch.
 #[derive(Debug, Clone)]
 pub(super) enum Solver {
     Leapfrog(Box<LeapfrogNetwork<Explicit>>),
@@ -63,7 +62,6 @@ impl Solver {
         matches!(self, Solver::Implicit(_) | Solver::QuasiStatic)
     }
 
-    /// Returns whether the integrator is one of the leapfrogs.
     pub(super) fn is_leapfrog(&self) -> bool {
         matches!(self, Solver::Leapfrog(_) | Solver::AxialImplicit(_))
     }
@@ -82,13 +80,12 @@ impl Solver {
     }
 }
 
-/// Scratch of a leapfrog.
 fn leapfrog<K: Kernel>(model: &Model, network: &Network) -> LeapfrogNetwork<K> {
     let work = LeapfrogNetwork::new(model, network);
     work.expect("a leapfrog is chosen for lines of one strain measure")
 }
 
-/// Scratch of a thread.
+/// Workspace of a thread.
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
     pub(super) implicit: elements::Workspace,
@@ -96,7 +93,7 @@ pub(super) struct Scratch {
     pub(super) next: State,
 }
 
-/// One communication step: its initial state, and the motion of the held points.
+/// One communication step: its initial state, and the motion of the prescribed points.
 pub(super) struct Communication<'a, H> {
     pub(super) model: &'a Model,
     pub(super) state: &'a State,
@@ -107,14 +104,14 @@ pub(super) struct Communication<'a, H> {
     pub(super) held: &'a H,
     /// Paid-out lengths of the winches, by line; empty where there are none.
     pub(super) winch_paths: &'a [AxisPath],
-    /// True if the leapfrogs hold the state.
+    /// True if the leapfrogs' striped layout holds `state`.
     pub(super) holds: bool,
-    /// True if held points may start at a position other than the end of the last step.
+    /// True if prescribed points may jump at the start of the step.
     pub(super) jumps: bool,
 }
 
 impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
-    /// Advances one network over the step, with its new state in `next`.
+    /// Advances one network over the step and stores its new state in `next`.
     pub(super) fn network(
         &self,
         number: usize,
@@ -173,7 +170,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
                 return Ok(Done { counters, flow });
             }
             if !is_whole {
-                // NaN would stay in padding, and in masses of nodes that the water's surface does not reach
+                // NaN would remain in the padding, and in the masses of nodes that the water surface does not reach
                 broken = work.broken_node();
                 *work = leapfrog(model, network);
             }
@@ -182,8 +179,8 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         Err(self.diverged(network.lines[line], node))
     }
 
-    /// Prepares a leapfrog for steps of `drift` [s] of a network. Returns the flow of energy into lines whose
-    /// prescribed ends jump; these lines in `next` are overwritten.
+    /// Prepares a leapfrog for steps of `drift` [s] of a network. Returns the energy flow into lines whose prescribed ends
+    /// jump; these lines in `next` are overwritten.
     fn set_out<K: Kernel>(
         &self,
         network: &Network,
@@ -206,8 +203,8 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         flow
     }
 
-    /// Flow of energy into a leapfrog's line whose prescribed ends jump at the start of the step, to velocities half a step of `last` [s] earlier. The line
-    /// in `next` is overwritten.
+    /// Energy flow into a line of a leapfrog whose prescribed ends jump at the start of the step. The velocities after the jump are those half a step of
+    /// `last` [s] earlier. The line in `next` is overwritten.
     fn jump_energy(&self, index: usize, last: f64, next: &mut State) -> Flow {
         if !self.model.energy_balance {
             return Flow::default();
@@ -317,7 +314,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         Ok(Done { counters, flow })
     }
 
-    /// Refuses a communication step that needs too many internal steps of a network, none longer than `part` [s].
+    /// Refuses a communication step for which a network needs too many internal steps, none longer than `part` [s].
     pub(super) fn check_length(&self, number: usize, choice: &Choice, part: f64) -> Result<(), StepError> {
         let longest = match choice.integrator {
             Integrator::QuasiStatic => part,
@@ -332,7 +329,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         self.substeps(line, longest, 0).map(drop)
     }
 
-    /// Number of equal steps no longer than `step_max` [s], halved `retry` times, of the network with a line.
+    /// Number of equal steps no longer than `step_max` [s], halved `retry` times. An error names `line`.
     fn substeps(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
         if self.length <= step_max {
             return Ok(1 << retry);
@@ -340,7 +337,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         self.several(line, step_max, retry)
     }
 
-    /// [`Self::substeps`] where one is too long.
+    /// [`Self::substeps`] where a single step would be too long.
     #[inline(never)]
     fn several(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
         // a step equal to the limit must not be split in two by rounding

@@ -1,13 +1,13 @@
-//! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and the seabed under it.
+//! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and contact with the seabed.
 //!
-//!   −w − B (1 − s̄)     weight w under water, buoyancy B of the whole, s̄ the mean of its wetted part over its path: the discrete
-//!                      gradient of the potential, so that the water's surface conserves energy
-//!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its path
-//!   F                  of the seabed, as in `physics::contact_step`
+//!   −w − B (1 − s̄)     weight w in water, buoyancy B of the submerged body, mean submergence s̄ along the path: the discrete
+//!                      gradient of the potential, so that crossing the water surface conserves energy
+//!   f(v̄, s)            drag at the mean velocity relative to the water, with the submergence s in the middle of the path
+//!   F                  force of the seabed, as in `physics::contact_step`
 //!
 //! The mass over the step follows from the submergence at the extrapolated middle of the step.
 //!
-//! Source: as in `physics::point`; discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid as `physics::point` is, in
+//! Source: as in `physics::point`; discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Validity as in `physics::point`, in
 //! water without waves.
 
 use nalgebra::{Matrix3, Vector3};
@@ -20,26 +20,26 @@ use crate::physics::fading_damper::damper_reach;
 /// Body at a free end of a beam.
 #[derive(Debug, Clone, Copy)]
 pub struct Body<'a> {
-    /// The point.
+    /// Free point.
     pub point: &'a FreePoint,
-    /// Velocity of the water there over the step [m/s].
+    /// Velocity of the water at the point over the step [m/s].
     pub water: Vector3<f64>,
 }
 
 /// Mean forces on a body over a step.
 pub(super) struct BodyStep {
-    /// Force of weight and buoyancy, upwards [N].
+    /// Weight and buoyancy, positive upwards [N].
     lift: f64,
     /// Force of the water [N].
     drag: Vector3<f64>,
-    /// Force of the seabed, upwards [N].
+    /// Force of the seabed, positive upwards [N].
     push: f64,
     /// −∂f/∂φ₁ of all forces [N/m].
     pub(super) slope: Matrix3<f64>,
 }
 
 impl Body<'_> {
-    /// Forces over a step of a length [s] from one place to another [m].
+    /// Mean forces over a step of `length` [s] between two positions [m].
     pub(super) fn over(&self, [from, to]: [&Vector3<f64>; 2], length: f64) -> BodyStep {
         let mut step = BodyStep {
             lift: -self.point.weight,
@@ -68,7 +68,7 @@ impl Body<'_> {
         step
     }
 
-    /// Energy that crosses the boundary along a path [m] over a step of a length [s].
+    /// Energy flow across the boundary of the body [J], for a displacement [m] over a step of `length` [s].
     pub(super) fn flow(&self, step: &BodyStep, moved: &Vector3<f64>, length: f64) -> Flow {
         let drift = length * self.water;
         Flow {
@@ -80,7 +80,6 @@ impl Body<'_> {
 }
 
 impl BodyStep {
-    /// Sum of the forces [N].
     pub(super) fn force(&self) -> Vector3<f64> {
         self.drag + (self.lift + self.push) * Vector3::z()
     }

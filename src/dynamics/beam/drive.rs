@@ -1,4 +1,4 @@
-//! A beam of a model over a span of time: the forces of its points on its ends, and the reactions.
+//! A beam of a model over a time span: the motion of its ends, and the loads and bodies of its points on them.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,20 +8,20 @@ use crate::elements::beam::{BeamEnd, end_hold};
 use crate::model::{Beam, Kinematics, Line, Model, State};
 use crate::physics::section::{Section, join};
 
-/// Factorised tangents, and the energy that crossed the boundary.
+/// Number of factorised tangents, and energy flow across the boundary of the beam.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Driven {
     /// Number of factorised tangents.
     pub solves: usize,
-    /// External work and dissipation.
+    /// External work and dissipation [J].
     pub flow: Flow,
 }
 
-/// Advances the beam `index` of `state` from `start` to `end` [s] in `count` equal steps; `held` returns the
-/// kinematics of held points. `state.time` and held points are left to the caller.
+/// Advances the beam `index` of `state` from `start` to `end` [s] in `count` equal steps; `held` returns the kinematics of
+/// prescribed points. The caller sets `state.time` and the prescribed points.
 ///
 /// # Errors
-/// A step did not converge; the state is then somewhere within the span.
+/// A step did not converge; the state is then that before the failed step.
 pub fn drive<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     index: usize,
@@ -57,7 +57,6 @@ pub fn drive<K: Fn(usize, f64) -> Kinematics>(
     Ok(driven)
 }
 
-/// An end over one step.
 #[derive(Clone, Copy)]
 struct EndOfStep<'a> {
     hold: BeamEnd,
@@ -111,7 +110,7 @@ fn end_of_step<'a, K: Fn(usize, f64) -> Kinematics>(
     }
 }
 
-/// Held unknowns of a beam's ends.
+/// Returns which unknowns of a beam's ends A and B are prescribed.
 pub fn held(model: &Model, line: &Line) -> [[bool; 6]; 2] {
     [0, 1].map(|end| {
         let clamped = line.beam.as_ref().is_some_and(|beam| beam.clamped[end].is_some());
@@ -119,12 +118,12 @@ pub fn held(model: &Model, line: &Line) -> [[bool; 6]; 2] {
     })
 }
 
-/// Attitude of a held point relative to its reference.
+/// Rotation of a prescribed point from its reference attitude [-].
 pub fn attitude(k: &Kinematics) -> Matrix3<f64> {
     k.orientation.to_rotation_matrix().into_inner()
 }
 
-/// Moves free points to their ends of the beam.
+/// Sets the free points at the ends of a beam to the state of its end nodes.
 fn carry_free_points(model: &Model, index: usize, state: &mut State) {
     let line = &model.lines[index];
     let shape = &state.lines[index];

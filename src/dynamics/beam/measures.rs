@@ -8,7 +8,7 @@ use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
 use crate::physics::morison::drag;
 use crate::physics::section::{Mixture, Pair, Section, StrainEnergy, StrainGradient, split, strain};
 
-/// Momenta of a beam's mass.
+/// Linear and angular momentum of a beam.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Momentum {
     /// Linear momentum [N s].
@@ -22,14 +22,14 @@ pub struct Momentum {
 pub struct BeamView<'a> {
     /// Elements of the beam.
     pub beam: &'a Beam,
-    /// Lumped nodes of the beam.
+    /// Lumped properties of the nodes.
     pub nodes: &'a Nodes,
     /// State of the beam.
     pub shape: &'a LineState,
 }
 
 impl<'a> BeamView<'a> {
-    /// Measures of a line, where it is a beam.
+    /// Returns the view of a line; `None` if it is not a beam.
     pub fn of(line: &'a Line, shape: &'a LineState) -> Option<BeamView<'a>> {
         let beam = line.beam.as_ref()?;
         shape.beam.is_some().then_some(BeamView {
@@ -46,7 +46,7 @@ impl<'a> BeamView<'a> {
         }
     }
 
-    /// Energy, without that of the unknowns at ends A and B that `held` marks as held.
+    /// Energy [J], without that of the prescribed unknowns at ends A and B, which `held` marks.
     pub fn energy(&self, held: [[bool; 6]; 2]) -> Energy {
         let state = beam_state(self.shape);
         let last = self.shape.position.len() - 1;
@@ -89,12 +89,12 @@ impl<'a> BeamView<'a> {
         momentum
     }
 
-    /// d₃ of a node [-].
+    /// Tangent d₃ of a node [-].
     fn tangent(&self, i: usize) -> Vector3<f64> {
         beam_state(self.shape).frames[i].column(2).into_owned()
     }
 
-    /// Stress of an element conjugate to the plain strains, with or without its damping.
+    /// Stress of an element conjugate to the uncorrected strains, with or without damping [N], [N m].
     fn stress(&self, i: usize, damped: bool) -> Pair<Vector3<f64>> {
         let (element, state) = (&self.beam.elements[i], beam_state(self.shape));
         let (a, b) = (self.section(i), self.section(i + 1));
@@ -114,7 +114,7 @@ impl<'a> BeamView<'a> {
         [0, 1].map(|k| elastic[k] + damping[k].component_mul(&rate[k]) / element.length)
     }
 
-    /// Effective tension of an element: the axial component of its stress [N].
+    /// Effective tension of an element [N]: the component along its chord of the force at its upper end.
     pub fn tension(&self, i: usize) -> f64 {
         let force = self.end_stress(i, 1, true).0;
         let chord = self.shape.position[i + 1] - self.shape.position[i];
@@ -128,8 +128,8 @@ impl<'a> BeamView<'a> {
         gradient.tr_times(self.stress(i, damped))[side].into()
     }
 
-    /// Bending moment at a node [N m], from its elements' elastic stress: the mean of both sides, which differ by the
-    /// moment on the node.
+    /// Bending moment at a node [N m], from the elastic stress of the adjacent elements: the mean of both sides, which differ
+    /// by the moment on the node.
     pub fn bending_moment(&self, node: usize) -> f64 {
         let last = self.beam.elements.len();
         let upper = (node < last).then(|| -self.end_stress(node, 0, false).1);
@@ -142,7 +142,7 @@ impl<'a> BeamView<'a> {
         (moment - moment.dot(&tangent) * tangent).norm()
     }
 
-    /// Curvature at a node in excess of that of the rest shape [1/m]: its bending moment over the bending stiffness there.
+    /// Curvature at a node relative to the stress-free shape [1/m]: bending moment divided by bending stiffness.
     pub fn curvature(&self, node: usize) -> f64 {
         let last = self.beam.elements.len() - 1;
         let adjacent = [node.saturating_sub(1), node.min(last)];
@@ -150,8 +150,7 @@ impl<'a> BeamView<'a> {
         self.bending_moment(node) * compliance.iter().sum::<f64>()
     }
 
-    /// Force [N] and moment [N m] of the beam on the point at one of its ends: those of its element and its half
-    /// node.
+    /// Force [N] and moment [N m] of the beam on the point at one of its ends: those of the end element and the half node.
     pub fn end_action(&self, end: End, point: &PointState) -> (Vector3<f64>, Vector3<f64>) {
         let last = self.beam.elements.len();
         let (node, element, side) = match end {

@@ -1,4 +1,4 @@
-//! Nodes of a beam over a step, four side by side: their frames, inertia, weight and mass damping.
+//! Nodes of a beam over a step, four in lanes: their frames, inertia, weight and mass damping.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -12,7 +12,7 @@ use crate::math::triad::{Triad, componentwise, each, repeated};
 use crate::model::LineState;
 use crate::physics::section::{Pair, Section, Sextuple, Station, join};
 
-/// Four nodes side by side, as they are before a step.
+/// State of four nodes before a step, in lanes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FourNodes {
     section: Station<Vectors>,
@@ -28,7 +28,6 @@ pub(super) struct FourNodes {
 }
 
 impl FourNodes {
-    /// Gathers all nodes of `work` before a step.
     pub(super) fn gather(work: &mut BeamWork, case: &BeamStep, shape: &LineState) {
         let (state, nodes, last) = (beam_state(shape), case.nodes, work.before.len() - 1);
         work.nodes.clear();
@@ -54,8 +53,8 @@ impl FourNodes {
         }
     }
 
-    /// Minus the slopes of the forces and moments with position and spin, for the directors and angular momenta [N m s] after a step by θ, and the
-    /// inverse of its length [1/s].
+    /// Minus the slopes of the forces and moments with position and spin, for the directors and angular momenta [N m s] after a step with rotation θ.
+    /// `per_step` is the inverse of the step length [1/s].
     #[inline(always)]
     fn slopes(&self, now: &Triad<Vectors>, momentum: Vectors, theta: Vectors, per_step: Lanes) -> BlockLanes {
         let twice = per_step + per_step;
@@ -69,7 +68,7 @@ impl FourNodes {
     }
 }
 
-/// Converts the spins in the solution of the linear system to changes of θ; returns the squares of the greatest changes of position [m²] and of θ [-].
+/// Converts the spins in the solution of the linear system to changes of θ; returns the squares of the largest changes of position [m²] and of θ [-].
 pub(super) struct Changes<'a>(pub &'a mut BeamWork);
 
 impl NullaryFnOnce for Changes<'_> {
@@ -92,7 +91,7 @@ impl NullaryFnOnce for Changes<'_> {
     }
 }
 
-/// Moves positions and θ by a part [-] of their changes and turns the frames by θ from those before the step; returns the greatest |θ|² [-].
+/// Moves positions and θ by a fraction `part` of their changes, and rotates the frames before the step by θ; returns the largest |θ|² [-].
 pub(super) struct Move<'a> {
     pub work: &'a mut BeamWork,
     pub part: f64,
@@ -126,8 +125,8 @@ impl NullaryFnOnce for Move<'_> {
     }
 }
 
-/// Sets the forces out of balance at the nodes to those of inertia, weight and mass damping over a step of a length [s] and, with a `tangent`, the
-/// blocks on the diagonal to minus their slopes with position and spin.
+/// Sets the residual forces at the nodes to those of inertia, weight and mass damping over a step of `length` [s] and, if `tangent` is true, the
+/// diagonal blocks to minus their slopes with position and spin.
 pub(super) struct SetNodes<'a> {
     pub work: &'a mut BeamWork,
     pub length: f64,
@@ -176,7 +175,7 @@ fn set_right(right: &mut [Sextuple], [force, moment]: &Pair<Vectors>) {
     }
 }
 
-/// Sets blocks on the diagonal, as [`set_right`] does forces.
+/// Sets diagonal blocks; not inlined, as [`set_right`].
 #[inline(never)]
 fn set_diagonal(diagonal: &mut [Block], blocks: &BlockLanes) {
     for (lane, block) in diagonal.iter_mut().take(LANES).enumerate() {
@@ -184,7 +183,7 @@ fn set_diagonal(diagonal: &mut [Block], blocks: &BlockLanes) {
     }
 }
 
-/// Sets sections and their θ, as [`set_right`] does forces.
+/// Sets sections and their θ; not inlined, as [`set_right`].
 #[inline(never)]
 fn set_sections(sections: &mut [Section], theta: &mut [Vector3<f64>], to: &Station<Vectors>, turn: &Vectors) {
     for (lane, (section, theta)) in sections.iter_mut().zip(theta).take(LANES).enumerate() {

@@ -21,7 +21,7 @@ const UNDAMPED: SectionLaw = SectionLaw {
     torsion: 0.0,
 };
 
-/// A straight beam of n elements at rest, 1 kg/m and 10 kg m.
+/// Straight beam of n elements at rest, with a mass of 1 kg/m and a rotary inertia of 10 kg m.
 fn beam(n: usize, a: Vector3<f64>, b: Vector3<f64>, law: SectionLaw) -> (Beam, Nodes, LineState) {
     let length = (b - a).norm() / n as f64;
     let share = |i: usize| {
@@ -58,7 +58,7 @@ fn beam(n: usize, a: Vector3<f64>, b: Vector3<f64>, law: SectionLaw) -> (Beam, N
     (beam, nodes, shape)
 }
 
-/// The flying spaghetti: shape after `time` [s], with the load until 2.5 s.
+/// Flying spaghetti: state of the beam at `time` [s]; the load acts until 2.5 s.
 struct Flight {
     beam: Beam,
     nodes: Nodes,
@@ -122,7 +122,7 @@ fn clockwise() -> Vector3<f64> {
 
 const FREE: [[bool; 6]; 2] = [[false; 6]; 2];
 
-/// Flies for 10 s in steps of 0.1 s: after the load, energy and momenta are constant, and the work of the load equals
+/// Simulates 10 s in steps of 0.1 s: after the load ends, energy and momenta are constant, and the work of the load equals
 /// the energy of the beam.
 fn assert_conserves(bending: f64, moment: Vector3<f64>) -> Flight {
     let mut flight = Flight::new(20, bending, moment);
@@ -169,7 +169,7 @@ fn newton_converges_quadratically() {
     assert!(flight.solves <= 50 * 6, "{} solves", flight.solves);
 }
 
-/// A beam in water over a seabed that is dragged along and turned at A.
+/// Beam in water over a seabed, with prescribed translation and rotation at end A.
 fn dragged(n: usize) -> (Flight, impl Fn(f64) -> Section) {
     let mut flight = Flight::new(n, 100.0, Vector3::zeros());
     let nodes = &mut flight.nodes;
@@ -244,7 +244,7 @@ fn the_energy_balance_of_a_damped_beam_in_water_over_a_seabed_closes_to_rounding
     assert!(lost > 1.0 && flight.shape.position[20].z < -0.1);
 }
 
-/// A point that moves along all axes, of a mass [kg], with a volume [m³] and a seabed at a height [m].
+/// Point that is free along all axes, with a mass [kg], a volume [m³] and a seabed at a height [m].
 fn body(mass: f64, volume: f64, seabed: f64) -> FreePoint {
     let (density, gravity) = (1000.0, 10.0);
     FreePoint {

@@ -1,8 +1,8 @@
-//! External work and dissipation of a network between two states of rest: those of the mean of the forces before and
-//! after a step.
+//! External work and dissipation of a network between two states at rest, from the mean of the forces before and after a
+//! step.
 //!
-//! Valid for steps over which the forces change little compared with their slopes: the mean is exact for forces in
-//! proportion to the displacement.
+//! Valid for steps over which the slopes of the forces change little: the mean is exact for forces that are linear in the
+//! displacement.
 
 use nalgebra::Vector3;
 
@@ -13,7 +13,7 @@ use crate::elements::{end_moment, end_moment_power, shear};
 use crate::model::{ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::statics::equilibrium::current::drag_at_rest;
 
-/// External work and dissipation of a network at rest before and after a step between two times [s], in [J].
+/// External work and dissipation [J] of a network at rest before and after a step between two times [s].
 pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times: [f64; 2]) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
@@ -38,12 +38,12 @@ pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times
     flow
 }
 
-/// Work [J] of the mean of two forces [N] on the path between two places [m].
+/// Work [J] of the mean of two forces [N] on the path between two positions [m].
 fn work(forces: [Vector3<f64>; 2], [from, to]: [Vector3<f64>; 2]) -> f64 {
     0.5 * (forces[0] + forces[1]).dot(&(to - from))
 }
 
-/// Work [J] of the held points at the ends of a line on it, and of the moments on free ones.
+/// Work [J] of the prescribed points at the ends of a line on the line, and of the moments on its ends.
 fn end_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -> f64 {
     let line = &model.lines[index];
     let moments = times.map(|t| model.end_moments(line, t));
@@ -72,7 +72,7 @@ fn end_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -
     given
 }
 
-/// Work [J] of the drag of a current on the nodes of a line.
+/// Work [J] of current drag on the nodes of a line.
 fn current_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -> f64 {
     let line = &model.lines[index];
     let (Some(before), Some(after)) = (model.stream(times[0]), model.stream(times[1])) else {
@@ -113,8 +113,8 @@ fn seabed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
     (1..line.segment_count()).map(on_node).sum()
 }
 
-/// Work [J] along a seabed at a height [m] of the friction by which the horizontal tension of closed-form catenaries
-/// grows: that of a segment acts on the one of its nodes on the seabed, or on both.
+/// Work [J] of friction on a seabed at a height [m], from the growth of the horizontal tension of closed-form catenaries.
+/// The friction of a segment acts on the one of its nodes that is on the seabed, or on both.
 fn friction_work(seabed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm; 2]) -> f64 {
     let on_segment = |i: usize| {
         let force = |k: usize| {
@@ -147,8 +147,8 @@ fn point_seabed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) 
     work(points.map(push), points.map(|at| at.position))
 }
 
-/// Force [N] of a line on a held point, without the weight of the half node there, whose energy is excluded, unless
-/// the line is a closed-form catenary.
+/// Force [N] of a line on a prescribed point. It excludes the weight of the half node there, whose energy is excluded as
+/// well, unless the line is a closed-form catenary.
 fn force_of_line(
     line: &Line,
     shape: &LineState,

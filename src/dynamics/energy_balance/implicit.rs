@@ -1,18 +1,18 @@
 //! External work, dissipation and algorithmic dissipation of a step of an implicit integrator.
 //!
-//! The scheme moves a network from r to r' by the forces F = (1 − α_f) f(t') + α_f f(t), which do the work F·(r' −
-//! r). The work of each force is recorded in this form. The work of the inertia (1 − α_m) M'a' + (α_m − α_f) M'a +
-//! α_f M a is the change of kinetic energy, except for
+//! The scheme moves a network from r to r' with the forces F = (1 − α_f) f(t') + α_f f(t), which do the work F·(r' − r).
+//! The work of each force is evaluated in this form. The work of the inertia (1 − α_m) M'a' + (α_m − α_f) M'a + α_f M a is
+//! the change of kinetic energy, except for
 //!
 //!   ¼ (v'ᵀ(M' − M)v' + vᵀ(M' − M)v),   due to masses that turn with their line or enter the water, and
 //!   (r' − r)·inertia − ½ (v + v')·½(M + M')(v' − v),   the dissipation of the scheme.
 //!
-//! On each joint, and each weight that changes, the scheme dissipates (½ − α_f)(s' − s)·(r' − r), with the resistance
-//! s: the work of the weighted forces beyond their mean. The tension of segments is the discrete gradient of their
-//! energy in place of that mean ([`crate::physics::stretch_step`]): its work is stored or dissipated to the last bit,
-//! and (½ − α_f)(N' q' − N q)·(d' − d) is algorithmic dissipation. Summed over a linear system without external work,
-//! these terms are not negative; with external work they may have either sign. The work of the mean on joints and surfaces beyond the
-//! stored energy is the error of the integration.
+//! On each joint, and each weight that changes, the scheme dissipates (½ − α_f)(s' − s)·(r' − r), with the resistance s:
+//! the difference between the work of the weighted forces and that of their mean. The tension of segments is the
+//! discrete gradient of their energy instead of that mean ([`crate::physics::stretch_step`]): its work is stored or
+//! dissipated exactly, and (½ − α_f)(N' q' − N q)·(d' − d) is algorithmic dissipation. Summed over a linear system without
+//! external work, these terms are not negative; with external work they may have either sign. The difference between the
+//! work of the mean force and the stored energy, on joints and at the water surface, is the error of the integration.
 //!
 //! Source: the discrete balance of Newmark's approximations, as in Krenk (2006), Comput. Methods Appl. Mech. Eng. 195, 6110-6124.
 
@@ -39,11 +39,11 @@ pub struct Passed<'a> {
     pub times: [f64; 2],
     /// Scheme of the step.
     pub scheme: &'a Scheme,
-    /// Workspace of the step, which holds the ranges of penetration over which the seabed's dampers fade in.
+    /// Workspace of the step; it holds the penetration ranges over which the dampers of the seabed fade in.
     pub work: &'a Workspace,
 }
 
-/// Energy [J] that crossed the boundary of a network in a step.
+/// Energy flow across the boundary of a network in a step [J].
 pub fn flow(model: &Model, network: &Network, passed: &Passed) -> Flow {
     let alpha_f = passed.scheme.alpha_f;
     let mut flow = Flow::default();
@@ -86,7 +86,7 @@ impl Passed<'_> {
         self.times[1] - self.times[0]
     }
 
-    /// State with the waves of both times: the one before is a copy of the network alone.
+    /// State with the waves at both times: the state before the step is a copy of the network alone.
     fn sea(&self) -> &State {
         self.states[1]
     }
@@ -97,19 +97,18 @@ impl Passed<'_> {
         (after - before) / self.length()
     }
 
-    /// The same of a point.
     fn point_velocity_mean(&self, point: usize) -> Vector3<f64> {
         let [before, after] = self.states.map(|state| state.points[point].position);
         (after - before) / self.length()
     }
 
-    /// Mean spin of a held point over the step [rad/s].
+    /// Mean angular velocity of a prescribed point over the step [rad/s].
     fn spin_mean(&self, point: usize) -> Vector3<f64> {
         let [before, after] = self.states.map(|state| state.points[point].orientation);
         (after * before.inverse()).scaled_axis() / self.length()
     }
 
-    /// Energy from masses of a line that change, and dissipation of the scheme's inertia [J].
+    /// Energy due to changing masses of a line, as negative dissipation, and algorithmic dissipation of its inertia [J].
     fn inertia(&self, model: &Model, index: usize) -> Flow {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
@@ -127,7 +126,7 @@ impl Passed<'_> {
         flow
     }
 
-    /// The same of a free point.
+    /// The same for a free point, including the algorithmic dissipation of its weight.
     fn point_inertia(&self, model: &Model, point: usize) -> Flow {
         let Some(free) = model.points[point].free() else {
             return Flow::default();
@@ -150,8 +149,8 @@ impl Passed<'_> {
         flow
     }
 
-    /// Energy from a mass that changes, and dissipation of the scheme's inertia on it [J]: its velocities [m/s] and
-    /// accelerations [m/s²] before and after the step, and its mean velocity over it [m/s].
+    /// Energy due to a changing mass, as negative dissipation, and algorithmic dissipation of its inertia [J], from velocities
+    /// [m/s] and accelerations [m/s²] before and after the step, and the mean velocity over the step [m/s].
     fn inertia_of(
         &self,
         [old, new]: [Mass; 2],
@@ -172,13 +171,13 @@ impl Passed<'_> {
         }
     }
 
-    /// Weighted value of the scheme before and after the step, less the mean of both.
+    /// Difference between the weighted value of the scheme and the mean of the values before and after the step.
     fn beyond_mean(&self, [old, new]: [f64; 2]) -> f64 {
         (0.5 - self.scheme.alpha_f) * (new - old)
     }
 
-    /// Work of a line's held ends on its springs, the part that the springs do not store, and the scheme's
-    /// dissipation on them [J].
+    /// Work of the prescribed ends of a line on its springs, dissipation of its segments, and algorithmic dissipation on the
+    /// springs [J].
     fn stretching(&self, model: &Model, index: usize) -> Flow {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
@@ -204,7 +203,7 @@ impl Passed<'_> {
         flow
     }
 
-    /// Dissipation of the scheme on the joints of a line, and on the buoyancy that is missing out of the water [J].
+    /// Algorithmic dissipation on the joints of a line, and on the buoyancy lost out of the water [J].
     fn weight_and_joint_dissipation(&self, model: &Model, index: usize) -> f64 {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
@@ -219,7 +218,7 @@ impl Passed<'_> {
         sum + self.joint_dissipation(line, index)
     }
 
-    /// The same on the joints of a line that bends [J].
+    /// Algorithmic dissipation on the joints of a line; zero unless the line bends [J].
     fn joint_dissipation(&self, line: &Line, index: usize) -> f64 {
         let Some(bending) = &line.bending else {
             return 0.0;
@@ -251,7 +250,6 @@ impl Passed<'_> {
     }
 }
 
-/// Mass of a node, with its tangent.
 #[derive(Clone, Copy)]
 struct Mass(Slender<f64>, Vector3<f64>);
 
@@ -293,7 +291,7 @@ impl Side<'_> {
         let after = &self.passed.states[1].lines[index];
         let [a, b] = [End::A, End::B].map(|end| line.is_held(model, after, end));
         let mut flow = Flow::default();
-        let damped = if shape.viscoelastic.is_empty() { n } else { 0 }; // viscoelastic dampers are part of the dissipation over the step
+        let damped = if shape.viscoelastic.is_empty() { n } else { 0 }; // `stretching` includes the dissipation of viscoelastic dampers
         for i in 0..damped {
             let segment = stretched(line, shape, i);
             let damping = tension(line, shape, i, negative) - segment.spring.tension;
@@ -314,7 +312,7 @@ impl Side<'_> {
         flow
     }
 
-    /// Power that water, mass damping and seabed dissipate at a node, and the power of moving water on it [W].
+    /// Power dissipated by water, mass damping and seabed at a node, and power of the moving water on it [W].
     fn node_power(&self, index: usize, i: usize, water: WaterAlong) -> Flow {
         let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
         let (nodes, velocity, mean) = (
@@ -350,8 +348,8 @@ impl Side<'_> {
         flow
     }
 
-    /// Power of held ends on their missing buoyancy in calm water, and that of the additional buoyancy in waves on
-    /// the other nodes [W].
+    /// Power of the prescribed ends due to buoyancy lost in still water, and power of the additional buoyancy in waves on the
+    /// other nodes [W].
     fn surface_power(&self, index: usize, held: [bool; 2], water: WaterAlong) -> f64 {
         let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
         let Some(surface) = &line.surface else {
@@ -371,7 +369,7 @@ impl Side<'_> {
         power
     }
 
-    /// Power of the shear at held ends and of the moments on free ones, and that of the joints' dampers [W].
+    /// Power of shear and clamp moments at prescribed ends, of the moments on the ends, and of the joint dampers [W].
     fn bending_power(&self, index: usize) -> Flow {
         let (model, line) = (self.model, &self.model.lines[index]);
         let shape = &self.state.lines[index];
@@ -401,7 +399,7 @@ impl Side<'_> {
         }
     }
 
-    /// Power of moving water on a free point, and the power that water and seabed dissipate there [W].
+    /// Power of the moving water on a free point, and power dissipated by water and seabed there [W].
     fn point_power(&self, free: &FreePoint, point: usize) -> Flow {
         let (model, state) = (self.model, &self.state.points[point]);
         let (z, velocity, mean) = (

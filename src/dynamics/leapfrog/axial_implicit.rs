@@ -1,49 +1,49 @@
-//! Leapfrog with the axial tension implicit: the axial wave no longer limits the step.
+//! Leapfrog with implicit axial tension: axial waves do not limit the step.
 //!
 //! With geometry q = d/l lagged at t_n and G(x)_i = (x_{i+1} − x_i)/L_i, the tension that drives v_{n−½} -> v_{n+½} is
 //!
 //! T̄ = σ[T^{n+1} + (2ρ+b)T^n + (ρ²+2ρb)T^{n−1} + ρ²b T^{n−2}]/N + (1−σ)T^n,  b = (1−ρ)/(2ρ),  N = (1+ρ)²(1+b),
 //!
-//! second order. In z, the shift by one step, the first part is (z + ρ)²(z + b)/(N z²) T^n: with full averaging, σ = 1, the motion
-//! is multiplied by −ρ and −b at infinite frequency, and the spectral radius is ρ as long as b ≤ ρ, that is from ρ = ½, which damps most, to
-//! ρ = 1 (¼, ½, ¼). Below ½ it rises again, and below ⅓ it exceeds 1. Averaging delays waves by (3σ−1)(ωΔt)²/24, and up to ωΔt = 2 they are stable
-//! without it. Hence σ is max(⅓, 1 − 3.2/(ωΔt)²) with the line's greatest axial frequency ω, which is stable for all ρ from ½ to 1; it is 1 where
-//! springs may stiffen or are viscoelastic, or an end is released. The new strain is linear in the new velocity,
+//! of second order. With z, the shift by one step, the first part is (z + ρ)²(z + b)/(N z²) T^n: with full averaging, σ = 1, the motion is
+//! multiplied by −ρ and −b at infinite frequency. The spectral radius is ρ for b ≤ ρ, that is from ρ = ½, which damps most, to ρ = 1 (weights
+//! ¼, ½, ¼). Below ½ it increases again, and below ⅓ it exceeds 1. Averaging delays waves by (3σ−1)(ωΔt)²/24, and waves up to ωΔt = 2 are stable
+//! without it. Therefore σ = max(⅓, 1 − 3.2/(ωΔt)²), with the highest axial frequency ω of the line; this is stable for all ρ from ½ to 1. σ is 1
+//! if springs may stiffen or are viscoelastic, or if an end is released. The new strain is linear in the new velocity,
 //! ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
 //! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)],  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
 //!
-//! with S the springs' tension as if they also pushed, C that of the dampers over the step, b₁ = σ/N the weight of T^{n+1} and h_i those of the
-//! earlier tensions. Dampers pull before segments are taut, and max(0, S + C) is averaged: a spring that pushes is included where the damper pulls
-//! more. (Averaging max(0, S) and adding C tends to b₁S + C there, however short the steps are.) θ = 0.2 min(1, r/4), where
-//! r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) is the stiffness of the dampers over a step: second order, without ringing of stiff dampers. A row is
-//! inactive where the total would be negative. Eliminating v by the nodes' momentum leaves one scalar tridiagonal system in T̄.
+//! with S the tension of the springs as if they also pushed, C that of the dampers over the step, b₁ = σ/N the weight of T^{n+1}, and h_i those of
+//! the earlier tensions. Dampers pull before segments are taut, and max(0, S + C) is averaged: a spring in compression is included if the damper
+//! pulls more. (Averaging max(0, S) and adding C would tend to b₁S + C there, even in short steps.) θ = 0.2 min(1, r/4), where
+//! r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) is the stiffness of the dampers over a step: of second order, without ringing of stiff dampers. A row is
+//! inactive if its total would be negative. Eliminating v with the momentum equations of the nodes leaves one scalar tridiagonal system in T̄.
 //!
-//! A segment of a line that bends pushes with up to P ([`super::joints`]). Its tensions are measured from −P: S, T and T̄ stand for their excess over −P,
-//! and −P q acts on the nodes with the forces of the joints. As the weights sum to one, this is equivalent to a spring of another length.
+//! A segment of a line that bends carries a compression of up to P ([`super::joints`]). Its tensions S, T and T̄ are measured from −P, and −P q acts on
+//! the nodes together with the forces of the joints. Since the weights sum to one, this is equivalent to a spring of a different length.
 //!
-//! Springs whose tension is not proportional to strain are linearised at the strain that the segments are expected to reach, and after each pass at the strain
-//! that they reached, until the tension there is that of the curve: with the tangent at t_n, a stiffening rope that snaps taut would be held by the initial
-//! slope of its curve only.
+//! Springs whose tension is not proportional to strain are linearised at the strain that the segments are expected to reach, and after each pass at the
+//! strain that they have reached, until the tension there agrees with the curve. Linearised at t_n, a stiffening rope that snaps taut would only have
+//! the initial slope of its curve.
 //!
-//! Drag across the line, C v, is added to the node's mass as θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but where it outweighs inertia limited
-//! so that it reverses no velocity; such reversals would not decay. Drag along the line, K|u|u, is balanced by T̄, and averaged as T̄ is: the mean
-//! of the values at t_{n−½} and t_{n+½}, the latter from a tangent at the extrapolated u. Evaluated at t_n alone, its short-period harmonics would
-//! appear 1/(1 − σ sin²(ωΔt/2)) times as large in T^n. The seabed is added to the mass too (`contact`); flags of slack, memory and contact are
-//! checked after the solve, and the step is repeated until they hold.
+//! Drag across the line, C v, is included in the mass of the node as θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but limited where it exceeds
+//! inertia, so that it does not reverse a velocity; such reversals would not decay. Drag along the line, K|u|u, is balanced by T̄ and averaged
+//! like T̄: it is the mean of the values at t_{n−½} and t_{n+½}, the latter from a tangent at the extrapolated u. Evaluated at t_n alone, its
+//! short-period harmonics would appear 1/(1 − σ sin²(ωΔt/2)) times as large in T^n. The seabed is also included in the mass (`contact`). The
+//! assumptions on slack, earlier tensions and contact are checked after the solve, and the step is repeated until they hold.
 //!
-//! A prescribed end moves along the secant of its path, which is its v_{n+½}. Only at the start, from rest or after a jump, is v_{n−½} equal to
-//! V − ½Δt A of its path.
+//! A prescribed end moves with the secant velocity of its path, which is its v_{n+½}. Only at the start, from rest or after a jump, v_{n−½} is
+//! V − ½Δt A, with the velocity V and the acceleration A of its path.
 //!
 //! A step passes over the rows of the striped line ([`crate::math::striping`]) once per stage: geometry, segments, drag, inverse masses and
 //! contact (`prepare`), and couplings; then, until the assumptions hold, the equations, T̄ by [`crate::math::striped_tridiagonal`], and the
 //! velocities with the check of the assumptions (`solve`). Each sweep computes little per row and stores the input of the next one: the
-//! processor then overlaps the latencies of roots, quotients and sums of several rows, and the compiler vectorises the sweep, which it does
-//! not where values depend on the row before.
+//! processor then overlaps the latencies of roots, quotients and sums of several rows, and the compiler vectorises the sweep, which it cannot
+//! do where values depend on the previous row.
 //!
-//! The scheme is of second order in the step. The remaining error of the tension is that of axial waves which a line emits when it snaps taut: in
-//! steps much longer than their periods they run late by (ωΔt)²/12, as with every scheme of second order that is stable for any ωΔt, and reach up to where
-//! that is a turn, so that the RMS error falls with Δt^1.2 to Δt^1.6.
+//! The scheme is of second order in the step. The remaining error of the tension is that of the axial waves from a line that snaps taut. In steps much
+//! longer than their periods, these waves are delayed by (ωΔt)²/12, as with every second-order scheme that is stable for any ωΔt. They extend to
+//! frequencies at which the delay is a full turn, so that the RMS error decreases with Δt^1.2 to Δt^1.6.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
 //! Model. Simul. 7, 1779-1794, with controllable dissipation added. The remaining limit is transverse:
@@ -74,18 +74,17 @@ use coupling::OpenRow;
 use friction::SeabedRow;
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow, Sizes, springs, under};
 
-/// Greatest number of passes over slack and contact flags [-].
+/// Maximum number of passes of a step until the assumptions hold [-].
 const PASSES_MAX: usize = 8;
-/// Square of ωΔt up to which tensions need no averaging, 4, with a margin [-].
+/// Square of ωΔt up to which tensions need no averaging [-]: 4, reduced by a margin.
 const EXPLICIT_PART: f64 = 3.2;
-/// Least share of T̄ that is averaged [-]: the delay of axial waves is then of order (ωΔt)⁴.
+/// Minimum share of T̄ that is averaged [-]: the delay of axial waves is then of order (ωΔt)⁴.
 const SHARE_MIN: f64 = 1.0 / 3.0;
-/// Spectral radius at infinite frequency where the scene gives none [-].
+/// Default spectral radius at infinite frequency [-].
 const SPECTRAL_RADIUS: f64 = 0.9;
-/// Tension that may arise within a step, relative to the greatest one before it [-].
+/// Tension that may arise within a communication step, relative to the largest one before it [-].
 const SNAP_GROWTH: f64 = 1.5;
 
-/// A line with implicit tension.
 pub(super) type AxialLine = LeapfrogLine<AxialImplicit>;
 
 /// Weights of T^{n+1}, T^n, T^{n−1}, T^{n−2} in T̄.
@@ -93,28 +92,27 @@ pub(super) type AxialLine = LeapfrogLine<AxialImplicit>;
 pub(super) struct Weights([f64; 4]);
 
 impl Weights {
-    /// For the spectral radius ρ [-] at infinite frequency, ½ to 1.
+    /// Weights for a spectral radius ρ [-] at infinite frequency, ½ to 1.
     pub(super) fn new(rho: f64) -> Weights {
         let b = (1.0 - rho) / (2.0 * rho);
         let n = (1.0 + rho) * (1.0 + rho) * (1.0 + b);
         Weights([1.0, 2.0 * rho + b, rho * (rho + 2.0 * b), rho * rho * b].map(|weight| weight / n))
     }
 
-    /// Weights of a share σ [-] that is averaged, and the rest at t_n.
+    /// Weights if a share σ [-] is averaged and the rest is T^n.
     fn shared(&self, share: f64) -> Weights {
         let [new, now, last, before] = self.0.map(|weight| weight * share);
         Weights([new, now + (1.0 - share), last, before])
     }
 }
 
-/// Share σ of T̄ that is averaged in a step [-], for axial waves up to the frequency whose square is given [1/s²].
+/// Share σ of T̄ that is averaged in a step [-], for the squared highest circular frequency of axial waves [1/s²].
 fn averaged_share(frequency_squared: f64, step: Step) -> f64 {
     let explicit = EXPLICIT_PART / (frequency_squared * step.kick * step.drift);
     (1.0 - explicit).max(SHARE_MIN)
 }
 
-/// Gershgorin's bound on the rate at which axial dampers alone would reduce the velocities of a line's nodes [1/s], with all of the
-/// line in the water, or in none.
+/// Gershgorin's bound on the rate at which axial dampers alone would reduce velocities [1/s], from the smaller mass of each node.
 fn damping_rate(line: &Line) -> f64 {
     let (segments, nodes) = (&line.segments, &line.nodes);
     let mass = |i: usize| nodes.mass_tangent[i].min(nodes.mass_normal[i]);
@@ -125,32 +123,32 @@ fn damping_rate(line: &Line) -> f64 {
     (0..line.segment_count()).map(rate).fold(0.0, f64::max)
 }
 
-/// Scratch of the stages with implicit tension.
+/// Workspace of the stages with implicit tension.
 #[derive(Debug, Clone)]
 pub struct AxialImplicit {
     /// Longest step times √(T + P) [s √N].
     transverse: f64,
-    /// Greatest P [N].
+    /// Largest P [N].
     push_max: f64,
-    /// Weights of the averaging, and those of the step.
+    /// Weights of full averaging, and those of the step.
     averaging: Weights,
     weights: Weights,
-    /// Square of the greatest frequency of axial waves with both ends held [1/s²].
+    /// [`axial_frequency_squared`] [1/s²].
     frequency_squared: f64,
-    /// Greatest rate at which axial dampers alone would reduce velocities [1/s].
+    /// Bound on the rate at which axial dampers alone would reduce velocities [1/s].
     damping_rate: f64,
     rows: Rows,
-    /// State of the nodes on a seabed with a slope, soundings or friction; empty without one.
+    /// State of the nodes on a seabed with a slope, soundings or friction; empty for other seabeds.
     seabed: Vec<SeabedRow>,
     /// Tensions as functions of the velocities of free points at the ends; empty between prescribed ends.
     open: Vec<OpenRow>,
-    /// Greatest T̄ since the state was loaded or stored last [N].
+    /// Largest T̄ in the communication step [N], per lane.
     tension_peak: Lanes,
-    /// Greatest tension of the springs, and greatest T̄, when the state was stored last [N].
+    /// Largest tension of the springs, and largest T̄, when the state was last stored [N].
     tensions: [f64; 2],
-    /// True if slack, contact and true stretch have converged in all steps since then.
+    /// True if slack, contact and true stretch have converged in all steps of the communication step.
     settled: bool,
-    /// True if springs up to t_n may push, of which T̄ then contains only a part.
+    /// True if springs may be in compression, so that T̄ contains only a part of the earlier tensions.
     forgets: bool,
     /// True if no step has been taken yet.
     starts: bool,
@@ -158,7 +156,7 @@ pub struct AxialImplicit {
 
 impl Kernel for AxialImplicit {
     const SECANTS: bool = true;
-    /// None: each line has its own limit.
+    /// Empty: each line has a separate limit.
     type Bound = ();
     type Points = coupling::Coupling;
 
@@ -279,7 +277,7 @@ impl Kernel for AxialImplicit {
         passes
     }
 
-    /// Limits of transverse waves, under one and a half times the tension of the last step.
+    /// The step is limited by transverse waves, under one and a half times the largest tension of the last step.
     fn longest_step(
         network: &mut LeapfrogNetwork<AxialImplicit>,
         _: &Model,
@@ -295,7 +293,7 @@ impl Kernel for AxialImplicit {
         } in network.lines.iter().map(|line| &line.kernel)
         {
             let expected = SNAP_GROWTH * tensions[0] - (SNAP_GROWTH - 1.0) * push_max;
-            // most limits exceed the whole communication step: no root or quotient is needed for those
+            // most limits exceed the whole communication step, and need no root or quotient
             if length * length * expected > transverse * transverse {
                 longest = longest.min(transverse / expected.sqrt());
             }
@@ -316,7 +314,6 @@ impl Kernel for AxialImplicit {
 }
 
 impl AxialImplicit {
-    /// Resets the greatest tension and the flag of convergence.
     fn restart(&mut self) {
         (self.tension_peak, self.settled) = (Lanes::splat(0.0), true);
         self.starts = false;
@@ -325,7 +322,7 @@ impl AxialImplicit {
     /// Loads the tensions of the segments at t_{n−1} and t_{n−2} [N].
     fn load_tensions(&mut self, layout: &Layout, [now, before]: &[Vec<f64>; 2]) {
         for row in &mut self.rows.segments {
-            row.history = [Lanes::splat(0.0); 3]; // of padding
+            row.history = [Lanes::splat(0.0); 3]; // for padding
         }
         for (at, tensions) in layout.striping.slots().zip(now.iter().zip(before)) {
             let [own, own_before, _] = &mut self.rows.segments[at.row - 1].history;
@@ -335,7 +332,6 @@ impl AxialImplicit {
 }
 
 impl AxialLine {
-    /// Sets the earlier tensions of the segments to the present ones.
     fn start_tensions(&mut self) {
         self.layout.renew_halo();
         for at in self.layout.rows() {
@@ -345,14 +341,13 @@ impl AxialLine {
         }
     }
 
-    /// Runs a stage for the vector unit of the machine.
     #[inline]
     fn run<S: Stage>(&mut self, stage: S) -> S::Found {
         let unit = self.layout.vector_unit;
         unit.dispatch(Run(self, stage))
     }
 
-    /// Force of the joints, less the push that tensions are measured from, on the lower node of a segment [N].
+    /// Force of the joints on the lower node of a segment, less P along the segment [N].
     fn shear(&self, at: Slot) -> Vector3<f64> {
         let joints = self.layout.joints.as_ref();
         joints.map_or(Vector3::zeros(), |joints| joints.shear.get(at))
@@ -364,7 +359,6 @@ impl AxialLine {
         ENDS.into_iter().filter(move |&end| !open[end as usize])
     }
 
-    /// Kind of seabed under the nodes.
     #[inline(always)]
     fn seabed_under(&self) -> u8 {
         match (&self.layout.contact, self.kernel.seabed.is_empty()) {
@@ -374,7 +368,7 @@ impl AxialLine {
         }
     }
 
-    /// Evaluates everything that precedes the tensions of a step.
+    /// Evaluates all quantities of a step that do not depend on T̄.
     #[inline(always)]
     fn prepare<const SEABED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2]) -> Sizes {
         self.choose_weights(step);
@@ -396,8 +390,8 @@ impl AxialLine {
         sizes
     }
 
-    /// Velocities from T̄, that of the segments before those of the first row being `before` [N]. Returns whether they agree with the assumptions, which
-    /// are corrected if not.
+    /// Computes the velocities from T̄; `before` is T̄ of the segments before the first row [N]. Returns whether the velocities agree with the assumptions,
+    /// and corrects the assumptions if not.
     #[inline(always)]
     fn pass<const SEABED: u8>(&mut self, before: Lanes, sizes: &Sizes) -> bool {
         self.find_velocities::<SEABED>(before, sizes);
@@ -411,7 +405,7 @@ impl AxialLine {
         holds
     }
 
-    /// Energy and memory of the step, and the motion of the nodes to t_{n+1}.
+    /// Adds the step to the energy balance, stores friction, and moves the nodes to t_{n+1}.
     #[inline(always)]
     fn finish<const SEABED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2], sizes: &Sizes) {
         if SEABED == under::ROUGH {
@@ -424,7 +418,6 @@ impl AxialLine {
         self.move_on(step, ends);
     }
 
-    /// Sets the weights for the averaging that the step needs.
     #[inline(always)]
     fn choose_weights(&mut self, step: Step) {
         let share = match self.layout.released {
@@ -451,7 +444,7 @@ impl AxialLine {
         }
     }
 
-    /// Moves nodes and all that goes with them from t_n to t_{n+1}.
+    /// Advances nodes, viscoelastic segments, waves and water surface from t_n to t_{n+1}.
     #[inline(always)]
     fn move_on(&mut self, step: Step, ends: &[Vector3<f64>; 2]) {
         self.layout.drift(step.drift);
@@ -470,7 +463,7 @@ impl AxialLine {
         self.meet_surface();
     }
 
-    /// Advances the memory of viscoelastic segments to t_{n+1}, where the nodes now are.
+    /// Advances the internal variables of viscoelastic segments to t_{n+1}, the time of the positions.
     #[inline(always)]
     fn relax_segments(&mut self, step: Step) {
         for at in self.layout.rows() {
@@ -482,16 +475,14 @@ impl AxialLine {
     }
 }
 
-/// A part of a step of a line.
 trait Stage {
-    /// Result of the stage.
     type Found;
 
-    /// Runs the stage over a kind of seabed.
+    /// Runs the stage for a kind of seabed.
     fn run<const SEABED: u8>(self, line: &mut AxialLine) -> Self::Found;
 }
 
-/// A stage for the vector unit of the machine.
+/// Stage for the vector unit of the machine.
 struct Run<'a, S>(&'a mut AxialLine, S);
 
 impl<S: Stage> NullaryFnOnce for Run<'_, S> {
@@ -509,7 +500,7 @@ impl<S: Stage> NullaryFnOnce for Run<'_, S> {
     }
 }
 
-/// A whole step of a line between prescribed or released ends. Returns the number of passes.
+/// Whole step of a line without free points. Returns the number of passes.
 struct Whole<'a> {
     step: Step,
     ends: &'a [Vector3<f64>; 2],
@@ -538,7 +529,7 @@ impl Stage for Whole<'_> {
     }
 }
 
-/// [`AxialImplicit::store`] for the vector unit of the machine; returns the greatest tensions too.
+/// [`AxialImplicit::store`] for the vector unit of the machine; also returns the largest tensions.
 struct Store<'a>(&'a AxialLine, &'a mut LineState, [f64; 2]);
 
 impl NullaryFnOnce for Store<'_> {
@@ -575,7 +566,7 @@ struct Tensions<'a> {
 }
 
 impl Tensions<'_> {
-    /// Copies the tensions of a segment from a lane `of` these; does nothing if it is padding.
+    /// Copies the tensions of a segment from a lane of `of`; does nothing if the segment is padding.
     #[inline(always)]
     fn take(&mut self, segment: usize, lane: usize, of: &[Lanes; 3]) {
         if segment < self.now.len() {
@@ -590,7 +581,7 @@ mod tests {
     use crate::scene::AXIAL_RADIUS_MIN;
     use approx::assert_relative_eq;
 
-    /// Amplitude of an oscillation after many steps with ωΔt = 10⁴, relative to that at its start [-].
+    /// Amplitude of an oscillation after many steps with ωΔt = 10⁴, relative to its initial amplitude [-].
     fn stiff_oscillation(rho: f64) -> f64 {
         let Weights([new, now, last, before]) = Weights::new(rho);
         let (mut x, mut v) = ([1.0, 1.0, 1.0], 0.0);

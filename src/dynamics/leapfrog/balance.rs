@@ -1,11 +1,11 @@
-//! Energy balance of the leapfrogs, over the steps since the state was loaded. It reads the quantities that a step leaves behind and changes no motion.
+//! Energy balance of the leapfrogs, over the steps since the state was loaded. It does not change the motion.
 //!
 //! Work on the free nodes in a step, with the velocities v of t_{n−½} and t_{n+½}:
 //!
 //!   ½ Δt Σ [−T q·Δ(v_{n−½} + v_{n+½}) + (p − w ẑ)·(v_{n−½} + v_{n+½})]
 //!
-//! with the tension T, the Froude-Krylov force p and the weight w. This and the work of the drag on the moving water is dissipated, except for the
-//! kinetic energy at the end of the steps ([`crate::dynamics::energy_balance`]). [`super::Kernel`]s add it, and the part of T that is elastic.
+//! with the tension T, the Froude-Krylov force p and the weight w. This work and the work of the drag on the moving water are dissipated, except for the
+//! kinetic energy at the end of the steps ([`crate::dynamics::energy_balance`]). The [`super::Kernel`]s add the work, and define the elastic part of T.
 
 use nalgebra::Vector3;
 
@@ -16,19 +16,19 @@ use crate::math::lanes::Lanes;
 /// Work and dissipation since the state was loaded.
 #[derive(Debug, Clone)]
 pub(super) struct LineBalance {
-    /// Work on the free nodes, and of an implicit tension on dampers [J].
+    /// Work on the free nodes, and work of an implicit tension on dampers [J].
     pub work: Lanes,
-    /// Work of moving water [J].
+    /// Work of the moving water [J].
     pub water_work: Lanes,
-    /// Dissipation by the averaging of tensions [J].
+    /// Algorithmic dissipation by the averaging of tensions [J].
     pub algorithmic: Lanes,
     /// Work of prescribed ends, of releases and of the winch [J].
     pub external_work: f64,
     /// Work on dampers next to the ends, and of viscoelastic dampers; kinetic energy that external work has supplied [J].
     pub dissipation: f64,
-    /// Position of the ends at t_n − Δt/2 [m].
+    /// Positions of the ends at t_n − Δt/2 [m].
     pub half_places: [Vector3<f64>; 2],
-    /// Force of the springs next to the ends on these at t_n [N], where the tension is explicit.
+    /// Forces of the end springs on the ends at t_n [N], if the tension is explicit.
     pub springs: [Vector3<f64>; 2],
 }
 
@@ -48,7 +48,7 @@ impl Default for LineBalance {
 }
 
 impl<K> LeapfrogLine<K> {
-    /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.
+    /// Energy flow since the state was loaded [J]. The dissipation includes the kinetic energy. Zero without an energy balance.
     pub(super) fn flow(&self) -> Flow {
         let Some(balance) = &self.balance else {
             return Flow::default();
@@ -61,7 +61,6 @@ impl<K> LeapfrogLine<K> {
         }
     }
 
-    /// Resets the flow to zero.
     pub(super) fn clear_balance(&mut self) {
         if let Some(balance) = &mut self.balance {
             let half_places = balance.half_places;
@@ -75,7 +74,7 @@ impl<K> LeapfrogLine<K> {
         }
     }
 
-    /// Records the position of the ends `lag` [s] ago.
+    /// Records the positions of the ends `lag` [s] ago.
     pub(super) fn set_out(&mut self, lag: f64) {
         if let Some(balance) = &mut self.balance {
             let ends = ENDS.map(|end| self.layout.end_slot(end));
@@ -83,7 +82,7 @@ impl<K> LeapfrogLine<K> {
         }
     }
 
-    /// Adds external work [J], of which a part is kinetic energy.
+    /// Adds external work [J], and the part of it that is kinetic energy [J].
     pub(super) fn supply(&mut self, [energy, kinetic]: [f64; 2]) {
         if let Some(balance) = &mut self.balance {
             balance.external_work += energy;

@@ -1,24 +1,25 @@
 //! Spring and damper of the seabed over a step of the leapfrogs.
 //!
-//! A step changes the velocity v⁻ at t_{n−½} to v at t_{n+½}. A part of a segment ([`crate::physics::seabed`]) with the penetration p at t_n, which
-//! leaves the seabed at v_n, goes from p_a = p + (1−θ) Δt v⁻_n to p_b = p − θ Δt v_n. The impulse of spring and damper over the step is
+//! A step changes the velocity v⁻ at t_{n−½} to v at t_{n+½}. The subscript n denotes the component normal to the seabed, positive away from it. The
+//! penetration of a part of a segment ([`crate::physics::seabed`]), p at t_n, changes from p_a = p + (1−θ) Δt v⁻_n to p_b = p − θ Δt v_n. The impulse of
+//! spring and damper over the step is
 //!
 //! λ = Δt k (θ p_b⁺ + (1−θ) p_a⁺) + c (p_b⁺ − p_a⁺) ≥ 0,    only if p_b > 0,    p⁺ = max(p, 0).
 //!
-//! θ = ½ is the trapezoidal rule between t_{n−½} and t_{n+½}, of second order also for parts that land within the step: the damper acts on
-//! the path below the seabed only. It lets a seabed that is stiff over the step ring, so that
+//! θ = ½ is the trapezoidal rule between t_{n−½} and t_{n+½}. It is of second order even for parts that land within the step: the damper acts only on
+//! the path below the seabed. On a seabed that is stiff over the step, it would leave undamped oscillations. Therefore
 //!
 //! θ = max(½, 1 − 1/r),    r = Δt (k Δt + c)/m,
 //!
-//! tends to backward Euler, which brings such a part to rest. On a seabed softened to the mesh, r is below 2 at all steps that the line allows.
+//! which tends to backward Euler and brings such a part to rest. On a seabed softened to the mesh, r is below 2 at all steps that the line allows.
 //!
-//! The velocity of a part depends on those of both nodes of its segment, which would couple all nodes on the seabed. Two approximations avoid that: p_b > 0 is
-//! decided with v⁻, and in the share of λ on a node every part changes its velocity by as much as that node. Each node then gets a force P − R v_n of its
-//! own, with R the sum of the shares of −∂λ/∂v_n over the parts next to it: the consistent matrix, lumped by rows. The step stays stable for any k and c: on
-//! a hard seabed the shortest wave of nodes decays by a factor of 0.8 a step, and longer ones decay faster.
+//! The velocity of a part depends on those of both nodes of its segment, which would couple all nodes on the seabed. Two approximations avoid that: p_b > 0
+//! is decided with v⁻, and in the share of λ on a node the velocity of every part changes by as much as that of the node. Each node then has a separate
+//! force P − R v_n. R is the sum of the shares of −∂λ/∂v_n over the adjacent parts: the consistent matrix, lumped by rows. The step is stable for any k
+//! and c: on a hard seabed the shortest wave of nodes decays by a factor of 0.8 per step, and longer ones decay faster.
 //!
-//! Source: the θ-method, e.g. Hairer & Wanner (1996), Solving Ordinary Differential Equations II, section IV.3; row sums as a bound of a consistent matrix,
-//! Hughes (2000), The Finite Element Method, section 7.3.2. Stable for any k and c.
+//! Source: the θ-method, e.g. Hairer & Wanner (1996), Solving Ordinary Differential Equations II, section IV.3; row sums as a bound on a consistent matrix,
+//! Hughes (2000), The Finite Element Method, section 7.3.2. Valid for any k and c.
 
 use super::layout::{ContactArrays, Layout, SeabedArrays};
 use super::step::Step;
@@ -26,7 +27,6 @@ use crate::math::lanes::{Lanes, Vectors};
 use crate::physics::ground::{Ground, stand_on_plane};
 use crate::physics::seabed::Part;
 
-/// Contact of nodes with the seabed in a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodeContact {
     /// Impulse on nodes at rest [N s].
@@ -36,7 +36,6 @@ pub(super) struct NodeContact {
 }
 
 impl NodeContact {
-    /// None.
     pub(super) fn none() -> NodeContact {
         let zero = Lanes::splat(0.0);
         NodeContact {
@@ -45,7 +44,7 @@ impl NodeContact {
         }
     }
 
-    /// Impulse [N s] on nodes that leave the seabed at `rise` [m/s], as if it could also pull: positive where it pushes.
+    /// Impulse [N s] on nodes that leave the seabed at `rise` [m/s], positive if the seabed pushes; it is not limited to positive values.
     #[inline(always)]
     pub(super) fn push(&self, rise: Lanes) -> Lanes {
         self.spring - self.resistance * rise
@@ -71,8 +70,8 @@ struct ContactRule {
     behind: Lanes,
 }
 
-/// Forces of the seabed on the two nodes of the segments of a row at unchanged velocities [N], and their decrease with the velocity at which a node
-/// leaves the seabed [N s/m].
+/// Forces of the seabed on the lower and upper nodes of a row of segments at unchanged velocities [N], and their decrease with the velocity at which
+/// the nodes leave the seabed [N s/m].
 #[derive(Debug, Clone, Copy)]
 struct Pressed {
     force: [Lanes; 2],
@@ -80,7 +79,7 @@ struct Pressed {
 }
 
 impl ContactRule {
-    /// Rule of a stiffness [N/m] and a damping [N s/m] of segments that yield by 1/m [1/kg].
+    /// Rule for the stiffness [N/m], damping [N s/m] and inverse mass `yields` [1/kg] of segments.
     #[inline(always)]
     fn new([stiffness, damping]: [Lanes; 2], yields: Lanes, step: Step) -> ContactRule {
         let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
@@ -108,7 +107,7 @@ impl ContactRule {
         }
     }
 
-    /// Forces on the nodes of segments between two depths, with contact at four parts of a segment.
+    /// Forces on the nodes of segments, from the depths of both nodes, with contact at four parts of a segment.
     #[inline(always)]
     fn press(&self, parts: &[Part; 4], [low, high]: [Depth; 2]) -> Pressed {
         let zero = Lanes::splat(0.0);
@@ -139,7 +138,8 @@ impl ContactRule {
 }
 
 impl Layout {
-    /// Finds spring and resistance of the seabed under the nodes over a step, and its normals where it is more than a level plane. The halo is that of t_n.
+    /// Computes spring and resistance of the seabed under the nodes over a step, and its normals unless it is a level plane without friction. The halo must
+    /// be that of t_n.
     #[inline(always)]
     pub(super) fn press_seabed(&mut self, step: Step) {
         let last = self.striping.rows();
@@ -173,7 +173,6 @@ impl Layout {
     }
 }
 
-/// Coefficients of the segments, row by row.
 struct SegmentRows<'a> {
     stiffness: &'a [Lanes],
     damping: &'a [Lanes],
@@ -184,7 +183,7 @@ struct SegmentRows<'a> {
 }
 
 impl SegmentRows<'_> {
-    /// Writes spring and resistance of all rows of nodes, from the depths of rows.
+    /// Writes spring and resistance of all rows of nodes; `depth` returns the depths of a row.
     #[inline(always)]
     fn press(&self, [spring, resistance]: [&mut [Lanes]; 2], depth: impl Fn(usize) -> Depth) {
         let (zero, last) = (Lanes::splat(0.0), spring.len() - 2);
@@ -203,7 +202,6 @@ impl SegmentRows<'_> {
         }
     }
 
-    /// Forces on the nodes of a row of segments.
     #[inline(always)]
     fn press_row(&self, at: usize, [low, high]: [Depth; 2]) -> Pressed {
         let lands = |depth: Depth| depth.penetration - Lanes::splat(self.step.drift) * depth.rise;
@@ -231,8 +229,8 @@ impl ContactArrays {
 }
 
 impl SeabedArrays {
-    /// Finds the depths of all rows of nodes whose contact begins at `lift` [m] above the seabed, and the normals there. A row above the highest
-    /// point of the surface, like its neighbours, gets a bound of its penetration and no normal.
+    /// Computes the depths of all rows of nodes, whose contact begins at `lift` [m] above the seabed, and the normals there. A row that is above the
+    /// highest point of the seabed, and whose neighbours are, gets a bound on its penetration and no normal.
     #[inline(always)]
     fn find_depths(&mut self, lift: &[Lanes], [position, velocity]: [&[Vectors]; 2], step: Step) {
         let rows = lift.len();
@@ -273,7 +271,6 @@ impl SeabedArrays {
     }
 }
 
-/// Depths of the nodes and normals of the seabed, row by row.
 struct DepthRows<'a> {
     normal: &'a mut [Vectors],
     penetration: &'a mut [Lanes],
@@ -289,9 +286,9 @@ impl DepthRows<'_> {
     }
 }
 
-/// Test of nodes against the height that no point of the soundings exceeds.
+/// Test of nodes against the highest point of the soundings.
 struct Above<'a> {
-    /// That height [m].
+    /// Height of that point [m].
     highest: Lanes,
     /// Square of the drift of a step [s²].
     square: Lanes,
@@ -302,13 +299,13 @@ struct Above<'a> {
 }
 
 impl Above<'_> {
-    /// Bound of the penetration of a row of nodes [m].
+    /// Upper bound on the penetration of a row of nodes [m].
     #[inline(always)]
     fn bound(&self, at: usize) -> Lanes {
         self.highest + self.lift[at] - self.position[at].z
     }
 
-    /// Returns whether a node of a row may reach that height within a step.
+    /// Returns whether a node of a row may reach that height within a step, plus the height at which contact begins.
     #[inline(always)]
     fn reached(&self, at: usize) -> bool {
         let (bound, velocity) = (self.bound(at), self.velocity[at]);
@@ -329,7 +326,6 @@ mod tests {
         extrapolation: 0.5,
     };
 
-    /// A level segment of 1 kg.
     fn depths(penetration: f64, rise: f64) -> [Depth; 2] {
         let depth = Depth {
             penetration: Lanes::splat(penetration),
@@ -338,7 +334,7 @@ mod tests {
         [depth; 2]
     }
 
-    /// Impulse [N s] on a level segment of 1 kg that left a seabed at `before` and leaves it at `after` [m/s].
+    /// Impulse [N s] on a level segment of 1 kg that leaves the seabed at `before` [m/s] before the step and at `after` [m/s] after it.
     fn impulse(k: f64, c: f64, penetration: f64, [before, after]: [f64; 2]) -> f64 {
         let law = [k, c].map(Lanes::splat);
         let rule = ContactRule::new(law, Lanes::splat(1.0), STEP);

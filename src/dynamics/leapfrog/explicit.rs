@@ -3,17 +3,17 @@
 //! The stages of a step of a line are
 //!
 //! 1. segments: strain, lagged strain rate, tension T q;
-//! 2. resistance of water and damping, at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2};
-//! 3. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with the anisotropic mass inverted in closed form and the seabed solved implicitly, node by node, by a
-//!    rank-one update or, with a slope or friction, by [`crate::physics::friction_step`];
+//! 2. drag and damping, at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2};
+//! 3. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with the anisotropic mass inverted in closed form. The seabed is implicit, node by node: by a rank-one update
+//!    or, with a slope, soundings or friction, by [`crate::physics::friction_step`];
 //! 4. r_{n+1} = r_n + Δt v_{n+½}; the ends are moved to their points.
 //!
 //! Stage 4 is part of the loop of stage 3 unless the energy balance is evaluated between them.
 //!
-//! One force evaluation a step, second order, stable below [`crate::dynamics::limit::explicit_limit`] for any seabed.
+//! The scheme needs one force evaluation per step. It is of second order, and stable below [`crate::dynamics::limit::explicit_limit`] for any seabed.
 //!
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
-//! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
+//! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact as in `leapfrog/contact`.
 
 mod balance;
 mod sweep;
@@ -39,17 +39,16 @@ use crate::physics::stretch::total_tension;
 use sweep::{Drift, Pull, Sweep};
 use winch::WinchWork;
 
-/// A line with explicit tension.
 pub(super) type ExplicitLine = LeapfrogLine<Explicit>;
 
-/// Scratch of the explicit stages.
+/// Workspace of the explicit stages.
 #[derive(Debug, Clone)]
 pub struct Explicit {
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
-    /// Resistance of water and mass damping at t_n [N].
+    /// Drag and mass damping at t_n [N].
     resistance: Field,
-    /// Force of water that waves accelerate at t_n [N], where there are waves.
+    /// Froude-Krylov force at t_n [N]; `None` without waves.
     froude_krylov: Option<Field>,
     /// Inverse square of the chord between the neighbours of a node at t_n [1/m²].
     inverse_square: Column,
@@ -57,13 +56,13 @@ pub struct Explicit {
     water: Option<WaterWork>,
     /// 1 for nodes between prescribed ends and at released ones, 0 elsewhere.
     interior: Column,
-    /// The winch at end B, where the line is on one.
+    /// Winch at end B; `None` if the line is not on a winch.
     winch: Option<Box<WinchWork>>,
-    /// Greatest ratio K |v| / M of the nodes after the last step, where it is known [1/s].
+    /// Largest ratio K |v| / M of the nodes after the last step [1/s]; `None` if it must be evaluated again.
     drag_rate: Option<f64>,
 }
 
-/// Coefficients of resistance, and of a mass that differs along and across the line.
+/// Coefficients of drag, and of a mass that differs along and across the line.
 #[derive(Debug, Clone)]
 struct WaterWork {
     drag_normal: Column,
@@ -72,7 +71,7 @@ struct WaterWork {
     inverse_mass_excess: Column,
     /// Drag coefficient over mass of a fully submerged node, across the line [1/m].
     drag_over_mass: Column,
-    /// The same along the line, where it is greater at some node [1/m].
+    /// The same along the line [1/m]; `None` unless it is larger at some node.
     drag_over_mass_along: Option<Column>,
 }
 
@@ -151,7 +150,7 @@ impl Kernel for Explicit {
         work.kernel.drag_rate = None;
     }
 
-    /// A line on a winch is laid out again.
+    /// Reloads a line on a winch completely.
     fn resume(work: &mut ExplicitLine, state: &LineState) {
         if work.kernel.winch.is_some() {
             return work.load(state);
@@ -225,7 +224,7 @@ impl Kernel for Explicit {
         1
     }
 
-    /// The bound is the limit for the present stiffness of the springs, with the drag at the present velocities added.
+    /// The step is limited for the current stiffness of the springs and the drag at the current velocities.
     fn longest_step(
         network: &mut LeapfrogNetwork<Explicit>,
         model: &Model,
@@ -254,7 +253,7 @@ impl Kernel for Explicit {
 }
 
 impl ExplicitLine {
-    /// Velocities at t_{n+½}, and positions at `t` = t_{n+1} [s].
+    /// Advances the velocities to t_{n+½} and the positions to t_{n+1} = `t` [s].
     fn advance(&mut self, t: f64, step: Step, ends: [&EndMotion; 2]) {
         let (unit, size) = (self.layout.vector_unit, &step);
         let drifts = self.balance.is_none();
@@ -280,7 +279,6 @@ impl ExplicitLine {
         self.renew_end_segment(step);
     }
 
-    /// Advances the memory of viscoelastic segments to t_{n+1}.
     fn relax_segments(&mut self, step: Step) {
         if self.layout.viscoelastic.is_none() {
             return;
@@ -299,7 +297,7 @@ impl ExplicitLine {
         }
     }
 
-    /// Load and mass of the half node at an end that a free point carries, after [`Pull`]; `velocity` [m/s] is the point's at t_n.
+    /// Load and mass of the half node at an end tied to a free point, after [`Pull`]; `velocity` is that of the point at t_n [m/s].
     pub(super) fn end_load(&self, end: End, velocity: Vector3<f64>) -> PointLoad {
         let line = &self.layout;
         let (at, other) = (line.end_slot(end), line.end_neighbour(end));
@@ -340,7 +338,7 @@ impl ExplicitLine {
         }
     }
 
-    /// Stiffness of the stiffest segment over the one that the step limit assumes [-], at least 1.
+    /// Ratio of the highest segment stiffness to that assumed by the step limit [-], at least 1.
     pub(super) fn stiffening(&self) -> f64 {
         let line = &self.layout;
         if !line.law.may_stiffen() {
@@ -355,12 +353,12 @@ impl ExplicitLine {
         (greatest / expected_slope(&line.law)).max(1.0)
     }
 
-    /// Greatest ratio K |v| / M of the nodes [1/s], as far as it is known from the last step.
+    /// Largest ratio K |v| / M of the nodes [1/s], from the last step if available.
     pub(super) fn drag_rate(&self) -> f64 {
         self.kernel.drag_rate.unwrap_or_else(|| self.survey_drag())
     }
 
-    /// Greatest ratio K |v| / M [1/s], v relative to the water, or of its part along the line: explicit drag is stable for Δt below its inverse.
+    /// Largest ratio K |v| / M across or along the line [1/s], with v relative to the water: explicit drag is stable for Δt up to half of its inverse.
     fn survey_drag(&self) -> f64 {
         match self.kernel.water {
             Some(_) => self.layout.vector_unit.dispatch(DragRate(self)),
@@ -389,7 +387,7 @@ impl ExplicitLine {
         across.max(self.drag_rate_along(water))
     }
 
-    /// Ratio K |v| / M at an end that forces move [1/s], v relative to the water; zero at a prescribed end, whose motion drag does not change.
+    /// Ratio K |v| / M at an open end [1/s], with v relative to the water; zero at a prescribed end, where drag does not change the motion.
     fn drag_rate_at(&self, end: End, water: &WaterWork) -> f64 {
         let (line, at) = (&self.layout, self.layout.end_slot(end));
         match line.is_open(end) {
@@ -398,7 +396,7 @@ impl ExplicitLine {
         }
     }
 
-    /// Greatest ratio K |v·t| / M along the line [1/s], where that may exceed the one across it.
+    /// Largest ratio K |v·t| / M along the line [1/s]; zero if it cannot exceed that across the line.
     fn drag_rate_along(&self, water: &WaterWork) -> f64 {
         let Some(over_mass) = &water.drag_over_mass_along else {
             return 0.0;
@@ -415,7 +413,7 @@ impl ExplicitLine {
     }
 }
 
-/// Tension [N] of one segment from its end positions [m] and velocities [m/s]: the pointwise law of the kernel.
+/// Tension [N] of one segment from its end positions [m] and velocities [m/s], by the law of the kernel.
 pub fn segment_tension(
     line: &Line,
     segment: usize,

@@ -1,14 +1,14 @@
-//! Joints of a line that bends. Their forces enter the leapfrogs like weights: those of the positions at t_n.
+//! Joints of a line that bends. Their forces are explicit in the leapfrogs: they depend on the positions at t_n.
 //!
 //! With the energy W_i of the joint at node i ([`crate::physics::bending`]) and the end-to-end vector e_i of segment i, the joints at both nodes of
-//! the segment exert the couple of forces ± S_i on these,
+//! the segment exert the couple of forces ± S_i on these nodes,
 //!
 //! S_i = ∂W_i/∂e_i + ∂W_{i+1}/∂e_i,
 //!
 //! which is added to the pull T q of the segment. A clamp is the direction of the segment before the first one, or after the last one.
 //!
-//! In the shortest wave, a zigzag, joints of equal segments of length l are as stiff as a tension of 4EI/l², which is also the greatest push P of a
-//! segment. The limits of the steps are those for T + P.
+//! In the shortest wave, a zigzag, the joints of equal segments of length l are as stiff as a tension of 4EI/l², which is also the maximum compression P
+//! of a segment. The step limits are those for a tension of T + P.
 
 use nalgebra::Vector3;
 
@@ -19,7 +19,7 @@ use crate::math::striping::{Column, Field, Slot, Striping};
 use crate::model::{Bending, End};
 use crate::physics::bending::{Couple, Direction, Turn};
 
-/// Joints of a line laid out for the kernels.
+/// Joints of a line in striped layout.
 #[derive(Debug, Clone)]
 pub struct Joints {
     /// B of the nodes [N m].
@@ -28,7 +28,7 @@ pub struct Joints {
     rest: Column,
     /// P of the segments [N].
     pub push: Column,
-    /// S of the segments [N], and of those before the first row.
+    /// S of the segments, and of those before the first row [N].
     pub shear: Field,
     /// Clamps at ends A and B; zero at pinned ends.
     pub clamps: [Clamp; 2],
@@ -36,17 +36,17 @@ pub struct Joints {
     pub moments: [Vector3<f64>; 2],
 }
 
-/// A clamp at an end.
+/// Clamp at an end.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Clamp {
-    /// Its direction from end A to end B [-].
+    /// Direction, pointing from end A to end B [-].
     pub along: Vector3<f64>,
-    /// Angular velocity of its support [rad/s].
+    /// Angular velocity of the support [rad/s].
     pub spin: Vector3<f64>,
 }
 
 impl Joints {
-    /// Allocates for a line.
+    /// Allocates the joints of a line.
     pub fn new(bending: &Bending, striping: Striping) -> Joints {
         let keep = |values: &[f64]| striping.column(values, 0.0);
         Joints {
@@ -59,7 +59,7 @@ impl Joints {
         }
     }
 
-    /// Forces of the segments before and after the nodes of a row on these [N].
+    /// Shear forces of the adjacent segments on the nodes of a row [N].
     #[inline(always)]
     pub fn force(&self, at: usize) -> Vectors {
         self.shear.load(at) - self.shear.load(at - 1)
@@ -67,7 +67,7 @@ impl Joints {
 }
 
 impl Layout {
-    /// Finds S of the segments at t_n, less `taken` times their greatest push.
+    /// Computes S of the segments at t_n, less `taken` times their maximum compression along the chord.
     #[inline(always)]
     pub fn bend(&mut self, taken: f64) {
         let Some(mut joints) = self.joints.take() else {
@@ -100,7 +100,7 @@ impl Layout {
         self.joints = Some(joints);
     }
 
-    /// Directions of a row of segments, or of those behind the last row; the clamp at end B is that of the segment behind the last one.
+    /// Directions of a row of segments, or of the row after the last one. The clamp at end B is the direction of the segment after the last segment.
     #[inline(always)]
     fn directions(&self, at: usize, clamp_b: Vector3<f64>) -> Direction<Vectors> {
         let mut found = match at <= self.striping.rows() {
@@ -121,7 +121,6 @@ impl Layout {
         found
     }
 
-    /// Directions of a row of segments.
     #[inline(always)]
     fn segments_along(&self, at: usize) -> Direction<Vectors> {
         let chord = self.position.load(at + 1) - self.position.load(at);
@@ -132,13 +131,13 @@ impl Layout {
         }
     }
 
-    /// End-to-end vector of the segment at an end, from its lower to its upper node [m].
+    /// Chord of the end segment, from its lower to its upper node [m].
     fn end_chord(&self, end: End) -> Vector3<f64> {
         let (_, sign) = self.end_segment(end);
         sign * (self.position.get(self.end_neighbour(end)) - self.position.get(self.end_slot(end)))
     }
 
-    /// Power of the clamps as they turn, and of the moments on the ends, on the line [W], with the means of the velocities before and after t_n.
+    /// Power of rotating clamps and of end moments on the line [W], with the mean of the velocities at t_{n−½} and t_{n+½}.
     pub fn bending_power(&self) -> f64 {
         let Some(joints) = &self.joints else {
             return 0.0;
@@ -153,7 +152,7 @@ impl Layout {
         ENDS.map(power).iter().sum()
     }
 
-    /// Power of a clamp on the line at t_n, as it turns [W].
+    /// Power of a rotating clamp on the line at t_n [W].
     fn clamp_power(&self, joints: &Joints, end: End) -> f64 {
         let Clamp { along, spin } = joints.clamps[end as usize];
         let (at, chord) = (self.end_slot(end), self.end_chord(end));

@@ -1,7 +1,7 @@
-//! A line laid out for the leapfrog kernels: striped over four lanes ([`crate::math::striping`]), padded and with a halo.
+//! Striped layout of a line for the leapfrog kernels: four lanes ([`crate::math::striping`]), padded and with a halo.
 //!
 //! Node i and segment i, which lies between nodes i and i + 1, are in the same slot. Padding has no stiffness, no weight and no drag, so
-//! that it stays at rest and no loop has a remainder. The halo is renewed when the nodes that it repeats have moved.
+//! that it stays at rest and no loop has a remainder. The halo is renewed when the nodes that it copies have moved.
 
 mod ground;
 mod handover;
@@ -25,10 +25,10 @@ use handover::padded_positions;
 pub(super) use water::Water;
 pub(super) use water::{CurrentNow, WaveArrays, water_flow};
 
-/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. The squares of speeds of nodes that come to rest on the
-/// seabed would otherwise become subnormal numbers, with which a machine is many times slower.
+/// Speed below which speeds are rounded to multiples of about 2⁻⁵³ of it [m/s]. The squared speeds of nodes that come to rest on the
+/// seabed would otherwise become subnormal numbers, with which processors are many times slower.
 const STILLNESS: f64 = 1e-30;
-/// Keeps coincident nodes from dividing by zero [m²].
+/// Offset that prevents a division by zero at coincident nodes [m²].
 pub(super) const LENGTH2_MIN: f64 = 1e-200;
 
 /// Geometry, motion and coefficients of a line.
@@ -45,7 +45,7 @@ pub struct Layout {
     pub negative_tension: bool,
     /// True if the energy balance is evaluated.
     pub energy_balance: bool,
-    /// True for ends A and B at prescribed points, also if released from them.
+    /// True for ends A and B at prescribed points, even if released from them.
     pub tied: [bool; 2],
     /// True for ends A and B that are released from their points.
     pub released: [bool; 2],
@@ -60,17 +60,17 @@ pub struct Layout {
     pub axial_damping: Column,
     pub weight: Column,
     pub drag: Option<DragArrays>,
-    /// The current, where it acts on the line.
+    /// Current; `None` if it does not act on the line.
     pub current: Option<CurrentNow>,
-    /// The waves, where they act on the line.
+    /// Waves; `None` if they do not act on the line.
     pub waves: Option<WaveArrays>,
     pub mass_damping: Option<Column>,
     pub contact: Option<ContactArrays>,
-    /// Joints, where the line bends.
+    /// Joints; `None` unless the line bends.
     pub joints: Option<Joints>,
-    /// Memory of viscoelastic segments, where the line has any.
+    /// Viscoelastic segments; `None` unless the line is viscoelastic.
     pub viscoelastic: Option<ViscoelasticArrays>,
-    /// The water's surface, where the line may pierce it.
+    /// Water surface; `None` unless the line may pierce it.
     pub surface: Option<SurfaceNow>,
 }
 
@@ -81,14 +81,14 @@ pub struct DragArrays {
     pub tangent: Column,
 }
 
-/// Inverse of the norm of vectors with this square [1/m], finite if that is 0.
+/// Inverse of the norm of vectors, from the squared norm [m²]; finite for zero vectors [1/m].
 #[inline(always)]
 pub(super) fn inverse_norm(square: Lanes) -> Lanes {
     (square + Lanes::splat(LENGTH2_MIN)).sqrt().recip()
 }
 
 impl Layout {
-    /// Arrays for a line whose ends are `tied` to prescribed points or else to free ones; `None` where its sections have different strain measures, which
+    /// Allocates the arrays of a line; `tied` is true for ends at prescribed points. Returns `None` if the sections have different strain measures, which
     /// the kernels do not mix.
     pub fn new(model: &Model, (line, water): (&Line, Water<'_>), tied: [bool; 2]) -> Option<Layout> {
         let n = line.segment_count();
@@ -150,7 +150,7 @@ impl Layout {
         })
     }
 
-    /// Runs the kernels compiled for any machine of the target, or for the best vector unit of this one.
+    /// Selects the kernels compiled for every machine of the target, or those for the best vector unit of this machine.
     pub fn set_portable(&mut self, portable: bool) {
         self.vector_unit = match portable {
             true => VectorUnit::portable(),
@@ -165,7 +165,7 @@ impl Layout {
         }
     }
 
-    /// Copies the nodes to the halo. Released ends have no neighbour beyond them.
+    /// Copies the nodes to the halo, and closes it at open ends ([`Self::close_halo`]).
     #[inline(always)]
     pub fn renew_halo(&mut self) {
         self.position.wrap();
@@ -174,7 +174,7 @@ impl Layout {
         self.close_halo();
     }
 
-    /// The same, without the velocities of the step before.
+    /// The same, without the velocities of the previous step.
     #[inline(always)]
     pub fn renew_neighbours(&mut self) {
         self.position.wrap();
@@ -182,7 +182,7 @@ impl Layout {
         self.close_halo();
     }
 
-    /// Moves the halo beyond ends that forces move to these ends.
+    /// Sets the halo beyond open ends to the positions of these ends.
     #[inline(always)]
     pub fn close_halo(&mut self) {
         for end in ENDS {
@@ -194,7 +194,7 @@ impl Layout {
         }
     }
 
-    /// Returns whether forces move an end: it is released, or at a free point.
+    /// Returns whether an end is open: released, or at a free point.
     #[inline(always)]
     pub fn is_open(&self, end: End) -> bool {
         self.released[end as usize] || !self.tied[end as usize]
@@ -216,7 +216,7 @@ impl Layout {
         self.striping.slots().take(self.segment_count + 1)
     }
 
-    /// Unit vector along the chord of the neighbours of node `i`, at an end along the segment.
+    /// Tangent at node `i` [-]: unit vector along the chord of its neighbours, or along the segment at an end.
     pub fn tangent_of(&self, i: usize) -> Vector3<f64> {
         let before = self.slot(i.saturating_sub(1));
         let after = self.slot((i + 1).min(self.segment_count));
@@ -237,12 +237,12 @@ impl Layout {
         }
     }
 
-    /// Position of a node `lag` [s] ago, extrapolated by its velocity [m].
+    /// Position of a node `lag` [s] ago, extrapolated with its velocity [m].
     pub fn place_before(&self, at: Slot, lag: f64) -> Vector3<f64> {
         self.position.get(at) - lag * self.velocity.get(at)
     }
 
-    /// Restarts the viscoelastic segments at the ends from the positions that the present velocities give `lag` [s] ago: a jump does not act on
+    /// Restarts the viscoelastic segments at the ends from the positions that the current velocities give `lag` [s] ago: a jump does not act on
     /// dampers.
     pub fn set_out_anew(&mut self, lag: f64) {
         let Some(mut viscoelastic) = self.viscoelastic.take() else {
@@ -260,7 +260,7 @@ impl Layout {
         self.viscoelastic = Some(viscoelastic);
     }
 
-    /// The node at an end.
+    /// Index of the node at an end.
     pub fn end_node(&self, end: End) -> usize {
         match end {
             End::A => 0,
@@ -268,7 +268,7 @@ impl Layout {
         }
     }
 
-    /// Returns whether a node has a row; one without stands behind the last row.
+    /// Returns whether a node is in a row; a node without a row is stored after the last row.
     #[inline(always)]
     pub fn has_row(&self, at: Slot) -> bool {
         at.row <= self.striping.rows()
@@ -298,7 +298,7 @@ impl Layout {
         }
     }
 
-    /// Rows of nodes, and of segments.
+    /// Indices of the rows of nodes and segments.
     #[inline(always)]
     pub fn rows(&self) -> std::ops::RangeInclusive<usize> {
         1..=self.striping.rows()
@@ -333,7 +333,7 @@ impl Layout {
         )
     }
 
-    /// Energy of the half node at an end, of masses across and along the line [kg], that is released at t_n, and the kinetic part of it [J].
+    /// Energy of the half node at an end that is released at t_n, and its kinetic part [J]; `masses` are across and along the line [kg].
     pub fn joining_energy(&self, end: End, masses: [f64; 2], step: Step) -> [f64; 2] {
         let (at, other) = (self.end_slot(end), self.end_neighbour(end));
         let velocity = self.velocity.get(at);
@@ -341,7 +341,7 @@ impl Layout {
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let height = self.position.get(at).z - step.lag() * velocity.z;
         let kinetic = 0.5 * Slender::new(masses).square(velocity, tangent);
-        // the surface accounts for the energy of the missing buoyancy separately
+        // the energy of the lost buoyancy is part of the energy of the surface
         let lack = self
             .surface
             .as_ref()
@@ -356,7 +356,7 @@ impl Layout {
         match (&self.viscoelastic, &self.law) {
             (Some(viscoelastic), _) => viscoelastic.elastic(at, strain),
             (None, StretchLaw::Engineering) => stiffness * strain,
-            // the segment beyond an end has no stiffness, and may have no length: the logarithm of its stretch is infinite
+            // a segment beyond an end has no stiffness and may have zero length: the logarithm of its stretch would be infinite
             (None, law) => {
                 let strain = strain.where_positive(stiffness);
                 stiffness * strain.map(|strain| law.at(strain).force)
@@ -364,7 +364,7 @@ impl Layout {
         }
     }
 
-    /// Least tension of the segments [N]: minus the push that they carry where the line bends.
+    /// Minimum tension of the segments [N]: minus the compression that they carry if the line bends, else zero.
     #[inline(always)]
     pub fn least_tension(&self, at: usize) -> Lanes {
         let zero = Lanes::splat(0.0);
@@ -373,7 +373,7 @@ impl Layout {
             .map_or(zero, |joints| zero - joints.push.load(at))
     }
 
-    /// Force of the springs of the segments, and of the joints, on their lower nodes [N].
+    /// Force of the springs of the segments and of the joints on the lower nodes [N].
     #[inline(always)]
     pub fn spring(&self, at: usize) -> Vectors {
         let (chord, inverse_l) = self.chord(at);
@@ -393,8 +393,8 @@ impl Layout {
         chord.dot(chord) * inverse_l * inverse_length - Lanes::splat(1.0)
     }
 
-    /// Advances the memory of viscoelastic segments from t_n to t_{n+1}, where the nodes now are, with the velocities of the step. Returns their
-    /// tension over it [N], and the dissipation of their dampers [J].
+    /// Advances viscoelastic segments from t_n to t_{n+1}, the time of the positions, with the velocities of the step. Returns their tension [N] and
+    /// the dissipation of their dampers [J], both from t_{n−½} to t_{n+½}.
     #[inline(always)]
     pub fn relax_segments(&mut self, at: usize, step: Step) -> Relaxed {
         let lag = Lanes::splat(0.5 * step.drift);
@@ -426,7 +426,7 @@ impl Layout {
         self.viscoelastic = Some(viscoelastic);
     }
 
-    /// Vectors along the segments, and the inverse of their lengths.
+    /// Chords of the segments [m], and the inverse of their lengths [1/m].
     #[inline(always)]
     pub fn chord(&self, at: usize) -> (Vectors, Lanes) {
         let chord = self.position.load(at + 1) - self.position.load(at);
@@ -444,8 +444,8 @@ impl Layout {
     }
 }
 
-/// Returns whether the node at end B of a line needs no row where its point is prescribed: it is never released, and no winch, water's surface,
-/// uneven seabed or viscoelastic memory acts on it.
+/// Returns whether the node at end B of a line needs no row if its point is prescribed: it is never released, and the line has no winch, no water
+/// surface, no seabed with slope, soundings or friction, and no viscoelastic segments.
 fn is_plain_at_b(line: &Line) -> bool {
     let may_release = line.release.is_some_and(|[_, b]| b.may_release());
     let has_surroundings = line.surface.is_some() || line.seabed().is_some() || line.winch.is_some();

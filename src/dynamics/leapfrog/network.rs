@@ -1,4 +1,4 @@
-//! A network of lines advanced by a leapfrog: its lines, and the free points that join them.
+//! A network advanced by a leapfrog: its lines, and the free points that join them.
 
 use nalgebra::Vector3;
 
@@ -11,44 +11,41 @@ use crate::dynamics::energy_balance::Flow;
 use crate::dynamics::motion::AxisPath;
 use crate::model::{End, Kinematics, Model, Network, PointState, Role, State, WaveSpan};
 
-/// Scratch of a network: its lines laid out for the kernels, and its free points.
+/// Workspace of a network: its lines in striped layout, and its free points.
 #[derive(Debug, Clone)]
 pub struct LeapfrogNetwork<K: Kernel> {
     /// Lines, in the order of the network.
     pub(super) lines: Vec<LeapfrogLine<K>>,
-    /// Numbers of the lines in the model.
+    /// Indices of the lines in the model.
     line_numbers: Vec<usize>,
-    /// Ends of the lines.
     ends: Vec<[LineEnd; 2]>,
     /// Free points, in the order of the network.
     pub(super) points: Vec<PointState>,
-    /// Numbers of the free points in the model.
+    /// Indices of the free points in the model.
     pub(super) point_numbers: Vec<usize>,
-    /// Lines, by their place in the network, and ends at the free points.
+    /// Lines, by index in the network, and their ends at each free point.
     pub(super) attached: Vec<Vec<(usize, End)>>,
-    /// Motion of the water by waves at the free points, where there are waves.
+    /// Wave kinematics at the free points; empty without waves.
     pub(super) waves: Vec<WaveSpan>,
-    /// Scratch of the free points.
     pub(super) scratch: K::Points,
-    /// Flow of energy of the free points since the state was loaded.
+    /// Energy flow of the free points since the state was loaded [J].
     pub(super) point_flow: Flow,
 }
 
-/// An end of a line.
 #[derive(Debug, Clone, Copy)]
 struct LineEnd {
     tie: Tie,
     motion: EndMotion,
 }
 
-/// The point that an end of a line is tied to.
+/// Point to which an end of a line is tied.
 #[derive(Debug, Clone, Copy)]
 enum Tie {
     /// A point that never moves.
     Fixed,
-    /// A point with prescribed motion, by its number.
+    /// A point with prescribed motion, by index in the model.
     Prescribed(usize),
-    /// A free point, by its place in the network.
+    /// A free point, by index in the network.
     Free(usize),
 }
 
@@ -67,7 +64,7 @@ impl LineEnd {
         LineEnd { tie, motion }
     }
 
-    /// Finds the position of the point at `t` [s], and its velocity half a step of `length` [s] earlier.
+    /// Sets the motion to the position of the point at `t` [s] and its velocity half a step of `length` [s] earlier.
     #[inline]
     fn find(&mut self, points: &[PointState], t: f64, length: f64, held: &impl Fn(usize, f64) -> Kinematics) {
         self.motion = match self.tie {
@@ -88,7 +85,7 @@ impl LineEnd {
 }
 
 impl<K: Kernel> LeapfrogNetwork<K> {
-    /// Scratch for a network; `None` where a line mixes strain measures.
+    /// Allocates the workspace of a network; `None` if a line mixes strain measures.
     pub fn new(model: &Model, network: &Network) -> Option<LeapfrogNetwork<K>> {
         let ends_of = |line: usize| model.lines[line].ends;
         let line = |&line: &usize| {
@@ -121,15 +118,15 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         })
     }
 
-    /// Runs the kernels compiled for any machine of the target or, by default, for the best vector unit of this one.
-    /// Results do not depend on it.
+    /// Selects the kernels compiled for every machine of the target, instead of those for the best vector unit of this machine.
+    /// Results do not depend on this choice.
     pub fn set_portable(&mut self, portable: bool) {
         self.lines
             .iter_mut()
             .for_each(|line| line.layout.set_portable(portable));
     }
 
-    /// Lines and their numbers in the model.
+    /// Lines and their indices in the model.
     fn numbered_lines(&mut self) -> impl Iterator<Item = (&mut LeapfrogLine<K>, usize)> {
         self.lines.iter_mut().zip(self.line_numbers.iter().copied())
     }
@@ -139,7 +136,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         self.numbered_lines()
             .for_each(|(work, line)| work.load(&state.lines[line]));
         if let Some(waves) = &state.waves {
-            // a state with a different history may have a different motion of the water in the same time span
+            // states with different histories may have different wave kinematics over the same time span
             self.numbered_lines()
                 .for_each(|(work, line)| work.layout.load_waves(&waves.lines[line]));
         }
@@ -153,7 +150,6 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         self.load_surroundings(state);
     }
 
-    /// Loads waves and free points.
     fn load_surroundings(&mut self, state: &State) {
         if let Some(waves) = &state.waves {
             self.numbered_lines()
@@ -172,8 +168,8 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// Stores the state after a step of size `steps[0]` [s], the one before being `steps[1]`. Returns whether all nodes have finite positions, and
-    /// speeds that mooring lines reach.
+    /// Stores the state after a step of `steps[0]` [s], preceded by one of `steps[1]` [s]. Returns whether all nodes have finite positions and
+    /// physically possible speeds.
     pub fn store(&mut self, state: &mut State, steps: [f64; 2]) -> bool {
         let mut is_sound = true;
         for (work, line) in self.numbered_lines() {
@@ -190,8 +186,8 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         is_sound
     }
 
-    /// The first line, by its place in the network, and node whose position is not finite, or whose speed no mooring line reaches;
-    /// if there is none, the fastest node of the first line whose energy is not finite.
+    /// First line, by index in the network, and node whose position is not finite or whose speed is physically impossible. If there is none,
+    /// the fastest node of the first line whose energy flow is not finite.
     pub fn broken_node(&self) -> (usize, usize) {
         let mut lines = self.lines.iter().enumerate();
         let broken = lines.find_map(|(line, work)| Some((line, work.layout.broken_node()?)));
@@ -203,7 +199,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
     }
 
     /// Moves the ends of the lines to their points at the start of a communication step, `t` [s], with velocities half a step of `last` [s]
-    /// earlier, like those of the nodes; where they `jump` they are at rest on their new paths.
+    /// earlier, like those of the nodes. Omits lines for which [`Kernel::starts`] is false, unless `jump` is true.
     pub fn set_out(&mut self, t: f64, last: f64, jump: bool, held: &impl Fn(usize, f64) -> Kinematics) {
         for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
             if jump || K::starts(work) {
@@ -214,12 +210,12 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// Restarts viscoelastic segments and the work of the ends of all lines from the present motion of the ends, half the `last` step [s] ago.
+    /// Restarts the viscoelastic segments and the work of the ends of all lines from the current motion of the ends, half the `last` step [s] ago.
     pub fn set_out_anew(&mut self, last: f64) {
         self.lines.iter_mut().for_each(|line| line.set_out_anew(last));
     }
 
-    /// Sets the paths of the winches, by the line they pay out, from `t` [s] on; after [`Self::set_out`].
+    /// Sets the paths of the winches, by line of the model, from the time of `state` on. Requires [`Self::set_out`] before.
     pub fn start_winches(&mut self, state: &State, paths: &[AxisPath], step: Step) {
         for (work, line) in self.numbered_lines() {
             if let Some(path) = paths.get(line) {
@@ -229,7 +225,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// Sets current and waves to those of `t` [s].
+    /// Sets current and waves to those at `t` [s].
     #[inline]
     pub fn set_water(&mut self, model: &Model, t: f64) {
         if model.water_accelerates() {
@@ -241,7 +237,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// Turns the clamps of lines that bend with their supports to `t` [s], and sets the moments on the ends of these lines.
+    /// Sets the directions of the clamps of lines that bend from the rotation of their supports at `t` [s], and the moments on the ends of these lines.
     fn turn_clamps(&mut self, model: &Model, t: f64, held: &impl Fn(usize, f64) -> Kinematics) {
         for (number, work) in self.lines.iter_mut().enumerate() {
             let Some(joints) = &mut work.layout.joints else {
@@ -263,12 +259,12 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// Finds the nodes at the water's surface before the first step.
+    /// Finds the nodes at the water surface before the first step.
     pub fn meet_surface(&mut self) {
         self.lines.iter_mut().for_each(LeapfrogLine::meet_surface);
     }
 
-    /// Takes a step from one time [s] to the next, with the prescribed points of `held`. Returns the number of solutions.
+    /// Takes a step between two times [s]; `held` returns the kinematics of prescribed points. Returns the number of solves.
     pub fn step(
         &mut self,
         model: &Model,
@@ -286,28 +282,27 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         K::step(self, model, [t, after], step, held)
     }
 
-    /// Finds the motion of the points at the ends of the lines at `t` [s], with velocities half a step of `length` [s] earlier.
+    /// Sets the motion of the ends of all lines to the positions of their points at `t` [s] and the velocities half a step of `length` [s] earlier.
     #[inline]
     pub(super) fn find_ends(&mut self, t: f64, length: f64, held: &impl Fn(usize, f64) -> Kinematics) {
         let ends = self.ends.iter_mut().flatten();
         ends.for_each(|end| end.find(&self.points, t, length, held));
     }
 
-    /// Finds the motion of the free points at the ends of the lines.
+    /// Sets the motion of the ends at free points to that of the points.
     pub(super) fn find_free_ends(&mut self) {
         let ends = self.ends.iter_mut().flatten();
         let free = ends.filter(|end| matches!(end.tie, Tie::Free(_)));
         free.for_each(|end| end.find(&self.points, 0.0, 0.0, &|_, _| Kinematics::default()));
     }
 
-    /// Lines and the motion of the points at their ends.
     #[inline]
     pub(super) fn lines_and_ends(&mut self) -> impl Iterator<Item = (&mut LeapfrogLine<K>, [&EndMotion; 2])> {
         let ends = self.ends.iter().map(|[a, b]| [&a.motion, &b.motion]);
         self.lines.iter_mut().zip(ends)
     }
 
-    /// Free points at the ends of a line, by its place in the network and theirs.
+    /// Free points at the ends of a line; line and points by index in the network.
     pub(super) fn free_ends(&self, line: usize) -> [Option<usize>; 2] {
         self.ends[line].map(|end| match end.tie {
             Tie::Free(free) => Some(free),
@@ -315,7 +310,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         })
     }
 
-    /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.
+    /// Energy flow since the state was loaded [J]. The dissipation includes the kinetic energy. Zero without an energy balance.
     pub fn flow(&self) -> Flow {
         let mut flow = self.point_flow;
         self.lines.iter().for_each(|line| flow.add(line.flow()));

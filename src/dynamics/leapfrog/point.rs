@@ -1,4 +1,4 @@
-//! Free points of a network: loads, contact with the seabed, and their step where the tension is explicit.
+//! Free points of a network: loads, contact with the seabed, and their step with explicit tension.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
@@ -13,43 +13,43 @@ use crate::physics::airy::Orbit;
 use crate::physics::friction::Axes;
 use crate::physics::slender::Slender;
 
-/// Loads and mass of a free point: its own, or those of the half node of a line that is tied to it.
+/// Loads and mass of a free point alone, or of the half node of a line tied to it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointLoad {
     /// Force without contact [N].
     pub force: Vector3<f64>,
-    /// Part of it by the resistance of water and damping [N].
+    /// Part of the force due to drag and damping [N].
     pub resistance: Vector3<f64>,
-    /// Part of it by accelerated water [N].
+    /// Part of the force due to accelerated water [N].
     pub froude_krylov: Vector3<f64>,
-    /// Power of the drag on the velocity of the water [W].
+    /// Power of the drag at the velocity of the water [W].
     pub current_power: f64,
-    /// Loss of that power with the change of velocity over the step [N].
+    /// Decrease of that power with the change of velocity over the step [N].
     pub current_power_loss: Vector3<f64>,
-    /// Mass matrix [kg], with the part of the resistance that is implicit.
+    /// Mass matrix [kg], including the implicit part of the resistance.
     pub mass: Matrix3<f64>,
-    /// Contact with the seabed, where there is one.
+    /// Contact with the seabed; `None` if there is none.
     pub contact: Option<ContactSpring>,
 }
 
-/// Spring and damper of the seabed under a point: its own, or that of the half node of a line.
+/// Spring and damper of the seabed under a point alone, or under the half node of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSpring {
     /// Force at zero velocity [N].
     push: f64,
-    /// Loss of the force with the velocity at which the point leaves the seabed [N s/m].
+    /// Decrease of the force with the velocity at which the point leaves the seabed [N s/m].
     resistance: f64,
-    /// Loss of it through the drift alone [N s/m]: it decides whether the point lands.
+    /// Part of this decrease due to the displacement over the step [N s/m]; it determines whether the point lands.
     drift: f64,
 }
 
 impl<K: Kernel> LeapfrogNetwork<K> {
-    /// Motion of the water by waves at a free point, by its place in the network, at `t` [s].
+    /// Wave kinematics at a free point, by index in the network, at `t` [s].
     pub(super) fn waves_at(&self, free: usize, t: f64) -> Option<Orbit> {
         self.waves.get(free).map(|waves| waves.at_point(t))
     }
 
-    /// Moves a free point, by its place in the network, over a step from `t` [s] with a velocity [m/s] under a load and an impulse of friction [N s].
+    /// Moves a free point, by index in the network, over a step from `t` [s] with its new velocity [m/s]; `load` and `friction` [N s] are those of the step.
     pub(super) fn move_point(
         &mut self,
         free: usize,
@@ -78,7 +78,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
 }
 
 impl LeapfrogNetwork<Explicit> {
-    /// Greatest ratio K |v| / M of all nodes and free points at time `t` [s], v relative to the water [1/s].
+    /// Largest ratio K |v| / M of all nodes and free points at time `t` [1/s], with v relative to the water.
     pub(super) fn drag_rate(&self, model: &Model, t: f64) -> f64 {
         let of_lines = self.lines.iter().map(ExplicitLine::drag_rate);
         let of_lines = of_lines.fold(0.0, f64::max);
@@ -96,7 +96,7 @@ impl LeapfrogNetwork<Explicit> {
             .fold(of_lines, f64::max)
     }
 
-    /// Steps the free points from `t` [s].
+    /// Advances the free points over a step from `t` [s].
     pub(super) fn step_points(&mut self, model: &Model, t: f64, step: Step) {
         let mut springs = std::mem::take(&mut self.scratch);
         for free in 0..self.points.len() {
@@ -127,7 +127,7 @@ impl LeapfrogNetwork<Explicit> {
     }
 }
 
-/// Lines, by their place in a network, and ends at a point of it.
+/// Lines, by index in the network, and their ends at a point.
 pub(super) fn attached(model: &Model, network: &Network, point: usize) -> Vec<(usize, End)> {
     let place = |&(line, end): &(usize, End)| {
         let place = network.lines.iter().position(|&l| l == line)?;
@@ -136,9 +136,9 @@ pub(super) fn attached(model: &Model, network: &Network, point: usize) -> Vec<(u
     model.points[point].attached.iter().filter_map(place).collect()
 }
 
-/// Weight, load and water of a free point, by its number and law, at a height [m] and a time [s] that moves at a velocity [m/s]. Over a step of `kick` [s],
-/// where that is given, the change of the drag C|u|u is implicit by its slope C(|u| I + u uᵀ/|u|): trapezoidal, but where it outweighs inertia limited
-/// so that it reverses no velocity. The difference between its buoyancy and that in still water counts as Froude-Krylov force.
+/// Weight, load and water forces on a free point at a height [m] and a time [s], moving at a velocity [m/s]. If a step of `kick` [s] is given, the change
+/// of the drag C|u|u over the step is implicit, with its slope C(|u| I + u uᵀ/|u|): trapezoidal, but limited where it exceeds inertia, so that it does not
+/// reverse a velocity. The difference between the buoyancy and that in still water counts as Froude-Krylov force.
 pub(super) fn load_in_water(
     (model, index, law): (&Model, usize, &FreePoint),
     [height, t]: [f64; 2],
@@ -177,7 +177,7 @@ pub(super) fn load_in_water(
 }
 
 impl ContactSpring {
-    /// The spring and damper under a free point itself; `None` where there are none.
+    /// Spring and damper under a free point alone; `None` without a seabed spring.
     pub(super) fn under_point(law: &FreePoint, seabed: &SeabedBelow, step: Step) -> Option<ContactSpring> {
         let contact = law
             .contact
@@ -194,7 +194,7 @@ impl ContactSpring {
         })
     }
 
-    /// Contact of the half segment of a line over the step, from a force at zero velocity [N] and its loss with velocity [N s/m]; `None` where there is none.
+    /// Contact of the half node of a line over the step, from the force at zero velocity [N] and its decrease with velocity [N s/m]; `None` if there is none.
     pub fn of_line([push, resistance]: [f64; 2]) -> Option<ContactSpring> {
         (resistance > 0.0).then_some(ContactSpring {
             push,
@@ -203,25 +203,24 @@ impl ContactSpring {
         })
     }
 
-    /// Force at zero velocity [N], and its loss with the velocity at which the point leaves the seabed [N s/m].
+    /// Force at zero velocity [N], and its decrease with the velocity at which the point leaves the seabed [N s/m].
     pub fn law(&self) -> [f64; 2] {
         [self.push, self.resistance]
     }
 
-    /// Force on a point that leaves the seabed at `rise` [m/s], in [N]; `None` where it does not push.
+    /// Force [N] on a point that leaves the seabed at `rise` [m/s]; `None` if the seabed does not push.
     pub fn pushes(&self, rise: f64) -> Option<f64> {
         let force = self.push - self.resistance * rise;
         (self.lands(rise) && force > 0.0).then_some(force)
     }
 
-    /// Returns whether the point would be in the seabed after a step with the velocity ż [m/s].
+    /// Returns whether the point would be below the seabed after a step in which it leaves the seabed at `velocity` [m/s].
     fn lands(&self, velocity: f64) -> bool {
         self.push - self.drift * velocity > 0.0
     }
 }
 
 impl PointLoad {
-    /// No load and no mass.
     pub(super) fn none() -> PointLoad {
         let zero = Vector3::zeros();
         PointLoad {
@@ -244,8 +243,8 @@ impl PointLoad {
         self.mass += other.mass;
     }
 
-    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the seabed, which is implicit: friction and the push of the springs
-    /// are iterated until they agree.
+    /// Velocity v_{n+½} of a point that is free along `axes` only, and the impulse of friction. The impulse of the seabed is implicit: friction and
+    /// the push of the springs are iterated to convergence.
     fn kicked(
         &self,
         last: Vector3<f64>,
@@ -298,10 +297,9 @@ impl PointLoad {
     }
 }
 
-/// Rounds of push and friction on a point in a step.
+/// Maximum number of iterations of push and friction on a point in a step.
 const ROUNDS_MAX: usize = 50;
 
-/// Velocity and friction of a point after a step.
 pub(super) struct Kicked {
     /// v_{n+½} [m/s].
     pub velocity: Vector3<f64>,
@@ -309,13 +307,12 @@ pub(super) struct Kicked {
     pub friction: Vector3<f64>,
 }
 
-/// Seabed under a point.
 pub(super) struct SeabedBelow<'a> {
-    /// Height of the point above z = 0; over a seabed with a slope, soundings or friction, height above it along its normal [m].
+    /// Height of the point above z = 0 [m]; for a seabed with a slope, soundings or friction, the height above it along its normal.
     pub height: f64,
-    /// Unit normal of the seabed, upwards.
+    /// Unit normal of the seabed, positive upwards [-].
     pub normal: Vector3<f64>,
-    /// The seabed, where it has a slope, soundings or friction.
+    /// Seabed with a slope, soundings or friction; `None` for a level plane without friction.
     pub seabed: Option<&'a Seabed>,
 }
 
@@ -334,8 +331,9 @@ impl SeabedBelow<'_> {
     }
 }
 
-/// Impulse of the springs on a point that would have the velocity `velocity` [m/s] without it. The sum of springs that
-/// only push is convex in the velocity, so that Newton's method from above finds it in as many iterations as there are springs.
+/// Impulse of the springs [N s] on a point whose velocity without this impulse is `velocity` [m/s]. The sum of springs that
+/// only push is convex in the velocity, so that Newton's method from above converges in as many iterations as there are
+/// springs.
 fn pushed(
     velocity: Vector3<f64>,
     response: Vector3<f64>,
@@ -361,9 +359,9 @@ fn pushed(
     impulse
 }
 
-/// Response of a point along the plane of the seabed.
+/// Response of a point in the plane of the seabed.
 pub(super) struct Sliding {
-    /// Axes of the plane of the seabed, along those of the point that are free.
+    /// Unit vectors that span the plane of the seabed [-].
     axes: [Vector3<f64>; 2],
     /// Inverse compliance of the point in the plane [kg].
     mass: Matrix2<f64>,
@@ -374,7 +372,7 @@ impl Sliding {
         let Axes { along, across, .. } = Axes::unit(normal, normal);
         let axes = [along, across];
         let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
-        // A point on a rail yields along the rail only: other directions are held, and must not be divided by.
+        // A point on a rail yields along the rail only: without an offset, the matrix would be singular.
         let least = 1e-12 * yielding.trace();
         yielding += Matrix2::from_diagonal_element(least);
         Sliding {
@@ -383,7 +381,7 @@ impl Sliding {
         }
     }
 
-    /// Change of the impulse `friction` that stops the point, or brings the impulse to its limit [N s]; `velocity` [m/s] is the one without friction.
+    /// Change of the impulse `friction` that stops the point or brings the impulse to its `limit` [N s]; `velocity` [m/s] is that without friction.
     pub(super) fn friction(
         &self,
         velocity: Vector3<f64>,

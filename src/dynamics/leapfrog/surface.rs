@@ -1,32 +1,32 @@
-//! The water's surface over the line of a leapfrog: between two steps, weight, drag and mass of the nodes that it crosses are set
-//! to their values there, so that the kernels need no special case.
+//! Water surface over a line of a leapfrog. Between two steps, weight, drag and mass of the surface-piercing nodes are set to the values for
+//! their submergence, so that the kernels need no special case.
 
 use crate::math::lanes::{LANES, Lanes};
 use crate::math::striping::{Column, Field, Striping};
 use crate::model::{Dry, Line, Nodes, Surface};
 
-/// A line that may pierce the surface, as it lies at t_n.
+/// A line that may pierce the surface, and its submergence at t_n.
 #[derive(Debug, Clone)]
 pub struct SurfaceNow {
     surface: Surface,
     nodes: Nodes,
-    /// Greatest radius of the segments at the nodes [m].
+    /// Largest radius of the segments adjacent to the nodes [m].
     radius: Column,
-    /// Height of the water at the nodes, and the least of it [m].
+    /// Height of the water surface at the nodes, and its minimum [m].
     level: Vec<f64>,
     lowest: f64,
     dry: Vec<Dry>,
-    /// Buoyancy that the nodes would lack in calm water [N], where there are waves.
+    /// Buoyancy that the nodes would lose in still water [N]; used in waves.
     calm: Vec<f64>,
     /// Work of the difference in buoyancy between waves and still water since the state was loaded [J].
     pub lifted: f64,
-    /// Dry parts at t_{n−1} [-].
+    /// Dry fractions of the nodes at t_{n−1} [-].
     before: Vec<f64>,
-    /// Whether a node is dry, or was at t_{n−1}.
+    /// True if any node is partly dry, or was at t_{n−1}.
     crosses: bool,
 }
 
-/// A node at t_n.
+/// Properties of a node at t_n.
 #[derive(Debug, Clone, Copy)]
 pub struct NodeNow {
     /// Weight less buoyancy [N].
@@ -40,7 +40,7 @@ pub struct NodeNow {
 }
 
 impl SurfaceNow {
-    /// Surface over a line; `None` where it does not meet the surface.
+    /// Allocates the surface over a line; `None` if the line does not pierce the surface.
     pub fn new(line: &Line, striping: Striping) -> Option<SurfaceNow> {
         let surface = line.surface.clone()?;
         let count = line.segment_count() + 1;
@@ -61,7 +61,7 @@ impl SurfaceNow {
         })
     }
 
-    /// Sets the height of the water at the nodes [m].
+    /// Sets the height of the water surface at the nodes [m].
     pub fn set_level(&mut self, level: impl Fn(usize) -> f64) {
         self.lowest = f64::INFINITY;
         for (i, height) in self.level.iter_mut().enumerate() {
@@ -70,7 +70,7 @@ impl SurfaceNow {
         }
     }
 
-    /// Finds the dry parts of a line whose nodes are at `position` [m].
+    /// Computes dry fractions and lost buoyancy of nodes at `position` [m].
     pub fn find(&mut self, striping: Striping, position: &Field) {
         let submerged = self.top(striping, position) <= self.lowest;
         if submerged && !self.crosses {
@@ -99,7 +99,7 @@ impl SurfaceNow {
         }
     }
 
-    /// Finds the buoyancy that nodes at `position` [m] would lack in calm water.
+    /// Computes the buoyancy that nodes at `position` [m] would lose in still water.
     pub fn find_calm(&mut self, striping: Striping, position: &Field) {
         self.calm.fill(0.0);
         if self.top(striping, position) <= 0.0 {
@@ -115,7 +115,7 @@ impl SurfaceNow {
         }
     }
 
-    /// Upper bound of the height of the line's highest part over still water, with its nodes at `position` [m].
+    /// Upper bound on the height of the line above still water [m], for nodes at `position` [m].
     fn top(&self, striping: Striping, position: &Field) -> f64 {
         let last = striping.rows();
         let rows = position.rows(last).iter().zip(self.radius.rows(last));
@@ -124,12 +124,12 @@ impl SurfaceNow {
         (0..LANES).map(|lane| top[lane]).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Adds the work of the difference in buoyancy between waves and still water on node `i` as it rises by `way` [m].
+    /// Adds the work of the difference in buoyancy between waves and still water on node `i`, which rises by `way` [m].
     pub fn lift(&mut self, i: usize, way: f64) {
         self.lifted += (self.calm[i] - self.dry[i].weight) * way;
     }
 
-    /// Nodes that are dry, or were before the last [`Self::find`].
+    /// Indices of the nodes that are partly dry, or were before the last [`Self::find`].
     pub fn crossed(&self) -> impl Iterator<Item = usize> + '_ {
         let count = if self.crosses { self.dry.len() } else { 0 };
         let nodes = self.dry[..count].iter().zip(&self.before).enumerate();
@@ -152,7 +152,7 @@ impl SurfaceNow {
         }
     }
 
-    /// Buoyancy that a node lacks, in calm water where there are waves [N].
+    /// Buoyancy that a node loses at t_n [N]; in waves, that which it would lose in still water.
     pub fn lack(&self, i: usize, waves: bool) -> f64 {
         if waves { self.calm[i] } else { self.dry[i].weight }
     }

@@ -1,17 +1,17 @@
-//! Polynomials through the newest samples, and the degree with the least expected error.
+//! Polynomials through the newest samples, and the degree with the smallest expected error.
 
 use super::extrapolation::{
     DEGREE_MAX, Extrapolation, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms, VelocityTerms,
 };
 use crate::math::lanes::{LANES, Lanes};
 
-/// Ratio of the error of another degree to that of the present one, below which it replaces it [-]. On harmonic motions any value
-/// from 0.3 to 0.9 except ½, which symmetry makes exact, separates rounding from motion; 0.45 predicts them best.
+/// Ratio of the error of another degree to that of the current one, below which it replaces the current one [-]. On harmonic motions any
+/// value from 0.3 to 0.9 separates rounding from motion, except ½, which occurs exactly by symmetry; 0.45 predicts them best.
 const BETTER: f64 = 0.45;
-/// Ratio of errors for a change to and from degree 0, so that a point that comes to rest, jumps or starts moving is
-/// followed at once [-].
+/// The same for a change to and from degree 0 [-], so that a point that comes to rest, jumps or starts moving is followed
+/// at once.
 const BETTER_AT_REST: f64 = 0.9;
-/// Factors on the errors of the degrees that are not kept: with degree 0 kept, and with another [-].
+/// Factors on the errors of all degrees except the current one [-]: where that is 0, and where it is another.
 const HANDICAPS: [Terms; 2] = [
     [1.0 / BETTER_AT_REST; DEGREE_MAX + 1],
     [1.0 / BETTER_AT_REST, 1.0 / BETTER, 1.0 / BETTER, 1.0 / BETTER],
@@ -19,15 +19,14 @@ const HANDICAPS: [Terms; 2] = [
 /// Ratio of the step to the time between the first two samples, above which they do not determine a line [-].
 const UNJUDGED_MAX: f64 = 2.0;
 
-/// Divided differences of the samples in use.
 pub(super) struct Differences {
     /// Differences of the newest samples, by order from 0 on.
     newest: [Lanes; DEGREE_MAX + 1],
     /// Difference of the next order.
     next: Lanes,
-    /// Errors at the newest samples of polynomials of every degree through the samples before.
+    /// Errors at the newest samples of the polynomials of each degree through earlier samples.
     miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
-    /// Factors on the errors for the end of the step, where the host does not keep its step.
+    /// Factors from these errors to those at the end of the step; `None` on equal steps.
     stretch: Option<[Terms; JUDGED]>,
 }
 
@@ -50,7 +49,7 @@ impl Differences {
         let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = extrapolation.reach;
         let miss = |next: Lanes, reach: f64| over(next, reach).abs();
         let newest = miss(ps, r3);
-        // where a sample is skipped, there is no other difference of fourth order
+        // where a sample is skipped, there is no second difference of fourth order
         let before = if extrapolation.all { miss(qt, s3) } else { newest };
         Differences {
             newest: [a, p, pq, pr],
@@ -63,7 +62,7 @@ impl Differences {
         }
     }
 
-    /// Degrees as given, or those that replace them because their expected error is clearly less; of the `known`
+    /// Updates and returns the degrees: each is kept unless the expected error of another is clearly smaller. Uses the `known`
     /// newest samples.
     #[inline(always)]
     pub(super) fn degree(&self, known: usize, degree: &mut Lanes) -> Lanes {
@@ -81,7 +80,7 @@ impl Differences {
         let moves = above(kept, 1).choose(factor(BETTER), factor(BETTER_AT_REST));
         let other = error[1].min(error[2]).min(error[3]) * moves;
         let other = other.min(error[0] * factor(BETTER_AT_REST));
-        // another would have been better, or nothing moves and the degree assumes motion
+        // another degree is clearly better, or the point rests and its degree is not 0
         let rests = kept - error[0] * Lanes::splat(f64::MAX);
         if (own - other).any_positive() || rests.any_positive() {
             (0..LANES).for_each(|axis| degree[axis] = self.judge(SAMPLES_MAX, kept[axis], axis));
@@ -89,13 +88,13 @@ impl Differences {
         *degree
     }
 
-    /// [`Differences::degree`] of any number of samples, any times apart.
+    /// [`Differences::degree`] for any number of samples at any times.
     #[cold]
     #[inline(never)]
     fn degree_of_any(&self, known: usize, degree: &mut Lanes) -> Lanes {
         if known <= 2 {
-            // two samples cannot assess a line, but a host that moves a point usually keeps moving it, within that
-            // limit
+            // two samples cannot assess degree 1, but a host that moves a point usually continues to do so: degree 1 is
+            // used unless the step is too long
             let far = |stretch: &[Terms; JUDGED]| stretch[0][0] > UNJUDGED_MAX;
             let line = known == 2 && !self.stretch.as_ref().is_some_and(far);
             return Lanes::splat(f64::from(u8::from(line)));
@@ -104,7 +103,7 @@ impl Differences {
         *degree
     }
 
-    /// Degree along an axis with the least expected error, the present one being `degree`.
+    /// Degree along an axis with the smallest expected error; `degree` is the current one.
     #[cold]
     #[inline(never)]
     fn judge(&self, known: usize, degree: f64, axis: usize) -> f64 {
@@ -125,7 +124,7 @@ impl Differences {
         let handicaps = HANDICAPS[usize::from(kept > 0)];
         for (other, handicap) in handicaps.into_iter().enumerate().take(highest + 1) {
             let handicapped = error(other) * handicap;
-            // a point at rest has no degree to keep
+            // a point at rest always gets degree 0
             if handicapped < least || (other == 0 && handicapped == 0.0) {
                 (best, least) = (other, handicapped);
             }
@@ -133,7 +132,7 @@ impl Differences {
         best as f64
     }
 
-    /// Newton's polynomials of these degrees, whose terms have the values `basis`.
+    /// Sums of Newton's polynomials of these degrees; `basis` holds the values of the terms.
     #[inline(always)]
     pub(super) fn sum<const N: usize>(&self, degree: Lanes, basis: &[f64; N]) -> Lanes {
         let term = |k: usize| {
@@ -143,8 +142,7 @@ impl Differences {
         (term(0) + term(1)) + (term(2) + term(3))
     }
 
-    /// Velocity at the end of the step of polynomials of these degrees; those of the highest degree have one term more. `basis` holds the
-    /// velocities of the terms.
+    /// Velocities of polynomials of these degrees; those of the highest degree have one more term. `basis` holds the velocities of the terms.
     #[inline(always)]
     pub(super) fn velocity(&self, degree: Lanes, basis: &VelocityTerms) -> Lanes {
         let next = self.next * Lanes::splat(basis[DEGREE_MAX + 1]);

@@ -1,4 +1,4 @@
-//! Times of a host's samples and the factors of predictions that follow from them, shared by all points that the host
+//! Times of a host's samples, and the factors of predictions that follow from them, shared by all points that the host
 //! moves.
 
 use std::array::from_fn;
@@ -10,52 +10,51 @@ use crate::scene::Reconstruction;
 
 /// Highest degree of the extrapolated polynomial [-].
 pub(super) const DEGREE_MAX: usize = 3;
-/// Samples by which a degree is assessed: a single one can be matched by chance at an inflection of the motion.
+/// Number of samples by which a degree is assessed: a single one can be matched by chance at an inflection of the motion.
 pub(super) const JUDGED: usize = 2;
-/// Samples kept.
 pub(super) const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
-/// Ratio of the longest step in the record to the distance of two samples, above which only one of them counts [-]. A
-/// step h amplifies noise ε in samples δ apart to ε(h/δ)ᵏ; but one sample fewer is one degree fewer. On `oc3_catenary`, 12
-/// makes the error in tension up to four times as large where steps vary by a factor of 20; 100 gains nothing there,
-/// and amplifies a noise of 1 µm three times as much in a step of 3 s after some of 0.05 s.
+/// Ratio of the longest step in the record to the time between two samples, above which only one of them is used [-]. A step
+/// h amplifies noise ε in samples δ apart to ε(h/δ)ᵏ; but one sample fewer is one degree fewer. On `oc3_catenary`, a value
+/// of 12 makes the error in tension up to four times as large where steps vary by a factor of 20. A value of 100 does not
+/// reduce it, and amplifies a noise of 1 µm three times as much in a step of 3 s after steps of 0.05 s.
 const STEP_RATIO_MAX: f64 = 30.0;
-/// Number of steps up to which samples that lie this far apart count in any case [-]: a host that continues in short
-/// steps after a long one then soon has a complete record.
+/// Time between two samples, in steps, from which both are always used [-]: a host that continues in short steps after a
+/// long one then soon has a complete record.
 const STEPS_PASSED_MAX: f64 = 4.0;
-/// Rounding of a host's times over its steps [-].
+/// Tolerance for rounding of a host's times, relative to its steps [-].
 const ROUNDING: f64 = 1e-9;
 
 /// Samples of four axes, newest first.
 pub(super) type Samples = [Lanes; SAMPLES_MAX];
 
-/// Times of a host's samples, as far back as predictions need: the same for all that it moves.
+/// Times of a host's samples, as far back as predictions need, shared by all that the host moves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// Newest first; the first `count` are in use [s].
     times: [f64; SAMPLES_MAX],
     count: usize,
-    /// Time by which all errors are removed [s].
+    /// Time by which the error of the path is removed [s].
     made_up: f64,
-    /// Time between samples [s] of the `even` newest pairs of neighbours, except for rounding.
+    /// Time between samples [s], equal except for rounding in the `even` newest pairs of neighbours.
     gap: f64,
     even: usize,
 }
 
-/// Position of a sample's time relative to the samples before.
+/// Order of a sample's time relative to the earlier samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Order {
     /// Later.
     After,
-    /// Later, in place of the newest one before, which lies too close to the one before that.
+    /// Later; the sample replaces the previous one, which is too close to the one before it.
     Instead,
-    /// The same instant again: the newer sample counts.
+    /// At the same time; the sample replaces the previous one.
     Again,
-    /// Earlier: the samples before are discarded.
+    /// Earlier; all previous samples are discarded.
     Before,
 }
 
 impl Order {
-    /// Samples with one more, newest first.
+    /// Returns the samples with a new one, newest first.
     #[inline(always)]
     pub(super) fn push<T: Copy>(self, samples: &[T; SAMPLES_MAX], sample: T) -> [T; SAMPLES_MAX] {
         let [a, b, c, d, e, f] = *samples;
@@ -78,15 +77,15 @@ impl Clock {
         }
     }
 
-    /// Times between the newest sample, the one before and the next [s], where all are known and in order.
+    /// Times from the second newest sample to the newest, and from the third to the second [s]; `None` unless all are known and in order.
     pub fn gaps(&self) -> Option<[f64; 2]> {
         let [newest, last, second, ..] = self.times;
         let gaps = [newest - last, last - second];
         (self.count > 2 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
     }
 
-    /// Adds the sample of a step from a time [s] of a length [s], taken at its end with [`Reconstruction::Interpolate`], else at its start.
-    /// `extrapolation` receives everything that the paths need to continue over the step; its old contents are not read.
+    /// Adds the sample of a step of length `step` [s] from `time` [s], taken at its end with [`Reconstruction::Interpolate`], else at its start. Sets
+    /// `extrapolation` for the continuation of the paths over the step, whatever its previous content.
     pub fn add_sample(
         &mut self,
         time: f64,
@@ -113,7 +112,7 @@ impl Clock {
         extrapolation.span = [time, step, 1.0 / step];
     }
 
-    /// Adds a time [s] that is one step [s] after the newest and one [s] before the next.
+    /// Adds a time [s], `last_step` [s] after the newest one and `step` [s] before the next.
     fn follow(&mut self, time: f64, last_step: f64, step: f64) -> Order {
         if self.crowds(last_step.max(step)) {
             (self.gap, self.even) = (time - self.times[1], 1);
@@ -128,7 +127,7 @@ impl Clock {
         Order::After
     }
 
-    /// Returns whether the newest two samples lie too close together for both to count in a step [s].
+    /// Returns whether the newest two samples are too close together for both to be used in a step [s].
     fn crowds(&self, step: f64) -> bool {
         if self.count < 2 || (self.even == SAMPLES_MAX - 1 && self.keeps(step)) {
             return false;
@@ -137,13 +136,13 @@ impl Clock {
         self.times[0] - self.times[1] < least * (1.0 - ROUNDING)
     }
 
-    /// The longest time between two samples, or the step [s] if that is longer.
+    /// Longest time between two successive samples [s], or the step [s] if it is longer.
     fn longest(&self, step: f64) -> f64 {
         let pairs = self.times[..self.count].windows(2);
         pairs.map(|pair| pair[0] - pair[1]).fold(step, f64::max)
     }
 
-    /// Returns whether a step [s] is as long as the ones before, but for rounding.
+    /// Returns whether a step [s] is as long as the previous ones, except for rounding.
     fn keeps(&self, step: f64) -> bool {
         (step - self.gap).abs() <= ROUNDING * self.gap
     }
@@ -152,7 +151,7 @@ impl Clock {
 /// Factors of a prediction that follow from the times of the samples, evaluated once for all paths of a communication
 /// step.
 ///
-/// The samples of a host that keeps its step and the end of the step are taken as exactly equidistant, regardless of
+/// If the host keeps its step, the samples and the end of the step are taken as exactly equidistant, regardless of
 /// rounding. The factors are then the same for every step.
 #[derive(Debug, Clone)]
 pub struct Extrapolation {
@@ -160,31 +159,32 @@ pub struct Extrapolation {
     pub(super) reconstruction: Reconstruction,
     /// Start of the step [s], its length [s] and 1/length [1/s].
     pub(super) span: [f64; 3],
-    /// Shortest and longest time in which the present error of the path is removed [s], where these are more than the
+    /// Shortest and longest time in which the current error of the path is removed [s]; `None` if it is removed within the
     /// step.
     pub(super) late: Option<[f64; 2]>,
     /// Number of samples by which a degree can be assessed.
     pub(super) count: usize,
-    /// True if all samples count: else the second newest is skipped.
+    /// True if all samples are used; otherwise the second newest is skipped.
     pub(super) all: bool,
     /// True if the host keeps its step.
     pub(super) even: bool,
-    /// Unit of the times that follow [s], and its inverse [1/s]: the step where it is kept.
+    /// Unit of the times in the following fields [s], and its inverse [1/s]: the step if the host keeps it, else 1 s.
     pub(super) unit: [f64; 2],
-    /// 1/(t_i − t_{i+k}) of the samples that count.
+    /// 1/(t_i − t_{i+k}) of the samples that are used.
     pub(super) inverse: Reciprocals,
-    /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by place j and order k − 1.
+    /// Products (t_j − t_{j+1}) … (t_j − t_{j+k}), by sample j and k − 1.
     pub(super) reach: [Terms; JUDGED],
-    /// Products of the times from the newest k samples to the end of the step over these: 1 where the host keeps its step.
+    /// Products of the times from the newest k samples to the end of the step, divided by `reach`.
     pub(super) stretch: [Terms; JUDGED],
-    /// Newton's polynomials of the newest samples at the end of the step, their slopes there and at the newest sample, and their integrals over it.
+    /// Terms of Newton's polynomial of the newest samples at the end of the step, their slopes there and at the newest sample, and their integrals over
+    /// the step.
     pub(super) value: VelocityTerms,
     pub(super) slope: VelocityTerms,
     pub(super) slope_before: VelocityTerms,
     pub(super) integral: Terms,
 }
 
-/// 1/(t_i − t_{i+k}) by place i, for the orders k from 1 on. Written out, so that the compiler unrolls the loops over
+/// 1/(t_i − t_{i+k}) by sample i, for the orders k from 1 to 4. Separate fields allow the compiler to unroll the loops over
 /// them.
 #[derive(Debug, Clone)]
 pub(super) struct Reciprocals {
@@ -195,7 +195,6 @@ pub(super) struct Reciprocals {
 }
 
 impl Reciprocals {
-    /// Reciprocals of these times.
     fn new(t: &[f64; SAMPLES_MAX]) -> Reciprocals {
         Reciprocals {
             first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
@@ -206,16 +205,15 @@ impl Reciprocals {
     }
 }
 
-/// Returns 1 for steps of one length [s], 0 where the longest is at least twice the shortest, and linearly between [-].
+/// Returns 1 for equal steps [s], 0 if the longest is at least twice the shortest, and a linear function of their ratio in between [-].
 pub(super) fn evenness(steps: &[f64]) -> f64 {
     let shortest = steps.iter().fold(f64::INFINITY, |least, &step| least.min(step));
     let longest = steps.iter().fold(0.0, |most: f64, &step| most.max(step));
     (2.0 - longest / shortest).clamp(0.0, 1.0)
 }
 
-/// A number for every term of a polynomial.
 pub(super) type Terms = [f64; DEGREE_MAX + 1];
-/// The same with one term more, for velocities; 0 on uneven steps.
+/// [`Terms`] for velocities, with one more term; it is 0 on uneven steps.
 pub(super) type VelocityTerms = [f64; DEGREE_MAX + 2];
 
 impl Extrapolation {
@@ -264,7 +262,7 @@ impl Extrapolation {
         self.count = self.usable(clock.count);
         let times = self.pick(&clock.times);
         let known = clock.count - usize::from(!self.all);
-        // unused entries get times that divide nothing by zero; they are not read
+        // unused entries get distinct times, which avoid a division by zero; they are not read
         let t: [f64; SAMPLES_MAX] = from_fn(|i| match i < known {
             true => times[i],
             false => times[known - 1] - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE),
@@ -272,7 +270,7 @@ impl Extrapolation {
         self.evaluate(&t, start + step);
     }
 
-    /// Extrapolation from samples at the times `t` to an end.
+    /// Evaluates the factors for samples at the times `t` and a step that ends at `end`.
     fn evaluate(&mut self, t: &[f64; SAMPLES_MAX], end: f64) {
         self.inverse = Reciprocals::new(t);
         let [h, e1, e2, e3] = [end - t[0], end - t[1], end - t[2], end - t[3]];
@@ -299,7 +297,7 @@ impl Extrapolation {
         ];
     }
 
-    /// Samples that count; the last ones are not in use where there are fewer.
+    /// Returns the samples that are used, newest first, followed by unused values.
     pub(super) fn pick<T: Copy>(&self, &[a, b, c, d, e, f]: &[T; SAMPLES_MAX]) -> [T; SAMPLES_MAX] {
         match self.all {
             true => [a, b, c, d, e, f],
@@ -307,14 +305,14 @@ impl Extrapolation {
         }
     }
 
-    /// Number of samples by which a degree can be assessed, with only the `newest` of all available.
+    /// Number of samples by which a degree can be assessed, if only the `newest` ones are available.
     #[inline(always)]
     pub(super) fn known(&self, newest: usize) -> usize {
         self.count.min(self.usable(newest))
     }
 
-    /// The same if there are no more. Where one of all is skipped, the highest degree is assessed by one sample
-    /// instead of two.
+    /// The same for a record of `newest` samples. If one sample of a complete record is skipped, the highest degree is
+    /// assessed by one sample instead of two.
     fn usable(&self, newest: usize) -> usize {
         let passed_over = !self.all && (2..SAMPLES_MAX).contains(&newest);
         newest - usize::from(passed_over)

@@ -1,16 +1,16 @@
-//! Prediction of a motion from displacements that are noisy.
+//! Prediction of a motion from noisy displacements.
 //!
-//! A cubic is fitted to all samples x_k so far by least squares, the weight of a sample falling by the factor θ with each later one: the
+//! A cubic is fitted to all previous samples x_k by least squares. The weight of a sample decreases by the factor θ with each later one: this is the
 //! fading-memory polynomial filter. With z = (x, hẋ, h²ẍ/2, h³x⃛/6) predicted for the next sample, one step h after the last, and its residual r,
 //!
 //! z ← z + g r,   g = (1 − θ⁴, ⅙(1−θ)²(11 + 14θ + 11θ²), (1−θ)³(1+θ), ⅙(1−θ)⁴).
 //!
 //! θ = 0 is the cubic through the last four samples, the highest degree of `Smooth`, with an error of O(h⁴); a θ near 1 averages over about
-//! 4/(1 − θ) samples. White noise of variance σ² causes residuals of variance σ² (1 + a(θ)), where a falls with θ; the motion causes residuals
-//! that rise with h⁴x⁗/(1−θ)⁴. Filters with several θ run side by side, and for each axis the one with the least mean square of its residuals gives
-//! the prediction. On smooth motion that is θ = 0, by orders of magnitude; on noisy motion the scatter of the samples decides. The path leads from
+//! 4/(1 − θ) samples. White noise of variance σ² causes residuals of variance σ² (1 + a(θ)), where a decreases with θ; the motion causes residuals
+//! that increase with h⁴x⁗/(1−θ)⁴. Filters with several θ run in parallel. For each axis, the filter with the smallest mean square residual gives
+//! the prediction. On smooth motion this is θ = 0, by orders of magnitude; on noisy motion the scatter of the samples decides. The path leads from
 //! its end to the prediction, and does not return to the noisy sample. With θ = 0, the residual is the fourth difference of the samples, and the
-//! velocity that of the polynomial through five of them, as in `Smooth`.
+//! velocity is that of the polynomial through five of them, as in `Smooth`.
 //!
 //! Source: Morrison (1969), Introduction to Sequential Smoothing and Prediction, chapter 13 (the filter); the choice of θ is derived here.
 //! Valid for steps of about equal length: z is scaled to a different step, but the gains are those of equal steps.
@@ -20,9 +20,9 @@ use serde::{Deserialize, Serialize};
 use super::extrapolation::evenness;
 use crate::math::lanes::{LANES, Lanes};
 
-/// Memories θ of the filters [-].
+/// Memory factors θ of the filters [-].
 const MEMORIES: [f64; 8] = [0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92];
-/// Part of the mean square of the residuals that is kept from sample to sample [-].
+/// Fraction of the mean square residual that is kept from sample to sample [-].
 const KEPT: f64 = 0.9;
 
 /// Coefficient of the fourth difference in the velocity one step after the newest sample, times the step [-]: 1 + ½ + ⅓ + ¼.
@@ -38,7 +38,6 @@ pub struct Fading {
     time: f64,
     /// Step to which the cubics are scaled [s].
     step: f64,
-    /// Cubic of each memory at the last sample.
     cubics: [Cubic; MEMORIES.len()],
     /// Mean squares of the residuals [m², rad²].
     residuals: [Lanes; MEMORIES.len()],
@@ -56,8 +55,8 @@ impl Fading {
         }
     }
 
-    /// Takes a sample [m, rad] at a time [s]; returns position [m, rad] and velocity [m/s, rad/s] a step [s] later. A sample that is not later than the
-    /// last one restarts the filters at rest.
+    /// Adds a sample [m, rad] at a time [s]; returns the predicted positions [m, rad] and velocities [m/s, rad/s] one step [s] later. A sample that is not
+    /// later than the last one restarts the filters at rest.
     pub fn predict(&mut self, time: f64, sample: Lanes, step: f64) -> [Lanes; 2] {
         let passed = time - self.time;
         if passed <= 0.0 {
@@ -96,7 +95,7 @@ impl Fading {
     }
 }
 
-/// Gains of a memory [-].
+/// Gains of the filter with a memory factor [-].
 fn gains(memory: f64) -> [f64; 4] {
     let rest = 1.0 - memory;
     [
@@ -107,13 +106,13 @@ fn gains(memory: f64) -> [f64; 4] {
     ]
 }
 
-/// A cubic for a step that is longer by a factor [-].
+/// Rescales a cubic to a step that is longer by a factor [-].
 fn scaled([x, v, a, j]: Cubic, by: f64) -> Cubic {
     let by = Lanes::splat(by);
     [x, by * v, by * by * a, by * by * by * j]
 }
 
-/// A cubic one step later.
+/// Shifts a cubic by one step.
 fn shifted([x, v, a, j]: Cubic) -> Cubic {
     let (two, three) = (Lanes::splat(2.0), Lanes::splat(3.0));
     [x + v + a + j, v + two * a + three * j, a + three * j, j]
@@ -125,7 +124,8 @@ mod tests {
 
     const STEP: f64 = 0.05;
 
-    /// RMS errors of position [m] and velocity [m/s] predicted for a sine of 2 m in 10 s with noise of an amplitude [m], every `step` [s].
+    /// RMS errors of predicted position [m] and velocity [m/s], for a sine of amplitude 2 m and period 10 s with noise of RMS `noise` [m], sampled every
+    /// `step` [s].
     fn errors(noise: f64, step: f64) -> [f64; 2] {
         let rate = std::f64::consts::TAU / 10.0;
         let mut fading = Fading::at_rest(-step, Lanes::splat(0.0));
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn noise_of_samples_is_not_amplified_by_the_extrapolation() {
         let [position, velocity] = errors(1e-4, STEP);
-        // a cubic through four samples has 8.3 times the noise, and 12 times over the step in its velocity
+        // a cubic through four samples amplifies the noise 8.3 times, and 12/step times in its velocity
         assert!(
             position < 2.5e-4 && velocity < 2.0 * 1e-4 / STEP,
             "{position} {velocity}"

@@ -1,16 +1,15 @@
-//! Claims on the paths of a host's motion.
+//! Tests of the paths of coupled points.
 
 use super::*;
 use approx::assert_relative_eq;
 
-/// Sample from the host of one axis of a point at one time.
+/// Sample from the host for one axis at one time.
 struct Sample {
     time: f64,
     position: f64,
     velocity: Option<f64>,
 }
 
-/// A path and its clock.
 struct Guided(Clock, AxisPath, Extrapolation);
 
 impl Guided {
@@ -54,7 +53,7 @@ fn sample(time: f64, position: f64) -> Sample {
 fn an_extrapolation_does_not_depend_on_those_before() {
     let (mut clock, mut kept, mut time) = (Clock::new(0.0), Extrapolation::none(), 0.0);
     for k in 0..200 {
-        // equal steps, short ones between them, the same instant again and leaps back
+        // equal steps with short ones between them, a repeated time, and a step back
         let step = if k % 31 == 30 { 0.007 } else { 0.05 };
         let mut fresh = Extrapolation::none();
         clock
@@ -87,7 +86,7 @@ fn steps_that_are_equal_but_for_rounding_are_extrapolated_as_equal_ones() {
             assert_eq!(path.2.even, noise < 1e-9);
             path.at(10.0).value
         });
-        // the last one follows from its times
+        // the last path is extrapolated with its actual times
         assert_relative_eq!(ends[1], ends[0], epsilon = 1e-9);
         assert_relative_eq!(ends[2], ends[0], epsilon = 1e-4);
     }
@@ -99,7 +98,7 @@ fn axes_are_extrapolated_as_each_would_be_alone() {
     let mut together = AxesPath::at_rest([0.0; 3]);
     let mut alone = [0.0; 3].map(AxisPath::at_rest);
     for k in 0..300 {
-        // the second axis without its velocity; leaps in between
+        // the second axis has no velocity; steps of 0.1 s except for single jumps in time
         let time = 0.1 * f64::from(k) + if k % 50 > 25 { 0.03 } else { 0.0 };
         let places = [position(time), position(0.4 * time), position(2.0 * time)];
         let rates = [Some(velocity(time)), None, Some(2.0 * velocity(2.0 * time))];
@@ -117,7 +116,7 @@ fn axes_are_extrapolated_as_each_would_be_alone() {
     }
 }
 
-/// Greatest distance between path and truth after a start-up, at a communication step h.
+/// Maximum distance between path and exact motion after the start-up, for a communication step h.
 fn path_error(h: f64, with_velocity: bool, reconstruction: Reconstruction) -> f64 {
     let mut path = Guided::at_rest(0.0, position(0.0));
     let mut worst: f64 = 0.0;
@@ -145,7 +144,7 @@ fn a_short_step_after_a_long_one_does_not_leap_back_to_the_host() {
     let mut path = Guided::at_rest(0.0, 0.0);
     let mut time = 0.0;
     for step in [10.0, 1e-3, 1e-3, 2.0, 1e-3, 4.0, 4.0, 4.0, 4.0, 4.0] {
-        // at rest for 10 s in all samples, and a metre off
+        // the first step of 10 s starts at rest, and the path ends it a metre off
         let there = if time > 0.0 { 1.0 } else { 0.0 };
         path.extend(sample(time, there), step, Reconstruction::Smooth);
         let fastest = (0..=100)
@@ -211,8 +210,8 @@ fn position_and_velocity_are_continuous_at_communication_points() {
     }
 }
 
-/// Degrees chosen for a motion of amplitude 1 m and a period [s] that grows over 20 s, sampled every `step` [s]
-/// at times rounded by `noise` [-].
+/// Degrees chosen for a harmonic motion with a period [s] whose amplitude grows to 1 m over 20 s, sampled every `step` [s]
+/// at times with a relative error of `noise` [-].
 fn degrees(period: f64, step: f64, noise: f64) -> Vec<usize> {
     let motion = |t: f64| {
         let grown = 0.5 * (1.0 - (std::f64::consts::PI * t.min(20.0) / 20.0).cos());
@@ -278,7 +277,7 @@ fn a_jump_is_not_overshot() {
     assert_relative_eq!(path.at(2.0).value, 1.0, epsilon = 1e-12);
 }
 
-/// Greatest distance of position, velocity and acceleration from the truth after a start-up, in steps that repeat.
+/// Maximum errors of position, velocity and acceleration after the start-up, for a repeated sequence of steps.
 fn path_errors(steps: &[f64], with_velocity: bool) -> [f64; 3] {
     let mut path = Guided::at_rest(0.0, position(0.0));
     let (mut time, mut worst) = (0.0, [0.0_f64; 3]);
@@ -328,8 +327,8 @@ fn irregular_steps_converge_at_the_order_of_equal_ones() {
     }
 }
 
-/// Errors of the third degree on equal steps of a length [s] with an error of position: of the velocity at their ends, and of the
-/// acceleration between these.
+/// Errors of the third degree on equal steps [s], from its position error: of the position, of the velocity at the ends of the steps, and of
+/// the acceleration between them.
 fn errors_of_third_degree(position: f64, step: f64, with_velocity: bool) -> [f64; 3] {
     let factor = if with_velocity { 720.0 / 251.0 } else { 25.0 / 12.0 };
     let velocity = factor * position / step;

@@ -2,7 +2,7 @@
 //!
 //! Section properties that a line type leaves open follow from `solid_section`, a circle of diameter d with Young's modulus E and
 //! Poisson's ratio ν: EI = E π d⁴/64, GJ = E/(2(1 + ν)) π d⁴/32, GA = κ E/(2(1 + ν)) π d²/4 with κ = 6(1 + ν)/(7 + 6ν), rotary inertia
-//! m d²/16 about a diameter and m d²/8 about the axis. Fibres lower EI alone, by `fibre_law`.
+//! m d²/16 about a diameter and m d²/8 about the axis. Fibres reduce only EI, by `fibre_law`.
 //!
 //! Source of κ: Cowper (1966), J. Appl. Mech. 33, 335-340, table 1.
 
@@ -25,7 +25,7 @@ struct Part {
     rotary_inertia: Vector3<f64>, // about the three directors [kg m]
 }
 
-/// Beam properties of line `index`; `None` where it is a cable. `laws` and the `lengths` of elements [m] are those of
+/// Beam properties of line `index`; `None` if it is a cable. `laws` and the `lengths` of elements [m] are those of
 /// its sections.
 pub(super) fn build(
     scene: &Scene,
@@ -124,7 +124,7 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
         .map_or(0.0, |r| rayleigh::coefficients(r.ratios, r.frequencies).stiffness);
     Ok(Part {
         damping: SectionLaw {
-            axial: law.axial_damping, // parts of Rayleigh's and of a ratio included
+            axial: law.axial_damping, // including Rayleigh damping and a damping ratio
             shear: slowed * section.shear,
             bending: slowed * section.bending,
             torsion: slowed * section.torsion,
@@ -134,7 +134,7 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
     })
 }
 
-/// Ratio of a solid section's bending stiffness to that of the section [-].
+/// Ratio of the bending stiffness of a solid section to that of its fibres [-].
 fn strands(line_type: &LineType) -> f64 {
     let fibres = line_type.fibres.unwrap_or(1) as f64;
     match line_type.fibre_law {

@@ -1,13 +1,13 @@
-//! Lines that can meet the seabed; the others are built without contact.
+//! Lines that can reach the seabed; the others are built without contact.
 //!
-//! Lines reach below the lowest point at their ends that is not free, by their length, stretched by half. Lines between free
-//! points reach below the lowest such point of all lines connected to them, by the length of all of these. Vessels
+//! A line reaches below its lowest end that is not at a free point, by its length, stretched by half. A line between free
+//! points reaches below the lowest such end of all lines connected to it, by the total length of these lines. Vessels
 //! are assumed to keep their height. Other points that a host or a path moves, and lines that may be released, can
 //! reach any place.
 
 use crate::scene::{Line, Names, Point, PointKind, Scene};
 
-/// Stretched over unstretched length assumed for the reach of a line [-].
+/// Ratio of stretched to unstretched length that is assumed for the reach of a line [-].
 const STRETCH_MAX: f64 = 1.5;
 
 /// Returns whether a line could ever touch the seabed.
@@ -31,7 +31,7 @@ pub(super) fn may_touch_seabed(scene: &Scene, names: &Names, line: &Line) -> boo
     !seabed.is_level() || moves || reaches || tied.iter().any(parts)
 }
 
-/// Least heights of the points at the ends of lines that are not free [m]; none for one that may reach any place.
+/// Minimum heights [m] of the points at the ends of lines that are not free; `None` for a point that may reach any place.
 fn held_heights(names: &Names, lines: &[&Line]) -> Vec<Option<f64>> {
     let ends = lines.iter().flat_map(|line| [&line.from, &line.to]);
     let points = ends.filter_map(|name| names.point(name));
@@ -39,7 +39,7 @@ fn held_heights(names: &Names, lines: &[&Line]) -> Vec<Option<f64>> {
     held.map(|point| height(names, point)).collect()
 }
 
-/// Least height of a point that is fixed, or carried by a vessel, which keeps its height [m]; none for one that may
+/// Minimum height [m] of a point that is fixed, or carried by a vessel, which keeps its height; `None` for a point that may
 /// reach any place.
 fn height(names: &Names, point: &Point) -> Option<f64> {
     let [x, y, z] = point.position;
@@ -75,7 +75,7 @@ fn tied<'a>(scene: &'a Scene, names: &Names, line: &'a Line) -> Vec<&'a Line> {
     tied
 }
 
-/// Greatest unstretched length of a line [m].
+/// Maximum unstretched length of a line [m].
 fn length_max(line: &Line) -> f64 {
     let sections: f64 = line.sections.iter().map(|section| section.length).sum();
     sections + line.winch.as_ref().map_or(0.0, |winch| winch.length_max)

@@ -1,37 +1,36 @@
-//! Depth at which a line rests in a seabed whose contact is softened to the mesh.
+//! Depth at which a line rests in a seabed whose contact is softened to suit the mesh.
 //!
-//! A line of weight w under the horizontal tension H on springs with the deflection δ under its weight leaves the seabed
-//! smoothly, over the length λ = √(Hδ/w). With u counted from the point where the springs lose contact, their level
-//! at z = δ above the line at rest, the free part is
+//! A line of weight w under the horizontal tension H, on springs that deflect by δ under its weight, leaves the seabed
+//! smoothly over the length λ = √(Hδ/w). With u measured from the point where the springs lose contact, at
+//! z = δ above the line at rest, the free part is
 //!
 //!   z = δ + (δ/λ)u + (w/2H)u² = (w/2H)(u + λ)² + δ/2:
 //!
-//! the catenary over a rigid seabed that lies δ/2 above the line at rest. A line therefore rests δ/2 deep, and its
-//! suspended part is right to the next order in the mesh; a line that rests on the seabed surface hangs δ/2 too high,
-//! which costs 0.2 % of tension with 40 elements.
-//! Towards an end that is fixed on the seabed the line rises to it, over a length R of a few elements, so that the end
-//! is not pulled down: the line follows a smooth step as long as R > √3 λ, and λ is an element or less of the meshes
-//! in use. R is three elements: with five the step reaches the touchdown of a line with a short part on the seabed, and
-//! the error of tension is 1.4 times as great on oc3_catenary moved slowly (n = 14 to 40); with two it is hardly
-//! smaller. A line that bends follows the step only where that is longer than the length ℓ = (4EI/k)^¼ over which a
-//! beam on springs of k per length settles, and its curvature is that of the step. R then grows up to five elements,
-//! as ℓ approaches an element.
+//! the catenary over a rigid seabed δ/2 above the line at rest. A line therefore rests δ/2 below the seabed, and its
+//! suspended part is then accurate to the next order in the mesh; for a line at rest on the seabed surface, the suspended
+//! part is δ/2 too high, an error of 0.2 % in tension with 40 elements.
+//! Towards an end that is fixed on the seabed the line rises to the seabed over a length R of a few elements, so that the
+//! end is not pulled down: the line follows a smooth step as long as R > √3 λ, and λ is at most one element of the meshes
+//! in use. R is three elements: with five, the step reaches the touchdown of a line with a short part on the seabed, and
+//! the tension error is 1.4 times as great on a slowly moved oc3_catenary (n = 14 to 40); with two, it is hardly
+//! smaller. A line with bending stiffness follows the step only if the step is longer than the length ℓ = (4EI/k)^¼ over
+//! which a beam on springs of stiffness k per length settles; its curvature is then that of the step. R grows up to five
+//! elements as ℓ approaches an element.
 //!
-//! Source: beam without bending stiffness on Winkler's foundation, here solved for the level; the tests below and
-//! `tests/statics/equilibrium.rs` hold the gain against the elastic catenary.
+//! Source: beam without bending stiffness on Winkler's foundation, here solved for the level.
 
 use crate::model::{Contact, Line, Nodes, Point, Role};
 use crate::physics::seabed::REGULARISED_PENETRATION;
 
-/// Static compression of the contact at which the line rests [-].
+/// Depth at which the line rests, relative to the static compression of the contact [-].
 const SUNK: f64 = 0.5;
-/// Elements over which the line rises to a held end [-].
+/// Number of elements over which the line rises to an end on the seabed [-].
 const RISE: f64 = 3.0;
-/// The same over ℓ where the line bends, and at most over an element.
+/// Length of the rise relative to ℓ for a line with bending stiffness, where ℓ counts up to an element [-].
 const RISE_BENT: f64 = 5.0;
 
-/// Lowers the level from which softened contact pushes, from the one at which a line would rest on the seabed to the one
-/// that makes its suspended part right.
+/// Lowers the level below which softened contact acts, from the level at which a line would rest on the seabed to the level
+/// that makes its suspended part accurate.
 pub(super) fn sink(line: &mut Line, points: &[Point]) {
     if let Some(winch) = &mut line.winch {
         sink(winch.longest_mut(), points);
@@ -69,7 +68,7 @@ pub(super) fn sink(line: &mut Line, points: &[Point]) {
     }
 }
 
-/// Greatest bending stiffness EI of the segments of a line [N m²].
+/// Maximum bending stiffness EI of the segments of a line [N m²].
 fn greatest_stiffness(line: &Line) -> f64 {
     let cable = line.bending.iter().flat_map(|bending| &bending.stiffness);
     let beam = line.beam.iter().flat_map(|beam| &beam.elements);
@@ -77,7 +76,7 @@ fn greatest_stiffness(line: &Line) -> f64 {
     cable.copied().chain(beam).fold(0.0, f64::max)
 }
 
-/// Returns whether a held point lies on the seabed, to the resolution of an element of `length` [m].
+/// Returns whether a point that is not free lies on the seabed, to the resolution of an element of `length` [m].
 fn lies_on(contact: &Contact, point: &Point, length: f64) -> bool {
     let held = !matches!(point.role, Role::Free(_));
     let height = point.reference.z - contact.height_under(point.reference);

@@ -9,19 +9,19 @@ use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Catenary, FlatSeabed};
 use crate::scene::{self, PointKind, Scene, metres, percent};
 
-/// Error of the curvature at a clamp times the square of the number of elements over λ = √(EI/T) there [-], where the tension becomes 1.4 times that at
-/// rest ([`crate::physics::bending`]).
+/// Error of the curvature at a clamp times the square of the number of elements per λ = √(EI/T) there [-], where the tension becomes 1.4 times that
+/// at rest ([`crate::physics::bending`]).
 const CURVATURE_ERROR: f64 = 0.02;
-/// Elements over √(EI/T) at a clamp, least and most [-].
+/// Minimum and maximum number of elements per √(EI/T) at a clamp [-].
 const CLAMP_ELEMENTS: [f64; 2] = [0.6, 8.0];
-/// Length of an element at a clamp over √(EI/T), up to which the curvature there is that of a line within some per cent [-].
+/// Maximum length of an element at a clamp, relative to √(EI/T), for which the curvature there is within a few per cent of that of the line [-].
 const CLAMP_LENGTH_MAX: f64 = 2.0;
-/// Elements over √(EI/T) at the touchdown, where the moment rises without a step [-].
+/// Number of elements per √(EI/T) at the touchdown, where the moment rises without a step [-].
 const TOUCHDOWN_ELEMENTS: f64 = 2.0;
-/// Length that is finely meshed at a clamp and around the touchdown, over √(EI/T) [-].
+/// Length of the fine mesh at a clamp and on both sides of the touchdown, relative to √(EI/T) [-].
 const BENDS: f64 = 2.0;
-/// Displacement of the touchdown to both sides where the motion of the ends is not given, over the length of the line
-/// [-].
+/// Displacement of the touchdown to both sides that is assumed if the motion of the ends is not given, relative to the length
+/// of the line [-].
 const TOUCHDOWN_SHARE: f64 = 0.025;
 /// Number of instants at which a given motion is evaluated [-].
 const MOMENTS: usize = 400;
@@ -29,8 +29,8 @@ const MOMENTS: usize = 400;
 /// Fraction of the length of a line below which two arc lengths count as equal [-].
 const ROUNDING: f64 = 1e-9;
 
-/// Elements of every line [-]: those of a line alone for the longest of lines that meet at free points, shares by
-/// length for the others.
+/// Number of elements of every line [-]: the given number, otherwise that of a single line for the longest of the lines that meet at free
+/// points, and a share in proportion to length for the others.
 pub(super) fn elements(scene: &Scene) -> Vec<f64> {
     let alone = alone(scene);
     let pairs = lengths(scene).into_iter().zip(longest(scene));
@@ -43,7 +43,7 @@ pub(super) fn elements(scene: &Scene) -> Vec<f64> {
         .collect()
 }
 
-/// Length of every line over that of the longest one that it meets at free points [-].
+/// Length of every line relative to the longest line that it is connected to by free points [-].
 pub(super) fn shares(scene: &Scene) -> Vec<f64> {
     let pairs = lengths(scene).into_iter().zip(longest(scene));
     pairs.map(|(own, longest)| own / longest).collect()
@@ -70,7 +70,7 @@ fn lengths(scene: &Scene) -> Vec<f64> {
     scene.lines.iter().map(length).collect()
 }
 
-/// For every line the length of the longest of those that it meets at free points, itself included [m].
+/// Length [m] of the longest line that every line is connected to by free points, itself included.
 fn longest(scene: &Scene) -> Vec<f64> {
     let mut longest = lengths(scene);
     let free: Vec<Vec<usize>> = scene
@@ -96,14 +96,14 @@ fn longest(scene: &Scene) -> Vec<f64> {
     longest
 }
 
-/// Elements of a line alone [-].
+/// Number of elements of a single line [-].
 fn alone(scene: &Scene) -> f64 {
     let solver = &scene.solver;
     let given = solver.elements.map(|elements| elements as f64);
     given.unwrap_or_else(|| line_elements(solver.tolerance))
 }
 
-/// Places where a line that bends needs short elements, according to its closed-form catenary.
+/// Places where a line with bending stiffness needs short elements, according to its closed-form catenary.
 pub(super) fn refinements(
     scene: &Scene,
     line: &scene::Line,
@@ -174,7 +174,7 @@ pub(super) fn refinements(
     wanted
 }
 
-/// Seabed below a place [m], by the soundings where there are some; none without a seabed.
+/// Flat seabed for the catenary below a place [m], at the local height of the seabed; `None` without a seabed.
 fn seabed_below(scene: &Scene) -> impl Fn(Vector3<f64>) -> Option<FlatSeabed> {
     let seabed = scene.seabed.as_ref();
     let shape = seabed.and_then(super::seabed);
@@ -191,7 +191,7 @@ fn seabed_below(scene: &Scene) -> impl Fn(Vector3<f64>) -> Option<FlatSeabed> {
     }
 }
 
-/// Closed-form catenaries by `hang` between the ends of a line at the reference and during the scene's motion, and whether a motion is given.
+/// Closed-form catenaries by `hang` between the ends of a line, at their reference positions and during the scene's motion; true if a motion is given.
 fn shapes(
     scene: &Scene,
     ends: [&Point; 2],
@@ -209,7 +209,7 @@ fn shapes(
     (shapes.into_iter().flatten().collect(), known)
 }
 
-/// Places of a point [m] during the scene's motion; only its reference where none is given.
+/// Positions of a point [m] during the scene's motion; only its reference position if there is no motion.
 fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
     let place = |t: f64| match &point.role {
         Role::Coupled { motion: Some(motion) } | Role::Prescribed(motion) => {
@@ -227,7 +227,7 @@ fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
     places.unwrap_or_else(|| vec![point.reference])
 }
 
-/// The closed-form catenary of a line over a chord from end A [m], where it has one.
+/// Closed-form catenary of a line with a chord [m] from end A, if there is one.
 fn hang(
     line: &scene::Line,
     laws: &[LineLaw],

@@ -1,4 +1,4 @@
-//! Waves of the water, and the masses of the Froude-Krylov force on lines.
+//! Waves of a scene.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use crate::physics::airy::{Component, Waves};
 use crate::physics::spectrum::Spectrum;
 use crate::scene::{Scene, Sea, WaveComponents};
 
-/// The waves of a scene, where it has some.
+/// Waves of a scene, if it has any.
 pub(super) fn waves(scene: &Scene) -> Option<Waves> {
     let waves = scene.water.as_ref()?.waves.as_ref()?;
     let seas = waves.seas.iter().zip(0..);

@@ -1,4 +1,4 @@
-//! Computed against measured values: one disc per condition, and the diagonal of equal values.
+//! Figure of computed against measured values: one disc per condition, and the diagonal of equal values.
 
 use super::axis::{Axis, ends};
 use super::chart::{Chart, Curve, Stroke};
@@ -16,7 +16,7 @@ pub struct Series {
     pub pairs: Vec<[f64; 2]>,
 }
 
-/// Figure as SVG; `quantity` names the measured quantity and its unit. `None` without values.
+/// Draws the figure as SVG; `quantity` names the measured quantity and its unit. `None` without values.
 pub fn agreement(title: &str, quantity: &str, series: &[Series]) -> Option<String> {
     let values = series.iter().flat_map(|one| one.pairs.iter().flatten());
     let (low, high) = ends(values.copied());

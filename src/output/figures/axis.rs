@@ -1,12 +1,12 @@
-//! Axes: their range, their ticks and the unit they are labelled in.
+//! Axes: their range, their ticks and the unit of their labels.
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
 use super::chart::Curve;
 
-/// Target number of ticks on an axis; one more or fewer may fit better.
+/// Target number of ticks on an axis; one more or one fewer may fit better.
 const TICKS: f64 = 7.0;
-/// A range narrower than this part of its values is drawn as flat: it is round-off or convergence, not motion.
+/// Ratio of a range to the magnitude of its values below which it is drawn as flat: it is due to round-off or convergence, not motion.
 const FLAT: f64 = 1e-5;
 
 /// Scale of an axis.
@@ -15,11 +15,11 @@ pub enum Scale {
     /// Linear.
     #[default]
     Linear,
-    /// Decimal logarithms, which the curves already hold.
+    /// Decimal logarithmic; the values of the curves are logarithms.
     Decades,
 }
 
-/// Least and greatest of some values; without values the former is greater.
+/// Least and greatest of some values; without values, the least exceeds the greatest.
 pub(super) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| {
         (min.min(value), max.max(value))
@@ -136,7 +136,7 @@ impl ValueFormatter<f64> for Axis {
     }
 }
 
-/// Logarithms of the powers of ten from `min` to `max`, and of twice and five times them where these are few.
+/// Logarithms of the powers of ten from `min` to `max`, and of two and five times these if they are few.
 fn decade_ticks(min: f64, max: f64) -> Vec<f64> {
     let within: &[f64] = if max - min > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let decades = min.floor() as i32..=max.ceil() as i32;
@@ -144,7 +144,7 @@ fn decade_ticks(min: f64, max: f64) -> Vec<f64> {
     ticks.filter(|tick| (min..=max).contains(tick)).collect()
 }
 
-/// Text of 10^x: plain from 10⁻³ to 10³, beyond as a power.
+/// Text of 10^x: plain from 10⁻³ to 10³, otherwise as a power.
 fn power_of_ten(x: f64) -> String {
     let value = 10.0_f64.powf(x);
     let decade = (x + 1e-9).floor();
@@ -181,7 +181,7 @@ fn label(value: f64, digits: usize) -> String {
     }
 }
 
-/// Decimal places that a step needs.
+/// Number of decimal places of a step.
 fn decimals(step: f64) -> usize {
     (0..15)
         .find(|&digits| {
@@ -191,7 +191,7 @@ fn decimals(step: f64) -> usize {
         .unwrap_or(15) as usize
 }
 
-/// A multiple of the newton in which `greatest` [N] has one to four digits before the decimal point: its symbol and its size [N].
+/// Returns symbol and size [N] of the multiple of the newton in which `greatest` [N] has one to four digits before the decimal point.
 pub fn force_unit(greatest: f64) -> (&'static str, f64) {
     match greatest {
         v if v >= 1e7 => ("MN", 1e6),

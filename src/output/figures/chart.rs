@@ -31,7 +31,7 @@ const SAMPLE: u32 = 26;
 const TEXT: u32 = 13;
 /// Text size of labels at points [px].
 const LABEL: f64 = 12.0;
-/// Mean width of a letter over the text size, generous [-].
+/// Mean width of a letter relative to the text size, rounded up generously [-].
 const LETTER: f64 = 0.58;
 /// Least and greatest height of a chart to scale, without title and legend [px].
 const TO_SCALE_HEIGHTS: [f64; 2] = [150.0, 560.0];
@@ -64,9 +64,9 @@ pub enum Stroke {
 pub struct Curve {
     /// Points, in the units of the axes.
     pub points: Vec<[f64; 2]>,
-    /// Name in the legend; none where empty.
+    /// Name in the legend; no entry if empty.
     pub name: String,
-    /// Labels at the points; none where empty.
+    /// Labels at the points; no labels if empty.
     labels: Vec<String>,
     behind: bool,
     colour: [u8; 3],
@@ -74,7 +74,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A curve without a name.
+    /// Creates a curve without a name.
     pub fn new(points: Vec<[f64; 2]>, colour: [u8; 3], stroke: Stroke) -> Curve {
         Curve {
             points,
@@ -86,19 +86,19 @@ impl Curve {
         }
     }
 
-    /// The same with a name for the legend.
+    /// Returns the curve with a name for the legend.
     pub fn named(mut self, name: &str) -> Curve {
         self.name = name.to_string();
         self
     }
 
-    /// Returns the curve with labels at its points, in their order.
+    /// Returns the curve with labels at its points, in order.
     pub fn labelled(mut self, labels: Vec<String>) -> Curve {
         self.labels = labels;
         self
     }
 
-    /// Returns the curve without values that are not finite, and with few points, so that a figure stays small.
+    /// Returns the curve without non-finite values and with few points, so that a figure stays small.
     fn thinned(mut self) -> Curve {
         self.points = Trace::of(&self.points).points();
         self
@@ -145,7 +145,7 @@ fn fine_f(pixels: f64) -> u32 {
 }
 
 impl Chart {
-    /// A chart `width` [px] wide whose frame with axis labels is `height` [px] high.
+    /// Creates a chart of a given width [px]; `height` [px] is that of the frame with its axis labels.
     pub fn new(title: String, x: Axis, y: Axis, curves: Vec<Curve>, width: u32, height: u32) -> Chart {
         Chart {
             title,
@@ -157,7 +157,7 @@ impl Chart {
         }
     }
 
-    /// A chart with one scale in both directions: the axis that has room to spare is widened.
+    /// Creates a chart with the same scale in both directions: the axis with spare room is widened.
     pub fn to_scale(title: String, mut x: Axis, mut y: Axis, curves: Vec<Curve>) -> Chart {
         let frame_width = f64::from(super::WIDTH - LABELS_LEFT - MARGIN);
         let [lowest, highest] = TO_SCALE_HEIGHTS;
@@ -169,7 +169,7 @@ impl Chart {
         Chart::new(title, x, y, curves, super::WIDTH, height)
     }
 
-    /// The chart as an SVG document.
+    /// Returns the chart as an SVG document.
     pub fn svg(&self) -> String {
         stacked_svg(std::slice::from_ref(self))
     }
@@ -194,7 +194,7 @@ impl Chart {
         self.draw_frame(area)
     }
 
-    /// The title, cut where it would leave the figure.
+    /// Title, shortened to fit into the figure.
     fn short_title(&self) -> String {
         let room = f64::from(self.width - LABELS_LEFT - MARGIN) / (LETTER * 15.0);
         if self.title.chars().count() as f64 <= room {
@@ -261,8 +261,7 @@ impl Chart {
         self.draw_labels(area, &frame, |point| place(point).into())
     }
 
-    /// Draws labels at points, within a frame and clear of each other, of marks and, where there is room, of bold
-    /// curves.
+    /// Draws labels at points, within the frame and clear of each other, of marks and, if there is room, of bold curves.
     fn draw_labels(&self, area: &Area, frame: &Patch, place: impl Fn(&[f64; 2]) -> [i32; 2]) -> DrawResult {
         let marks = self.curves.iter().filter(|c| c.stroke == Stroke::Marks);
         let marks = marks.flat_map(|curve| &curve.points);
@@ -301,7 +300,7 @@ impl Chart {
     }
 }
 
-/// Words on white, so that curves do not run through them.
+/// Draws a label on white, so that curves do not run through its text.
 fn draw_label(area: &Area, label: &str, colour: [u8; 3], patch: &Patch) -> DrawResult {
     let (left, top) = area.get_base_pixel();
     let [low, high] = [patch.low, patch.high].map(|[x, y]| (x - left, y - top));
@@ -313,7 +312,7 @@ fn draw_label(area: &Area, label: &str, colour: [u8; 3], patch: &Patch) -> DrawR
     area.draw_text(label, &text, (low.0 + fine(1), middle))
 }
 
-/// Places of the entries of a legend of this width [px]: left edge [px] and row.
+/// Positions of the entries of a legend of a given width [px]: left edge [px] and row.
 fn entries<'a>(curves: impl Iterator<Item = &'a Curve>, wide: u32) -> Vec<(&'a Curve, u32, u32)> {
     let (mut left, mut row) = (LABELS_LEFT, 0);
     let mut places = Vec::new();
@@ -334,7 +333,7 @@ fn text_style(pixels: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// Style of text that begins at a point and is vertically centred on it.
+/// Style of text that begins at a point and is centred on it vertically.
 fn text_behind(pixels: f64, colour: &RGBColor) -> TextStyle<'_> {
     let text = text_style(pixels).color(colour);
     text.pos(Pos::new(HPos::Left, VPos::Center))
@@ -367,12 +366,12 @@ fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult 
     area.draw_text(&curve.name, &text, (fine(left + SAMPLE + 6), y))
 }
 
-/// Charts below one another as one SVG document.
+/// Stacks charts in one SVG document.
 pub fn stacked_svg(charts: &[Chart]) -> String {
     grid_svg(&[], charts, 1)
 }
 
-/// Charts of one size in `columns` columns, below the legend that they share, as one SVG document.
+/// Arranges charts of one size in `columns` columns below a common legend, in one SVG document.
 pub fn grid_svg(legend: &[Curve], charts: &[Chart], columns: usize) -> String {
     let rows = || charts.chunks(columns.max(1));
     let sum = |row: &[Chart]| row.iter().map(|chart| chart.width).sum();
@@ -384,7 +383,7 @@ pub fn grid_svg(legend: &[Curve], charts: &[Chart], columns: usize) -> String {
     let height: u32 = head + rows().map(row_height).sum::<u32>();
     let mut svg = String::new();
     draw_grid(&mut svg, &legend, rows(), [width, height, head]).expect("drawing into a string does not fail");
-    // The drawing is FINE times as large as the figure; round joins keep a sharp peak from growing a spike.
+    // The drawing is FINE times as large as the figure; round joins prevent spikes at sharp peaks.
     let end_of_head = svg.find('>').map_or(0, |end| end + 1);
     let mut head = String::new();
     write!(

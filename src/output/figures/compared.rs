@@ -1,4 +1,4 @@
-//! Curves that are compared: histories of several runs, closed forms, shapes; charts one below the other.
+//! Comparisons of curves, such as histories of several runs, closed forms and shapes, in stacked charts.
 
 use super::axis::Axis;
 use super::chart::{Chart, Curve, Stroke, stacked_svg};
@@ -12,16 +12,16 @@ pub enum Look {
     Line,
     /// Dashes in dark grey: the reference of the comparison.
     Reference,
-    /// Discs in a colour of their own.
+    /// Discs in a separate colour.
     Discs,
-    /// A pale line in the colour of the series before, without a name.
+    /// A pale line in the colour of the previous series, without a name.
     Trace,
 }
 
 /// One curve.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
-    /// Name in the legend; none where empty.
+    /// Name in the legend; no entry if empty.
     pub name: String,
     /// Points, in the units of the panel's axes.
     pub points: Vec<[f64; 2]>,
@@ -36,13 +36,13 @@ pub struct Panel {
     pub title: String,
     /// Names and units of the horizontal and the vertical axis.
     pub axes: [String; 2],
-    /// True if both axes have one scale.
+    /// True if both axes have the same scale.
     pub to_scale: bool,
     /// Curves.
     pub series: Vec<Series>,
 }
 
-/// The charts one below the other as SVG. `None` without a finite point in each.
+/// Stacks the charts in an SVG document. `None` without charts, or if a chart has no finite point.
 pub fn compared(panels: &[Panel]) -> Option<String> {
     let charts: Option<Vec<Chart>> = panels.iter().map(chart).collect();
     charts

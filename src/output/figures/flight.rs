@@ -5,7 +5,7 @@ use super::axis::{Axis, ends, plain};
 use super::chart::{self, Chart, Curve, Stroke};
 use super::{Record, TRACES_MAX, colour, in_time, with_title};
 
-/// A view is left out where the beams spread less than this part of their longest spread [-].
+/// Ratio of the spread along an axis to the greatest spread below which views along this axis are omitted [-].
 const VIEW_RATIO: f64 = 0.01;
 /// First and last colour of the shapes.
 const TIMES: [[u8; 3]; 2] = [[176, 205, 228], [0, 66, 112]];
@@ -13,8 +13,8 @@ const TIMES: [[u8; 3]; 2] = [[176, 205, 228], [0, 66, 112]];
 /// Names of the axes.
 const AXES: [&str; 3] = ["x [m]", "y [m]", "z [m]"];
 
-/// Shapes at equal intervals of time, from pale to dark, with the paths of both ends, in every pair of axes along which the flight spreads, at most two.
-/// `None` where nothing flies.
+/// Shapes at equal intervals of time, from pale to dark, with the paths of both ends, in at most two pairs of axes along which the beams spread.
+/// `None` if the run is not a free flight.
 pub(super) fn shapes(record: &Record) -> Option<String> {
     record.course.is_flight().then_some(())?;
     let spread = [0, 1, 2].map(|axis| {
@@ -70,7 +70,7 @@ fn view_chart(record: &Record, [across, up]: [usize; 2]) -> Chart {
     Chart::to_scale(title, x, y, curves)
 }
 
-/// A colour between the first and the last [-].
+/// Colour between the first and the last, by the share of the last [-].
 fn mixed(share: f64) -> [u8; 3] {
     let [first, last] = TIMES;
     std::array::from_fn(|i| {
@@ -78,7 +78,7 @@ fn mixed(share: f64) -> [u8; 3] {
     })
 }
 
-/// Energy by kind and angular momentum in time. `None` where nothing flies.
+/// Energy by kind and angular momentum in time. `None` if the run is not a free flight.
 pub(super) fn balance(record: &Record) -> Option<String> {
     record.course.is_flight().then_some(())?;
     let energy = [

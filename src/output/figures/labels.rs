@@ -1,7 +1,7 @@
 //! Placement of labels at points, so that none covers another label or a mark.
 //!
-//! The places to the right and left of the point are tried first, then those above and below it, at increasing distance. A label takes the first place that
-//! is free and inside the frame; if none is, the one that covers least. Labels placed before it stay.
+//! The positions to the right and left of the point are tried first, then those above and below it, at increasing distance. A label takes the first
+//! position that is free and inside the frame. If there is none, it takes the one that covers least. Labels that are already placed do not move.
 
 /// A rectangle: its least and its greatest x and y [px].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,12 +38,12 @@ impl Patch {
     }
 }
 
-/// Words and the point that they belong to.
+/// Text size and point of a label.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Label {
     /// The point [px].
     pub point: [i32; 2],
-    /// Width and height of the words [px].
+    /// Width and height of the text [px].
     pub size: [i32; 2],
 }
 
@@ -60,10 +60,10 @@ pub(super) fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patc
     })
 }
 
-/// Rows that a label may move away from its point.
+/// Greatest number of rows by which a label may move away from its point.
 const ROWS: i32 = 6;
 
-/// Placement of labels in a frame, `gap` [px] from their points and clear of `marks`.
+/// Places labels in a frame, `gap` [px] from their points and clear of `marks`.
 pub(super) fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
     let mut taken = marks.to_vec();
     for label in labels {
@@ -71,14 +71,14 @@ pub(super) fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32)
             let covered: i64 = taken.iter().map(|other| place.common(other)).sum();
             covered + place.area() - place.common(frame)
         };
-        // of equal ones, the first
+        // the first of equally good positions
         let best = places(label, gap).min_by_key(cover);
         taken.extend(best);
     }
     taken.split_off(marks.len())
 }
 
-/// Candidate places of a label, best first.
+/// Candidate positions of a label, best first.
 fn places(label: &Label, gap: i32) -> impl Iterator<Item = Patch> {
     let Label {
         point: [x, y],
@@ -88,7 +88,7 @@ fn places(label: &Label, gap: i32) -> impl Iterator<Item = Patch> {
     let rows = (0..=ROWS).flat_map(|row| [-row, row]);
     rows.flat_map(move |row| {
         let sides = [gap + half[0], -gap - half[0], 0];
-        // straight over and under the point only where that is clear of it
+        // in the row of the point, only to its sides
         let sides = sides.into_iter().filter(move |side| *side != 0 || row.abs() > 0);
         sides.map(move |side| Patch::around([x + side, y + row * height], half))
     })
@@ -109,7 +109,7 @@ mod tests {
         Label { point, size }
     }
 
-    /// Marks at the points of labels, and places of these labels.
+    /// Marks at the points of labels, and positions of these labels.
     fn stand(points: &[[i32; 2]]) -> (Vec<Patch>, Vec<Patch>) {
         let marks: Vec<Patch> = points.iter().map(|p| Patch::around(*p, [4, 4])).collect();
         let labels: Vec<Label> = points.iter().map(|p| label(*p)).collect();

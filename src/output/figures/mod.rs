@@ -1,7 +1,7 @@
-//! Figures of a run as SVG: profile against the static catenary, plan, tension, end force and bending in time; of
-//! beams in free flight their shapes and conserved quantities.
+//! Figures of a run as SVG: profile against the static catenary, plan, tension, end force and bending in time; for beams in free flight, their shapes
+//! and conserved quantities.
 //!
-//! Text is left to the viewer's sans-serif font: no font files are needed to draw.
+//! Text uses the viewer's sans-serif font, so that drawing needs no font files.
 
 pub mod agreement;
 pub mod axis;
@@ -24,7 +24,7 @@ const HISTORY_HEIGHT: u32 = 340;
 const TRACES_MAX: usize = 24;
 /// Greatest number of lines with a dashed level of their static catenary in the tension history: more would hide the histories.
 const LEVELS_MAX: usize = 3;
-/// A system wider than this part of its length across its principal direction gets a plan [-].
+/// Ratio of the width of a system across its principal direction to its length above which a plan is drawn [-].
 const PLAN_RATIO: f64 = 0.01;
 
 /// Okabe and Ito's palette without its yellow, which is too pale for a line: distinguishable with every kind of
@@ -54,7 +54,7 @@ pub(super) const STEMS: [&str; 8] = [
     "profile", "plan", "tension", "force", "bending", "waves", "flight", "balance",
 ];
 
-/// Every figure for which the record has data, as file stem and SVG.
+/// Draws every figure for which the record has data; returns file stems and SVG.
 pub fn all(record: &Record) -> Vec<(&'static str, String)> {
     if record.course.is_flight() {
         let figures = [
@@ -78,8 +78,8 @@ fn drawn(figures: Vec<(&'static str, Option<String>)>) -> Vec<(&'static str, Str
     figures.filter_map(|(stem, svg)| Some((stem, svg?))).collect()
 }
 
-/// Lines seen from the side, on one scale in both directions: the closed-form catenary dashed, the equilibrium, the last
-/// shape, and faint traces of the motion between them. `None` without frames.
+/// Lines seen from the side, with the same scale in both directions: the closed-form catenary dashed, the equilibrium, the last shape, and faint
+/// traces of the motion between them. `None` without frames.
 pub fn profile(record: &Record) -> Option<String> {
     let (cos, sin) = principal_direction(record);
     let view = |[x, y, z]: [f64; 3]| [x * cos + y * sin, z];
@@ -94,7 +94,7 @@ pub fn profile(record: &Record) -> Option<String> {
     Some(Chart::to_scale(title, x, y, curves).svg())
 }
 
-/// Lines seen from above. `None` where they lie in one vertical plane, or there are no frames.
+/// Lines seen from above. `None` if they lie in one vertical plane or there are no frames.
 pub fn plan(record: &Record) -> Option<String> {
     let (cos, sin) = principal_direction(record);
     let spread = |along: [f64; 2]| {
@@ -148,7 +148,7 @@ pub fn force(record: &Record) -> Option<String> {
     (!charts.is_empty()).then(|| chart::stacked_svg(&charts))
 }
 
-/// Greatest curvature and bending moment along every line that bends, in time. `None` where none does.
+/// Greatest curvature and bending moment along every line that bends, in time. `None` if no line bends.
 pub fn bending(record: &Record) -> Option<String> {
     let histories = |result: &str| of_lines(record, result, |_| Stroke::Bold);
     let curves = histories("curvature_max");
@@ -163,7 +163,7 @@ pub fn bending(record: &Record) -> Option<String> {
     Some(chart::stacked_svg(&[curvature, moment]))
 }
 
-/// Histories of a result of every line that has one, by its number.
+/// Curves of a result for every line that has it; `stroke` returns the stroke for the index of a line.
 fn of_lines(record: &Record, result: &str, stroke: impl Fn(usize) -> Stroke) -> Vec<Curve> {
     let lines = record.lines.iter().enumerate();
     let curves = lines.filter_map(|(index, line)| {
@@ -208,7 +208,7 @@ fn with_title(what: &str, title: &str) -> String {
     }
 }
 
-/// Curves of the lines' shapes through a view of space. `None` without frames.
+/// Curves of the lines' shapes, projected by `view`. `None` without frames.
 fn shapes(record: &Record, view: impl Fn([f64; 3]) -> [f64; 2]) -> Option<Vec<Curve>> {
     let (first, last) = (record.course.frames.first()?, record.course.frames.last()?);
     let seen = |nodes: &[Node]| nodes.iter().map(|n| view(n.position)).collect::<Vec<_>>();
@@ -238,7 +238,7 @@ fn shapes(record: &Record, view: impl Fn([f64; 3]) -> [f64; 2]) -> Option<Vec<Cu
     Some(curves)
 }
 
-/// Still water and seabed where the lines come near them: height [m], label, colour.
+/// Still water and seabed, if the lines are near them: height [m], label, colour.
 fn levels(record: &Record, curves: &[Curve]) -> Vec<(f64, &'static str, [u8; 3])> {
     let y = Axis::around(curves, 1, String::new());
     let near = |height: f64| {
@@ -254,8 +254,8 @@ fn levels(record: &Record, curves: &[Curve]) -> Vec<(f64, &'static str, [u8; 3])
         .collect()
 }
 
-/// Direction (cos, sin) in plan along which the lines extend furthest, towards +x: the principal axis of the first frame's
-/// nodes. A system that extends alike in all directions is seen along x.
+/// Direction (cos, sin) in plan along which the lines extend furthest, towards +x: the principal axis of the first frame's nodes. The direction is x
+/// for a system with equal extent in all directions.
 fn principal_direction(record: &Record) -> (f64, f64) {
     let Some(frame) = record.course.frames.first() else {
         return (1.0, 0.0);
@@ -270,7 +270,7 @@ fn principal_direction(record: &Record) -> (f64, f64) {
         xy += (x - x0) * (y - y0);
         yy += (y - y0) * (y - y0);
     }
-    // Half the distance between the two principal moments; small: no direction stands out.
+    // If half the difference of the two principal moments is small, no direction is distinguished.
     if (0.5 * (xx - yy)).hypot(xy) <= 1e-6 * (xx + yy) {
         return (1.0, 0.0);
     }
@@ -296,7 +296,7 @@ mod tests {
     use super::*;
     use quick_xml::{Reader, events::Event};
 
-    /// Fails unless the text is well-formed XML; returns its texts.
+    /// Fails unless the SVG is well-formed XML; returns its texts.
     fn texts(svg: &str) -> Vec<String> {
         let mut reader = Reader::from_str(svg);
         let mut texts = Vec::new();

@@ -6,12 +6,12 @@ use super::{WIDTH, colour, with_title};
 use crate::output::modes::{Mode, NaturalModes};
 use crate::output::report::rounded;
 
-/// Modes that are drawn.
+/// Greatest number of modes drawn.
 const SHAPES_MAX: usize = 6;
 /// Height of the figure [px].
 const HEIGHT: u32 = 420;
 
-/// Displacement of the line that moves most in each of the lowest modes, in the direction that it mostly moves in, as SVG. `None` without modes.
+/// Displacement of the line that moves most in each of the lowest modes, in its main direction of motion, as SVG. `None` without modes.
 pub fn modes(modes: &NaturalModes) -> Option<String> {
     let lowest = modes.modes.iter().take(SHAPES_MAX).enumerate();
     let curves: Vec<Curve> = lowest.filter_map(|(index, mode)| curve(index, mode)).collect();

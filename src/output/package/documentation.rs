@@ -1,4 +1,4 @@
-//! `documentation/index.html`: figure of the scene in equilibrium, table of variables, and what is modelled.
+//! `documentation/index.html`: figure of the scene in equilibrium, table of variables, and description of the model.
 
 use quick_xml::escape::escape;
 
@@ -14,7 +14,7 @@ pub(super) const FILE: &str = "documentation/index.html";
 /// Path of the licences in an FMU.
 pub(super) const LICENSE_FILE: &str = "documentation/licenses/license.txt";
 
-/// Licences of the library in the FMU. The scene and what is made from it belong to their author.
+/// Licences of the library in the FMU. The scene and everything made from it belong to their author.
 pub(super) fn license() -> String {
     format!(
         "The library in this FMU is moorline, licensed under the MIT License or the Apache License 2.0, at your choice.\n\
@@ -52,7 +52,7 @@ pub(super) fn html(title: &str, scene: &Scene, simulation: &Simulation, interfac
     )
 }
 
-/// The variables of one role, below a heading; nothing where there are none.
+/// Table of the variables of one role with a heading; empty if there are none.
 fn table(heading: &str, variables: &[Variable], causality: Causality) -> String {
     let variables = variables
         .iter()

@@ -1,8 +1,8 @@
 //! `OspModelDescription.xml`: motion and force as the variable groups of the Open Simulation Platform.
 //!
-//! Source: OSP Interface Specification 1.0, schema `OspModelDescription-1.0.0.xsd`: groups by kind in a fixed order, each of three variables
-//! along x, y and z with unique names. Force and velocity of a point make a `LinearMechanicalPort`, moment and angular velocity
-//! of a vessel an `AngularMechanicalPort`; displacements are groups of their own, since a variable is in one port only.
+//! Source: OSP Interface Specification 1.0, schema `OspModelDescription-1.0.0.xsd`: groups by kind in a fixed order, each of three variables along x,
+//! y and z with unique names. Force and velocity of a point form a `LinearMechanicalPort`, moment and angular velocity of a vessel an
+//! `AngularMechanicalPort`; displacements form separate groups, since a variable may be in one port only.
 
 use std::io;
 
@@ -15,7 +15,7 @@ pub(super) const FILE: &str = "extra/com.open-simulation-platform/OspModelDescri
 
 const NAMESPACE: &str = "https://open-simulation-platform.com/OspModelDescription/1.0.0";
 
-/// A kind of port: its name, the range of its axes, and the groups in it.
+/// Kind of a port: its name, its first axis, and the groups in it.
 struct Kind {
     port: &'static str,
     first: usize,

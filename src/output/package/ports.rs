@@ -1,4 +1,4 @@
-//! The coupled points and vessels of a scene, each with the variables of its motion and its force.
+//! Coupled points and vessels of a scene, each with the variables of its motion and its force.
 
 use crate::interface::{Binding, Interface, Variable};
 use crate::model::Body;
@@ -21,12 +21,12 @@ impl<'i> Port<'i> {
         all.into_iter().flatten().copied()
     }
 
-    /// Returns whether it is a vessel.
+    /// Returns whether the port is a vessel.
     pub(super) fn turns(&self) -> bool {
         self.displacements.len() > 3
     }
 
-    /// Name of one of its variables without the name of the port.
+    /// Name of one of the port's variables, without the name of the port.
     pub(super) fn member(&self, variable: &'i Variable) -> &'i str {
         let rest = variable.name.strip_prefix(self.name);
         rest.and_then(|rest| rest.strip_prefix('.'))

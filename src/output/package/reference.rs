@@ -23,15 +23,15 @@ const EXPERIMENTS: &str = "experiments.xml";
 const STIMULI: &str = "reference_inputs.csv";
 const REFERENCES: &str = "reference_results.csv";
 
-/// Steps of the experiment, at most [-].
+/// Greatest number of steps of the experiment [-].
 const STEPS_MAX: usize = 100;
 /// Greatest deviation of a variable from its reference, over the greatest magnitude of the reference [-].
 const TOLERANCE: f64 = 1e-6;
 
-/// Files of the reference results, by name in their folder; none for a scene whose first step fails.
+/// Files of the reference results, by name in their folder; empty if the first step of the scene fails.
 ///
 /// # Errors
-/// An equilibrium that does not exist.
+/// No static equilibrium is found.
 pub(super) fn files(
     scene: &Scene,
     simulation: &Simulation,
@@ -91,7 +91,7 @@ impl<'i> Table<'i> {
     }
 }
 
-/// The experiment, as a host runs it.
+/// Experiment as run by a host.
 struct Run<'i> {
     simulation: Simulation,
     inputs: Table<'i>,
@@ -135,7 +135,7 @@ impl Run<'_> {
             .collect()
     }
 
-    /// Sets the inputs of a time [s], displacements alone.
+    /// Sets the displacements and length changes at a time [s], without velocities.
     fn set_inputs(&mut self, time: f64) {
         let row = self.input_row(time);
         for (variable, value) in self.inputs.variables.iter().zip(&row[1..]) {
@@ -143,7 +143,7 @@ impl Run<'_> {
         }
     }
 
-    /// Present outputs; none if one of them is not finite.
+    /// Present outputs; `None` if one of them is not finite.
     fn row(&self, time: f64) -> Option<Vec<f64>> {
         let mut row = vec![time];
         for variable in &self.outputs.variables {

@@ -1,7 +1,7 @@
-//! `SystemStructure.ssd`: the mooring as a component, with the connectors at which a body is connected.
+//! `SystemStructure.ssd`: the mooring as a component, with connectors for a body.
 //!
-//! Source: System Structure and Parameterization 1.0, schema `SystemStructureDescription.xsd`. The body is not in the package: its motion
-//! comes in and the force on it goes out at the boundary of the system, where a host or an enclosing system has the body.
+//! Source: System Structure and Parameterization 1.0, schema `SystemStructureDescription.xsd`. The body is not in the package: its motion is an input
+//! and the force on it an output of the system, to which a host or an enclosing system connects the body.
 
 use std::io;
 

@@ -1,6 +1,6 @@
 //! `terminalsAndIcons.xml`: motion and force of each coupled point and vessel as one terminal.
 //!
-//! Source: FMI 3.0.2 section 2.4.9, and its schema `fmi3TerminalsAndIcons.xsd`. An FMU of FMI 2.0 has the same file, of FMI 3.0.
+//! Source: FMI 3.0.2 section 2.4.9, and its schema `fmi3TerminalsAndIcons.xsd`. FMUs of FMI 2.0 contain the same file of FMI 3.0.
 
 use super::ports::Port;
 use crate::output::xml::{self, document, empty, within};

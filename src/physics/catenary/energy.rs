@@ -1,14 +1,13 @@
 //! Energy of a line on its elastic catenary: strain energy, and potential energy of its weight above end A.
 //!
-//! For a flight of length h that starts at a height z₀ with the upward part V₀ of its tension, V₁ = V₀ + wh, and the horizontal part H,
+//! For a flight of length h that starts at a height z₀ with the vertical tension V₀, V₁ = V₀ + wh, and the horizontal tension H,
 //!
 //!   ∫ T²/2EA ds = h (H² + (V₀² + V₀V₁ + V₁²)/3) / 2EA,
 //!   w ∫ z ds    = w z₀ h + (∫ T ds − T₀ h) + w h² (2V₀ + V₁)/6EA,
 //!
-//! since w dz = dT + V dV/EA along it: nothing is divided by the weight, which may be zero. On the seabed T = T₀ + g s at
-//! constant height.
+//! since w dz = dT + V dV/EA along it: no term is divided by the weight, which may be zero. On the seabed T = T₀ + g s at constant height.
 //!
-//! Source: integrals of the elastic catenary, derived here, checked by sums and by the work of the ends. Valid where the catenary is.
+//! Source: integrals of the elastic catenary, derived here, checked by sums and by the work of the end forces. Valid where the catenary is.
 
 use std::iter::Sum;
 
@@ -34,7 +33,6 @@ impl Sum for CatenaryEnergy {
 }
 
 impl Piece {
-    /// Energy of this piece.
     pub(super) fn energy(&self) -> CatenaryEnergy {
         match self.kind {
             Kind::Flight(flight) => flight.energy(self.z),

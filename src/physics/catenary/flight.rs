@@ -1,4 +1,4 @@
-//! A stretch of uniform line in free flight, loaded between its ends by its own weight only.
+//! Uniform part of a line in free flight, loaded between its ends by its own weight only.
 //!
 //! With H the horizontal tension, V₀ the vertical tension at the start, W = wℓ, Vₘ = V₀ + W/2, σ the mean of the two end
 //! tensions and ε = W/2σ (derived in the module above, section "One stretch"):
@@ -9,10 +9,10 @@
 
 use super::Section;
 
-/// Value of ε below which λ follows from tanh λ = ε; above it sinh λ is used, whose formula is free of 1 − ε.
+/// Value of ε below which λ is computed from tanh λ = ε; above, it is computed from sinh λ, whose formula does not contain 1 − ε.
 const STEEP: f64 = 0.75;
 
-/// A stretch of uniform line in free flight.
+/// Uniform part of a line in free flight.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flight {
     /// Horizontal tension [N], at least 0.
@@ -27,7 +27,7 @@ pub(super) struct Flight {
     pub axial_stiffness: f64,
 }
 
-/// Rise of a flight with its slopes.
+/// Rise of a flight with its derivatives.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rise {
     /// z at the end relative to the start [m].
@@ -102,7 +102,7 @@ impl Flight {
         )
     }
 
-    /// Rise of the end above the start, with its slopes in V and H.
+    /// Rise of the end above the start, with its derivatives with respect to V and H.
     pub(super) fn rise(&self) -> Rise {
         let (ta, tb) = self.tensions();
         let sigma = 0.5 * (ta + tb);
@@ -141,7 +141,7 @@ impl Flight {
         0.5 * self.length * (sigma + (v * v + bow) / sigma) / self.axial_stiffness
     }
 
-    /// Distance along the unstretched line at which the vertical tension is `vertical` [m]; None if it is not on this stretch.
+    /// Unstretched distance from the start at which the vertical tension is `vertical` [m]; `None` if it is not within this flight.
     pub(super) fn where_vertical_is(&self, vertical: f64) -> Option<f64> {
         let at = (vertical - self.vertical) / self.weight;
         (at.is_finite() && at > 0.0 && at < self.length).then_some(at)

@@ -1,15 +1,15 @@
 //! Roots of one increasing function of one variable, safeguarded: the bracket never widens, and every loop is bounded.
 
-/// Bound on the steps of any search: bisection of the whole double range needs fewer.
+/// Maximum number of steps of any search; bisection of the whole range of doubles needs fewer.
 const STEPS_MAX: usize = 200;
 
 /// Number of steps after which a bracket is halved regardless of Newton's method, which may cycle.
 const HALVE_EVERY: usize = 12;
 
-/// Steps towards a root below the start before its existence is checked.
+/// Number of steps towards a root below the start before its existence is checked.
 const STEPS_DOWN_MAX: usize = 4;
 
-/// Root with its cost.
+/// Root with the cost of finding it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Root {
     /// Argument at which the function is zero, in the unit of the argument [-].
@@ -20,8 +20,8 @@ pub(super) struct Root {
 
 /// Root of `function` (value, slope), increasing over (lower, upper), which may be infinite: Newton within the bracket.
 ///
-/// The function bends on the scale `bend` about 0, so brackets are halved on asinh(x/bend); `reach` is the longest
-/// step from a point that is accepted; `tolerance` is the value that counts as zero.
+/// The function bends on the scale `bend` about 0, so brackets are halved on asinh(x/bend). `reach` is the longest accepted step from a point,
+/// `tolerance` the value that counts as zero.
 pub(super) fn increasing(
     mut function: impl FnMut(f64) -> (f64, f64),
     start: f64,
@@ -48,7 +48,7 @@ pub(super) fn increasing(
             upper = at
         }
         let reach = reach(at);
-        // rounding may invert a vanishing slope; the sign of the value decides
+        // rounding may change the sign of a vanishing slope; the sign of the value then gives the direction
         let step = if slope > 0.0 {
             (-value / slope).clamp(-reach, reach)
         } else {
@@ -75,7 +75,7 @@ pub(super) fn increasing(
     Root { at, steps: STEPS_MAX }
 }
 
-/// Root of `function` (value only), increasing in x > 0 and searched on ln x from `start` outwards; `lowest` if it is below that.
+/// Root of `function` (value only), increasing in x > 0 and searched on ln x from `start` outwards; `lowest` if the root is below it.
 pub(super) fn increasing_by_ratio(
     mut function: impl FnMut(f64) -> f64,
     start: f64,
@@ -109,7 +109,7 @@ pub(super) fn increasing_by_ratio(
                 steps: steps + inner.steps,
             };
         }
-        // where the secant points, stretched a little so that it passes the root
+        // distance to the root of the secant, lengthened a little to pass the root
         let secant = 1.2 * (b - a) * fb / (fa - fb);
         stride = if secant.is_finite() {
             secant.abs().clamp(1e-9, 8.0 * stride).min(5.0)
@@ -124,8 +124,8 @@ pub(super) fn increasing_by_ratio(
     }
 }
 
-/// Root of `function` between two points whose values differ in sign: inverse quadratic interpolation where it is safe,
-/// else halving; to rounding of the greater of the root and `resolution` (the test of Chandrupatla 1997, Advances in Engineering Software 28, 145).
+/// Root of `function` between two points whose values differ in sign: inverse quadratic interpolation where it is safe, else bisection; to rounding
+/// of the larger of the root and `resolution` (test of Chandrupatla 1997, Advances in Engineering Software 28, 145).
 pub(super) fn between(
     mut function: impl FnMut(f64) -> f64,
     (mut a, mut fa): (f64, f64),
@@ -236,7 +236,7 @@ mod tests {
                 (1e-30, f64::INFINITY),
                 |_| false,
             );
-            // its last step, 1e-9 of the root, squares to 1e-11 over the 1e-6 on which this function bends
+            // the last step, 1e-9 of the root, leaves an error of 1e-11: its square over the 1e-6 on which this function bends
             assert!((positive.at - 3.7).abs() < 1e-10, "{positive:?}");
         }
         let halved = between(sigmoid, (-9.0, sigmoid(-9.0)), (1e4, sigmoid(1e4)), (0.0, 1.0));

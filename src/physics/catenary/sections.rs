@@ -1,15 +1,14 @@
-//! A line of several sections, with or without a seabed under it: a march from A to B, nested in one scalar search.
+//! Line of several sections, with or without a seabed: it is laid out from A to B, inside one scalar search.
 //!
-//! Given the horizontal tension at A the line is laid out piece by piece, starting with a flight from A (or from the
-//! seabed). The one free number of a flight, its vertical tension at A or the weight left on the seabed before it lifts
-//! off, is the greatest for which it runs nowhere below the seabed and ends nowhere below B: a monotone function, one
-//! root. The first constraint that holds with equality determines the end of the flight: at B, or touching down (V =
-//! 0) in the section concerned, from which it lies until it lifts off again. This is gift wrapping, so any number of
-//! sections may float or sink and any number of stretches may lie on the seabed.
+//! Given the horizontal tension at A the line is laid out piece by piece, starting with a flight from A (or from the seabed). The only unknown of a
+//! flight is its vertical tension at A or the weight left on the seabed before it lifts off. It takes the value at which the flight just clears the
+//! seabed and B: the root of a monotone function. The first constraint that holds with equality determines the end of the flight: at B, or touching
+//! down (V = 0) in the section concerned, from where the line lies on the seabed until it lifts off again. This is gift wrapping, so any number of
+//! sections may float or sink and any number of parts may lie on the seabed.
 //!
-//! The span that results grows with the tension at A, which is found on a logarithmic scale. With friction and no
-//! tension left at A, the number searched is instead the material point s₀ up to which the seabed holds all tension.
-//! If the line is longer than its span even without any tension, it is slack: H = 0.
+//! The resulting span grows with the tension at A, which is searched on a logarithmic scale. With friction and no tension left at A, the unknown is
+//! instead the material point s₀ up to which the seabed holds all tension. If the line is longer than its span even without any tension, it is slack:
+//! H = 0.
 //!
 //! Derived here. Without friction the result is the unique minimum of a convex energy; with friction the seabed pulls towards A, as
 //! on a line that was laid from A and hauled at B.
@@ -20,35 +19,35 @@ use super::shape::Shape;
 use super::uniform::EndForces;
 use super::{FlatSeabed, Section};
 
-/// Horizontal tension that represents the limit of zero, over the weights of the sections [-].
+/// Horizontal tension that represents the limit of zero, relative to the weights of the sections [-].
 const LIMP_SHARE: f64 = 1e-40;
 
-/// Tension that counts as zero, over the weights of the sections [-].
+/// Tension that counts as zero, relative to the weights of the sections [-].
 const NOTHING_SHARE: f64 = 1e-30;
 
-/// Weight of a section below which it is treated as weightless, over the weights of all [-].
+/// Weight of a section below which it is treated as weightless, relative to the weights of all [-].
 const UNFELT_SHARE: f64 = 1e-22;
 
-/// Position error that counts as zero, over the unstretched length [-].
+/// Position error that counts as zero, relative to the unstretched length [-].
 const CLOSURE: f64 = 3e-16;
 
-/// Position error that rounding cannot explain, over the unstretched length [-].
+/// Position error that rounding cannot explain, relative to the unstretched length [-].
 const JUMP: f64 = 1e-9;
 
-/// Bound on the halvings of friction: the last is below rounding.
+/// Maximum number of halvings of the friction; the last is below rounding.
 const FRICTION_HALVINGS_MAX: usize = 60;
 
 /// Ratio of the vertical tension at a section's end to the unknown one below which the former becomes the unknown
 /// [-].
 const REFERENCE_SHARE: f64 = 1e-3;
 
-/// Bound on the unknowns that a flight is solved for in turn.
+/// Maximum number of unknowns that a flight is solved for in turn.
 const PASSES_MAX: usize = 8;
 
-/// A line of sections between two held ends.
+/// Line of sections between two held ends.
 pub(super) struct Sections {
     sections: Vec<Section>,
-    /// Weight before each section, and of all [N].
+    /// Weight of all sections before each section, and total weight [N].
     before: Vec<f64>,
     /// Arc length at the start of each section [m].
     starts: Vec<f64>,
@@ -60,7 +59,7 @@ pub(super) struct Sections {
     weights: f64,
 }
 
-/// The place and force with which a flight starts.
+/// Position and tension at the start of a flight.
 #[derive(Debug, Clone, Copy)]
 struct Departure {
     section: usize,
@@ -69,18 +68,18 @@ struct Departure {
     /// Height relative to A [m].
     z: f64,
     horizontal: f64,
-    /// Vertical tension at the start of section `reference` [N], the end of the line being the last.
+    /// Vertical tension at the start of section `reference` [N]; after the last section, at the end of the line.
     vertical: f64,
-    /// Section at which the vertical tension is small, so that it is resolved there to all its digits.
+    /// Section at whose start the vertical tension is small, so that it is resolved there to all its digits.
     reference: usize,
-    /// True if the flight leaves the seabed: there V = 0.
+    /// True if the flight leaves the seabed, where V = 0.
     from_seabed: bool,
 }
 
-/// End of a flight: None at B, else touching down in a section, at a distance from its start [m].
+/// End of a flight: `None` at B, else the section of the touchdown and the distance from its start [m].
 type Touch = Option<(usize, f64)>;
 
-/// The tightest constraint of a flight.
+/// Tightest constraint of a flight.
 #[derive(Debug, Clone, Copy)]
 struct Flown {
     /// Clearance of the constraint [m].
@@ -92,18 +91,18 @@ struct Flown {
     touch: Touch,
 }
 
-/// Stretch of sections that do not float, after a touchdown in the first of them.
+/// Sections that do not float, after a touchdown in the first of them.
 #[derive(Debug, Clone, Copy)]
 struct Run {
-    /// Section after the last one.
+    /// First section beyond these.
     end: usize,
-    /// Weight before the touchdown, which identifies its place [N].
+    /// Weight before the touchdown, which identifies its position [N].
     first: f64,
     /// Weight before the end [N].
     last: f64,
     /// First section with tension.
     tight: usize,
-    /// Length from there to the end of that section [m].
+    /// Length from the start of tension to the end of that section [m].
     rest: f64,
 }
 
@@ -112,7 +111,7 @@ struct Run {
 struct Hold {
     /// Horizontal tension at A [N].
     horizontal_a: f64,
-    /// Arc length before which nothing on the seabed carries tension, where none is left at A [m].
+    /// Arc length before which the line on the seabed carries no tension, if none is left at A [m].
     tight_from: f64,
 }
 
@@ -148,8 +147,8 @@ impl Sections {
 
     /// Solves the line, from a guess of H and V at A [N]; leaves its pieces in `shape`.
     ///
-    /// With sections that float, strong friction can leave a span without a state that uses friction in full. Coulomb's
-    /// law is an inequality: the line then uses the greatest tried share of it, halved until the ends meet.
+    /// With sections that float, strong friction can leave a span without a state that mobilises friction in full. Coulomb's law is an inequality:
+    /// friction is then halved until the ends meet.
     pub(super) fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> EndForces {
         let mut steps = 0;
         for _ in 0..FRICTION_HALVINGS_MAX {
@@ -173,7 +172,7 @@ impl Sections {
         }
     }
 
-    /// Searches the tension at A, or else the place where tension begins, that brings the ends together; returns the number of steps.
+    /// Searches the tension at A, or else the point where tension begins, for which the line ends at B; returns the number of steps.
     fn search(&self, guess: (f64, f64), shape: &mut Shape) -> usize {
         let tolerance = CLOSURE * self.length;
         let lowest = self.limp();
@@ -257,7 +256,7 @@ impl Sections {
         shape.end.1
     }
 
-    /// The flight from the point `from` that clears every constraint by the least: its vertical tension is found.
+    /// Finds the flight from the point `from` that just clears every constraint, by its vertical tension.
     fn take_off(&self, from: &Departure, memory: &mut Option<(f64, usize)>) -> (Departure, Touch) {
         let reach = |vertical: f64| 2.0 * (vertical.abs() + from.horizontal + self.weights);
         let (mut start, mut reference) = memory.unwrap_or((0.0, from.section));
@@ -294,7 +293,7 @@ impl Sections {
         }
     }
 
-    /// The flight that leaves the seabed after the touchdown `from`, lifting off where it just clears every constraint.
+    /// Finds the flight that leaves the seabed after the touchdown `from` where it just clears every constraint.
     fn lift_off(
         &self,
         from: &Departure,
@@ -302,7 +301,7 @@ impl Sections {
         memory: &mut Option<(f64, usize)>,
     ) -> (Departure, Touch) {
         let run = self.run(from, tight_from);
-        // the rise to B is quadratic in V there, so a search would leave an error in V of the root of its tolerance
+        // the rise to B is quadratic in V there, so a search would leave an error in V of the square root of its tolerance
         let ends_on_seabed =
             run.end == self.sections.len() && self.seabed.is_some_and(|seabed| self.rise <= seabed.height);
         let (mut start, mut reference) = memory.unwrap_or((0.5 * (run.last - run.first), run.end));
@@ -343,7 +342,7 @@ impl Sections {
         }
     }
 
-    /// Stretch that may lie on the seabed from the touchdown `from` on.
+    /// Part that may lie on the seabed from the touchdown `from` on.
     fn run(&self, from: &Departure, tight_from: f64) -> Run {
         let sections = self.sections[from.section..].iter();
         let heavy = sections.take_while(|section| section.weight >= 0.0);
@@ -360,7 +359,7 @@ impl Sections {
         }
     }
 
-    /// The flight that leaves the seabed where the vertical tension at `reference` is then `vertical`.
+    /// Flight that leaves the seabed where this makes the vertical tension at `reference` equal to `vertical`.
     fn leave(&self, from: &Departure, run: &Run, vertical: f64, reference: usize) -> Departure {
         let (section, offset) = self.locate(from, run.end, vertical, reference);
         let to_reference = self.before[reference] - self.before[run.tight + 1];
@@ -385,10 +384,10 @@ impl Sections {
         flight.vertical + (self.before[index] - self.before[flight.reference])
     }
 
-    /// Vertical tension of the flight at a section's end beyond the start `from` of the search, and that section, where it is so much smaller than
-    /// at its reference that it is better found there.
+    /// Section end after the start `from` at which the vertical tension of the flight is so much smaller than at its reference that it is better
+    /// solved for there: that tension [N] and the index of the section.
     fn better_reference(&self, flight: &Departure, from: &Departure, flown: &Flown) -> Option<(f64, usize)> {
-        // where the gap jumps over zero the flight does not end at the touchdown it seems to have
+        // if the gap jumps over zero, the flight does not end at its apparent touchdown
         let ends = flown.touch.filter(|_| flown.gap.abs() < JUMP * self.length);
         let last = ends.map_or(self.sections.len(), |(index, _)| index + 1);
         let first = from.section + usize::from(from.from_seabed);
@@ -415,11 +414,11 @@ impl Sections {
         }
     }
 
-    /// Section and offset of the lift-off after which the vertical tension at `reference` is `vertical`.
+    /// Section and offset of the lift-off for which the vertical tension at `reference` is `vertical`.
     fn locate(&self, from: &Departure, run_end: usize, vertical: f64, reference: usize) -> (usize, f64) {
         for index in from.section..run_end {
             let section = &self.sections[index];
-            // weight in flight of this section
+            // weight of this section in flight
             let flown = vertical + (self.before[index + 1] - self.before[reference]);
             if flown > 0.0 && section.weight > 0.0 {
                 let least = if index == from.section { from.offset } else { 0.0 };

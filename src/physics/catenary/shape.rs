@@ -8,14 +8,14 @@ use super::{Point, Section};
 pub(super) enum Kind {
     /// Support at both ends only.
     Flight(Flight),
-    /// The seabed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
+    /// Straight on the seabed, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
     Laid {
         tension: f64,
         growth: f64,
         weight: f64,
         axial_stiffness: f64,
     },
-    /// Nothing: no tension, so the shape is one of many; drawn straight, advancing (x, z) per metre [-].
+    /// No support and no tension. The shape is not unique; it is taken as straight, advancing (x, z) per metre [-].
     Slack {
         x: f64,
         z: f64,
@@ -31,9 +31,9 @@ pub(super) struct Piece {
     pub s: f64,
     /// Unstretched length [m].
     pub length: f64,
-    /// Start, relative to end A [m].
+    /// x of the start, relative to end A [m].
     pub x: f64,
-    /// Start, relative to end A [m].
+    /// z of the start, relative to end A [m].
     pub z: f64,
     pub kind: Kind,
 }
@@ -68,7 +68,7 @@ impl Piece {
         }
     }
 
-    /// Support, from the piece's end to its start.
+    /// Support of the reversed piece.
     fn kind_reversed(&self) -> Kind {
         match self.kind {
             Kind::Flight(flight) => Kind::Flight(Flight {
@@ -117,7 +117,7 @@ impl Piece {
     }
 }
 
-/// The pieces of a line from A to B, each starting where the one before ends.
+/// Pieces of a line from A to B, each starting at the end of the previous one.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shape {
     pub pieces: Vec<Piece>,
@@ -132,7 +132,7 @@ impl Shape {
         self.end = (0.0, 0.0, 0.0);
     }
 
-    /// Appends `length` metres carried by `kind`; nothing if there is no length.
+    /// Appends `length` metres carried by `kind`, if the length is positive.
     pub(super) fn push(&mut self, length: f64, kind: Kind) {
         if length <= 0.0 {
             return;
@@ -183,7 +183,7 @@ impl Shape {
         }
     }
 
-    /// The same line from B to A.
+    /// Returns the same line from B to A.
     pub(super) fn reversed(&self) -> Shape {
         let mut reversed = Shape::default();
         for piece in self.pieces.iter().rev() {
@@ -192,7 +192,7 @@ impl Shape {
         reversed
     }
 
-    /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones in place, and sets horizontal tension up to it to zero.
+    /// Replaces pieces whose tension nowhere exceeds `nothing` [N] by slack ones, and sets horizontal tensions up to `nothing` to zero.
     pub(super) fn relax(&mut self, nothing: f64) {
         for piece in &mut self.pieces {
             let (x, z) = piece.advance(piece.length);
@@ -230,7 +230,7 @@ impl Shape {
         }
     }
 
-    /// Draws the slack pieces together so that the line ends at `x` [m].
+    /// Shortens the horizontal advance of the slack pieces so that the line ends at `x` [m].
     pub(super) fn close(&mut self, x: f64) {
         let advance = |piece: &Piece| match piece.kind {
             Kind::Slack { x, .. } => x * piece.length,
@@ -262,14 +262,14 @@ impl Shape {
         }
     }
 
-    /// The material point at `s` metres of unstretched length from A; beyond an end, that end.
+    /// Material point at `s` metres of unstretched length from A; beyond an end, that end.
     pub(super) fn at(&self, s: f64) -> Point {
         let next = self.pieces.partition_point(|piece| piece.s <= s);
         let piece = &self.pieces[next.saturating_sub(1)];
         piece.point((s - piece.s).clamp(0.0, piece.length))
     }
 
-    /// Greatest vertical distance below the chord from (0, 0) to (`span`, `rise`) [m]; below the lower end where the span is 0.
+    /// Maximum vertical distance below the chord from (0, 0) to (`span`, `rise`) [m]; below the lower end where the span is 0.
     pub(super) fn sag(&self, span: f64, rise: f64) -> f64 {
         let below = |point: Point| {
             let chord = if span > 0.0 {

@@ -1,27 +1,26 @@
-//! Slopes of the end forces of a solved catenary with the displacements of its ends, in the vertical plane through them.
+//! Derivatives of the end forces of a solved catenary with respect to the displacements of its ends, in the vertical plane through them.
 //!
 //! A line in free flight under end forces (H, V) spans (X, Z). Every element ds turns and stretches under a change of them, so that
 //! with t the direction of the tension T and p the unit vector across it
 //!
 //! C = ∂(X, Z)/∂(H, V) = ∫ (p pᵀ/T + 1/EA) ds,   ∂(H, V)/∂(X, Z) = C⁻¹.
 //!
-//! C is set up along and across the mean direction of the tension: a taut line is far stiffer along than across, and
-//! in other axes the difference would be lost. Where the direction varies little over a section, ∫ is a Gauss rule; elsewhere, with T²
-//! = H² + V², V' = w,
+//! C is set up along and across the mean direction of the tension: a taut line is far stiffer along than across, and in other axes the difference
+//! would be lost to rounding. Where the direction varies little over a section, ∫ is a Gauss rule; elsewhere, with T² = H² + V², V' = w,
 //!
 //! ∫ H²/T³ ds = (1/w) [V/T],   ∫ HV/T³ ds = −(H/w) [1/T],   ∫ V²/T³ ds = (1/w) [asinh(V/H) − V/T].
 //!
-//! Source: derived here. Valid for any weights, H = 0 included: there a folded line has no stiffness across and w/2 along.
-//! A line that touches the seabed is solved again with its ends slightly displaced instead.
+//! Source: derived here. Valid for any weights, including H = 0, where a folded line has no stiffness across and w/2 along. A line that touches the
+//! seabed is solved again with its ends slightly displaced instead.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::{Catenary, Section};
 
-/// A section that weighs less than this share of its tension is nearly straight [-].
+/// Weight of a section, relative to its smaller end tension, below which it is treated as nearly straight [-].
 const STRAIGHT: f64 = 0.5;
 
-/// Abscissae in 0 … 1 and weights of the Gauss rule of four points [-].
+/// Points in 0 … 1 and weights of the four-point Gauss rule [-].
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_7, 0.173_927_422_568_726_9),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_1),
@@ -64,7 +63,7 @@ fn turning(section: &Section, h: f64, [start, end]: [f64; 2], frame: &Matrix2<f6
     frame * Matrix2::new(inverse - zz, -xz, -xz, zz) * frame.transpose()
 }
 
-/// ∫ H²/T³ ds, ∫ HV/T³ ds and ∫ ds/T of a section that weighs something [m/N].
+/// ∫ H²/T³ ds, ∫ HV/T³ ds and ∫ ds/T of a section with non-zero weight [m/N].
 fn integrals(section: &Section, h: f64, [v0, v1]: [f64; 2], [t0, t1]: [f64; 2]) -> [f64; 3] {
     let (l, w) = (section.length, section.weight);
     let sum = v0 + v1;
@@ -79,7 +78,7 @@ fn integrals(section: &Section, h: f64, [v0, v1]: [f64; 2], [t0, t1]: [f64; 2]) 
     [zz, xz, (log(v1, t1) - log(v0, t0)) / w]
 }
 
-/// A line that hangs straight down, up or folded: H = 0.
+/// Stiffness of a line that hangs straight down, straight up or folded: H = 0.
 fn hanging_vertically(sections: &[Section], mut vertical: f64) -> Matrix2<f64> {
     let mut compliance = Vector2::zeros();
     for section in sections {

@@ -1,4 +1,4 @@
-//! The uniform heavy line of which a part lies on a flat seabed: one scalar equation in the horizontal tension.
+//! Uniform heavy line that lies partly on a flat seabed: one scalar equation in the horizontal tension.
 //!
 //! A flight that leaves the seabed (V = 0) under H and rises by D has the vertical tension V at its upper end:
 //!
@@ -9,17 +9,16 @@
 //!
 //! Σ E(H) + (X − L) = ∫ H ds / EA
 //!
-//! the sum over the one flight (A on the seabed) or the two (A above it). The left falls with H, the right rises: one root.
-//! Friction lowers the tension on the seabed by μw per metre towards A, not below 0, which enters the integral on the right.
-//! At H = 0 the flights hang vertically; any line left over even then is slack.
-//! Every term is positive and computed without cancellation, and the logarithm of the ratio of the two sides is nearly linear in
-//! ln H, so Newton's method needs four or five steps. Derived here (module above, "The seabed"). Valid for w > 0 and, with
-//! friction, for A on the seabed.
+//! with the sum over one flight (A on the seabed) or two (A above it). The left side falls with H and the right side rises, so there is one root.
+//! Friction lowers the tension on the seabed by μw per metre towards A, not below 0, which enters the integral on the right. At H = 0 the flights
+//! hang vertically; any line left over even then is slack. Every term is positive and computed without cancellation, and the logarithm of the ratio
+//! of the two sides is nearly linear in ln H, so Newton's method needs four or five steps. Derived here (module above, "The seabed"). Valid for w > 0
+//! and, with friction, for A on the seabed.
 
 use super::root;
 use super::uniform::{EndForces, Uniform, sinh_less};
 
-/// Horizontal tension treated as zero, over the weight of the line [-].
+/// Horizontal tension treated as zero, relative to the weight of the line [-].
 const HORIZONTAL_SHARE_MIN: f64 = 1e-40;
 
 /// Ends of a line that touches down.
@@ -35,7 +34,7 @@ pub(super) struct Touchdown {
     pub friction: f64,
 }
 
-/// A flight from the seabed, under one H.
+/// Flight from the seabed under a given H.
 struct Lift {
     /// Vertical tension at its upper end [N].
     vertical: f64,
@@ -95,7 +94,7 @@ impl Uniform {
             self.lift(0.0, at.height_a).vertical,
             self.lift(0.0, at.height_b).vertical,
         );
-        let longer = at.span - l; // negative: line to spare
+        let longer = at.span - l; // negative: the line is longer than the span
         if longer + (hanging.0 + hanging.1) / w <= 0.0 {
             return EndForces {
                 horizontal_a: 0.0,
@@ -131,7 +130,7 @@ impl Uniform {
         }
     }
 
-    /// ∫ H ds/EA over the whole line with H at B [m], and its slope in H.
+    /// ∫ H ds/EA over the whole line for H at B [m], and its derivative with respect to H.
     fn stretch(&self, h: f64, a: &Lift, b: &Lift, friction: f64) -> (f64, f64) {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         if friction == 0.0 {
@@ -156,7 +155,7 @@ impl Uniform {
         )
     }
 
-    /// Horizontal tension from the leading terms: parabola E = (2D)^1.5 √w/(6√H) against slack or stretch.
+    /// First guess of H from the leading terms: parabola E = (2D)^1.5 √w/(6√H) against slack or stretch.
     fn guess(&self, at: &Touchdown) -> f64 {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let heights = at.height_a.max(0.0).powf(1.5) + at.height_b.max(0.0).powf(1.5);

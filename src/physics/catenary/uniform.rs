@@ -1,4 +1,4 @@
-//! The uniform line held at its two ends, in contact with nothing else: one scalar equation for every case.
+//! Uniform line held at its two ends without other contact: one scalar equation for every case.
 //!
 //! With W = wL, κ = |W|/2EA and the unknown λ > 0 (half the difference of asinh(V/H) between the ends):
 //!
@@ -13,13 +13,13 @@
 
 use super::root;
 
-/// Spans below this share of the length are vertical lines to double precision [-].
+/// Ratio of span to length below which the line is vertical to double precision [-].
 const SPAN_SHARE_MIN: f64 = 1e-100;
 
 /// λ at which sinh³λ nears the largest double [-].
 const LAMBDA_MAX: f64 = 235.0;
 
-/// A uniform line.
+/// Uniform line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Uniform {
     /// Unstretched length [m].
@@ -37,13 +37,13 @@ pub(super) struct EndForces {
     pub horizontal_a: f64,
     /// Horizontal tension at B [N].
     pub horizontal_b: f64,
-    /// Vertical tension at A [N], up going from A to B.
+    /// Vertical tension at A [N], positive up going from A to B.
     pub vertical_a: f64,
-    /// Vertical tension at B [N], up going from A to B.
+    /// Vertical tension at B [N], positive up going from A to B.
     pub vertical_b: f64,
-    /// Coulomb friction in use on the seabed [-].
+    /// Mobilised Coulomb friction coefficient on the seabed [-].
     pub friction: f64,
-    /// Evaluations of the equation that was solved [-].
+    /// Number of evaluations of the solved equation [-].
     pub steps: usize,
 }
 
@@ -97,7 +97,7 @@ pub(super) fn sinh_less(beta: f64) -> f64 {
     beta * square / 6.0 * tail
 }
 
-/// Tension of a weightless line of unstretched length `l` and `flexibility` = Σ length/EA between ends (x, z) apart [N].
+/// Tension [N] of a weightless line of unstretched length `l` and `flexibility` = Σ length/EA, whose ends are (x, z) apart.
 pub(super) fn weightless_tension(x: f64, z: f64, l: f64, flexibility: f64) -> f64 {
     let excess = excess(x, z, l);
     // chord/L − 1 = e/(√(1 + e) + 1)
@@ -105,7 +105,7 @@ pub(super) fn weightless_tension(x: f64, z: f64, l: f64, flexibility: f64) -> f6
 }
 
 impl Uniform {
-    /// End forces of the line between ends `span` and `rise` apart [m], touching nothing.
+    /// End forces of the line between ends `span` and `rise` apart [m], without other contact.
     pub(super) fn suspend(&self, span: f64, rise: f64) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let weight_half = 0.5 * w * l;
@@ -146,7 +146,7 @@ impl Uniform {
     }
 }
 
-/// The equation G(λ) = 0 as a balance of positive terms.
+/// Equation G(λ) = 0 as a balance of positive terms.
 struct Balance {
     /// (X/L)² [-].
     a: f64,
@@ -159,8 +159,8 @@ struct Balance {
 }
 
 impl Balance {
-    /// ln of the terms that grow with λ over those that fall, zero where G is, and nearly linear in ln λ (λ < 1) or
-    /// λ; with its slope in ln λ.
+    /// Logarithm of the ratio of the terms that grow with λ to those that fall, and its derivative with respect to ln λ. It is zero where G is, and
+    /// nearly linear in ln λ (λ < 1) or λ.
     fn at(&self, lambda: f64) -> (f64, f64) {
         let (sinh, tanh) = (lambda.sinh(), lambda.tanh());
         let (y, q) = (lambda / sinh, self.kappa / sinh);
@@ -190,7 +190,7 @@ impl Balance {
         ((more / less).ln(), more_slope / more - less_slope / less)
     }
 
-    /// λ from the leading terms: sag against slack length, or stretch against excess, or sag against stretch.
+    /// First guess of λ from the leading terms: sag against slack length, or stretch against excess, or sag against stretch.
     fn guess(&self) -> f64 {
         let elastic = (6.0 * self.kappa * (self.a + self.b) / self.a).cbrt();
         if self.excess > 0.0 {

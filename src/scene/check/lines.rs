@@ -58,7 +58,7 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
     }
 }
 
-/// Lines that are released or break off their points.
+/// Checks lines that are released or break from their points.
 fn check_release(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     let key = match (&line.failure, line.release) {
         (Some(_), _) => "break",
@@ -122,7 +122,7 @@ fn check_nodes(
     }
 }
 
-/// Directions of clamped ends, which only lines that bend can have.
+/// Checks the rest shape and the directions of clamped ends, which only lines with bending stiffness can have.
 fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     let flexible = |section: &Section| scene.type_of(section).is_some_and(|kind| !kind.bends());
     rules! { findings, at;
@@ -140,14 +140,14 @@ fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     }
 }
 
-/// Returns whether a line is in free flight: a beam, whose shape at the start is given.
+/// Returns whether a line may fly freely: a beam whose shape at the start is given.
 fn flies(line: &Line, scene: &Scene) -> bool {
     let all_beams = scene.solver.integrator == Integrator::Beam;
     let beams = all_beams || scene.types_of(line).all(|kind| kind.model == LineModel::Beam);
     line.initial != InitialShape::Static && beams
 }
 
-/// Every line must be connected, possibly through other lines, to something that does not simply fall.
+/// Refuses lines that are not connected, directly or through other lines, to a point that is not free, except beams in free flight.
 fn check_held(scene: &Scene, names: &Names, findings: &mut Findings) {
     let mut held: Vec<bool> = scene
         .points

@@ -34,7 +34,7 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
     }
 }
 
-/// Keys that only some kinds of points may have.
+/// Checks keys that only some kinds of points may have.
 fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
     let kind = point.kind.word();
     let taken = ["mass", "volume", "drag_area", "added_mass", "force"];
@@ -59,7 +59,7 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
     }
 }
 
-/// The vessel that a point rides on.
+/// Checks the vessel that carries a point.
 fn check_carrier(findings: &mut Findings, at: &str, point: &Point, (scene, names): (&Scene, &Names)) {
     let Some(carrier) = &point.on else { return };
     if names.vessel(carrier).is_none() {
@@ -87,7 +87,7 @@ fn check_load(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
     }
 }
 
-/// Returns the reason why nothing at a point takes its moment.
+/// Returns the reason why the moment on a point is refused, if it is.
 fn untaken(point: &Point, scene: &Scene) -> Option<String> {
     if point.kind != PointKind::Free {
         return Some(format!(
@@ -180,7 +180,7 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
     }
 }
 
-/// "no vessel or coupled point is called `platform`; there is `semi`", with the near one first.
+/// "no vessel or coupled point is called `platform`; there is `semi`", with the nearest name first.
 fn nothing_driven(name: &str, known: &[&str]) -> String {
     let what = "vessel or coupled point";
     match *known {

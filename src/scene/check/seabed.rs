@@ -1,9 +1,9 @@
-//! Friction and shape of the seabed.
+//! Shape of the seabed: soundings, and a level seabed under beams.
 
 use super::{Findings, quantity, rules};
 use crate::scene::{DepthGrid, LineModel, Scene, Seabed};
 
-/// Greatest number of soundings.
+/// Maximum number of soundings.
 const SOUNDINGS_MAX: usize = 4_000_000;
 
 pub(super) fn check_seabed(scene: &Scene, seabed: &Seabed, findings: &mut Findings) {

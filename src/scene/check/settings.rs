@@ -5,7 +5,7 @@ use crate::scene::channel::Channel;
 use crate::scene::table::Choice;
 use crate::scene::{AXIAL_RADIUS_MIN, Frames, Integrator, Scene};
 
-/// Greatest number of output steps of a run.
+/// Maximum number of output steps of a run.
 const STEPS_MAX: f64 = 1e7;
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {

@@ -1,4 +1,4 @@
-//! Title, gravity, water, seabed.
+//! Title, water and seabed.
 
 use super::seabed::check_seabed;
 use super::{Bounds, Findings, quantity, rules};

@@ -47,7 +47,7 @@ fn is_wet(point: &Point) -> bool {
     sizes.any(|size| size > 0.0)
 }
 
-/// The ways to describe a sea, of which one must be given, and the keys that belong to it.
+/// Checks that a sea is described in exactly one way, and that its keys belong to it.
 fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
     let rows = matches!(sea.components, Some(WaveComponents::Rows(_)));
     let file = sea.file.is_some();
@@ -86,7 +86,7 @@ fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
     }
 }
 
-/// Lines that cannot be modelled in moving water: the source of the motion, as the beginning of a sentence, and alone.
+/// Refuses lines that cannot be modelled in moving water. `moves` is the source of the motion as the beginning of a sentence, `source` its name.
 fn check_lines(scene: &Scene, at: &str, [moves, source]: [&str; 2], findings: &mut Findings) {
     let still = scene.solver.integrator == Integrator::QuasiStatic;
     let beam = scene.type_of_beams(|line_type| line_type.diameter.is_some());

@@ -37,7 +37,7 @@ fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Wi
     }
 }
 
-/// Conditions under which a winch cannot be where it is, or is not modelled, each with its refusal.
+/// Conditions under which a winch is impossible or not modelled, each with its message.
 fn refusals(line: &Line, winch: &Winch, scene: &Scene) -> [(bool, &'static str); 9] {
     let is_moved = scene
         .point(&line.to)

@@ -40,7 +40,7 @@ impl Scene {
         format!("{name}: {model}{}", parts.join(", "))
     }
 
-    /// Axial damping that the type leaves open, and the mesh that a ratio refers to.
+    /// Sentence on axial damping that the type leaves open, or on the mesh that a damping ratio refers to.
     fn damping_in_words(&self, name: &str, line_type: &LineType) -> Option<String> {
         let sections = self.sections();
         let own = sections.filter(|section| section.line_type == name);
@@ -73,7 +73,7 @@ impl Scene {
         !self.is_beam(line) && types.any(|line_type| solid_stiffness(line_type).is_some())
     }
 
-    /// The parts of bending, torsion and shear that are not modelled.
+    /// Names of the effects of bending, torsion and shear that are not modelled.
     pub(super) fn absence_of_bending(&self) -> String {
         let cables = || self.lines.iter().filter(|line| !self.is_beam(line));
         let absences = match cables().filter(|line| self.bends(line)).count() {
@@ -98,7 +98,7 @@ impl Scene {
     }
 }
 
-/// EI of one solid section [N m²]: as given, else Eπd⁴/64; `None` for flexible cables, and for beams.
+/// EI of one solid section [N m²]: as given, otherwise Eπd⁴/64; `None` for flexible cables, and for beams.
 fn solid_stiffness(line_type: &LineType) -> Option<f64> {
     let of_section = || {
         let section = line_type.solid_section?;
@@ -108,7 +108,7 @@ fn solid_stiffness(line_type: &LineType) -> Option<f64> {
     solid.filter(|ei| *ei > 0.0 && line_type.model == LineModel::Cable)
 }
 
-/// Bending stiffness of a cable that follows from its solid section or is shared by fibres.
+/// Sentence on the bending stiffness of a cable, if it follows from the solid section or is divided among fibres.
 fn bending_in_words(line_type: &LineType) -> Option<String> {
     let solid = solid_stiffness(line_type)?;
     let source = match line_type.bending_stiffness {

@@ -48,7 +48,7 @@ fn section_in_words(section: &Section) -> String {
     format!("{length} of {kind}{elements}")
 }
 
-/// Difference between the length of a line and the distance of its ends, both in metres.
+/// Sentence on the difference between the length of a line and the distance between its ends, both in metres.
 fn fit_in_words(length: f64, chord: f64) -> String {
     let (slack, apart) = (length - chord, significant(chord));
     if slack.abs() < 1e-9 * length {
@@ -59,7 +59,7 @@ fn fit_in_words(length: f64, chord: f64) -> String {
     format!("{slack} m {longer} than the distance between its ends, {apart} m")
 }
 
-/// Support of the ends of a line that bends, and its shape without bending.
+/// Sentence on the support of the ends of a line that bends, and on its shape without bending.
 fn ends_in_words(line: &Line) -> String {
     let end = |name: &str, clamp: Option<[f64; 3]>| match clamp {
         Some(along) => format!("clamped at end {name} along {}", triple(along)),

@@ -67,7 +67,7 @@ impl Scene {
         format!("{name}: driven by the host, origin at {origin} m{attitude}, carries {carried}{run}{angles}")
     }
 
-    /// Effects of the water and the seabed on a point; `None` where neither acts.
+    /// Sentence on the effects of the water and the seabed on a point; `None` if neither acts.
     fn sea_in_words(&self, point: &Point) -> Option<String> {
         let water = self.water_at_point(point);
         let other = if point.kind == PointKind::Free {
@@ -80,7 +80,7 @@ impl Scene {
         (!said.is_empty()).then(|| said.join("; "))
     }
 
-    /// Start of a free point.
+    /// Sentence on the start of a free point.
     fn start_in_words(&self, point: &Point) -> Option<&'static str> {
         let network = match point.kind {
             PointKind::Free => self.network_of(point),
@@ -115,12 +115,12 @@ impl Scene {
         }
     }
 
-    /// Returns whether the water's surface acts on a free point.
+    /// Returns whether the water's surface acts on any free point.
     pub(super) fn surface_matters(&self) -> bool {
         self.free_points().any(|point| self.radius(point).is_some())
     }
 
-    /// Radius of the sphere that represents a point in the water [m]; `None` where the water has no effect on it.
+    /// Radius of the sphere that represents a point in the water [m]; `None` if the water has no effect on it.
     fn radius(&self, point: &Point) -> Option<f64> {
         self.water.as_ref()?;
         let of = |value: Option<f64>| value.filter(|value| *value > 0.0);
@@ -185,7 +185,7 @@ pub(in crate::scene) fn motion_in_words(motion: &MotionPath) -> String {
     }
 }
 
-/// "x from 0 to 5 m and pitch from -0.1 to 0.1 rad"; `None` where all rows are zero.
+/// "x from 0 to 5 m and pitch from -0.1 to 0.1 rad"; `None` if all rows are zero.
 fn ranges_in_words(rows: &[MotionRow]) -> Option<String> {
     let axes = crate::scene::motion_file::AXES.iter().zip(UNITS).enumerate();
     let said = axes.filter_map(|(axis, (name, unit))| {

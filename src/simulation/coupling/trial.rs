@@ -13,9 +13,9 @@ use crate::simulation::paths::{Paths, is_coupled};
 use crate::simulation::prescribed::MotionSource;
 use crate::simulation::{Simulation, Snapshot};
 
-/// Displacement of a difference quotient over the longest line [-].
+/// Displacement in a difference quotient, relative to the longest line [-].
 const ASIDE: f64 = 1e-8;
-/// Shortest lever of rotations over the longest line [-].
+/// Least lever arm of rotations, relative to the longest line [-].
 const LEVER_MIN: f64 = 1e-3;
 
 /// Start of the last step.
@@ -26,7 +26,7 @@ pub(in crate::simulation) struct StepStart {
     pub step: f64,
 }
 
-/// Values on both sides of a motion, below and above, and the distance between the two [m, rad, m/s, rad/s].
+/// Values below and above a component of motion, and the distance between the two [m, rad, m/s, rad/s].
 pub(super) struct Sides<T> {
     pub values: [T; 2],
     pub apart: f64,
@@ -37,14 +37,14 @@ pub(super) struct Trial {
     simulation: Simulation,
     start: Snapshot,
     paths: Box<Paths>,
-    /// Flow of the water over the step, where a host gives it.
+    /// Water flow over the step, if a host gives it.
     flow: Course,
     /// Length of the step [s].
     pub length: f64,
 }
 
 impl Trial {
-    /// The last step, to be repeated. `None` before the first one.
+    /// Returns a trial that repeats the last step; `None` before the first step.
     pub(super) fn of_last_step(simulation: &Simulation) -> Result<Option<Trial>, String> {
         if !simulation.model.derivatives {
             return Err("derivatives are off: set `derivatives` in [output] to true".into());
@@ -66,8 +66,8 @@ impl Trial {
         }))
     }
 
-    /// The coming step, as long as the last one, with all bodies continuing from their present velocities at their mean accelerations over the last step.
-    /// `None` where a vessel has no unique rates.
+    /// Returns a trial of the coming step, as long as the last one. All bodies continue from their present velocities with their mean accelerations
+    /// over the last step. `None` if a vessel has no unique rates.
     pub(super) fn of_coming_step(simulation: &Simulation) -> Option<Trial> {
         let (model, snapshot) = (&*simulation.model, &simulation.snapshot);
         let length = match snapshot.last_step {
@@ -133,7 +133,7 @@ impl Trial {
         }
     }
 
-    /// Makes the step up to a length [s] of it.
+    /// Runs the first part of the step, of a given length [s].
     pub(super) fn run(&mut self, length: f64) -> Result<&Simulation, String> {
         self.step_with(length, None)
     }
@@ -153,7 +153,7 @@ impl Trial {
         Ok(simulation)
     }
 
-    /// Reads values after steps in which a component of the end motion is shifted to either side of that of the paths.
+    /// Reads values after two steps in which a component of the end motion is below and above that of the paths.
     pub(super) fn both_sides<T>(
         &mut self,
         motion: EndMotion,
@@ -174,7 +174,7 @@ impl Trial {
     }
 }
 
-/// Reads values in static equilibrium with a displacement shifted to either side of the input.
+/// Reads values in static equilibrium with a displacement below and above the input.
 pub(super) fn both_sides_of_statics<T>(
     simulation: &Simulation,
     motion: EndMotion,
@@ -193,7 +193,7 @@ pub(super) fn both_sides_of_statics<T>(
     })
 }
 
-/// Displacement of a difference quotient [m, rad].
+/// Displacement in a difference quotient [m, rad].
 fn distance(simulation: &Simulation, motion: EndMotion) -> f64 {
     let lines = simulation.model.lines.iter();
     let lengths = lines.filter_map(|line| line.nodes.arc.last().copied());
@@ -212,7 +212,7 @@ fn place_of_path(simulation: &Simulation, point: usize) -> usize {
     before.filter(|point| is_coupled(point)).count()
 }
 
-/// Moves the end of a body's path over a span, from a time [s] over a length [s].
+/// Shifts the end of a body's path by `by` [m, rad, m/s, rad/s]; `span` is the start and the length of the step [s].
 fn shift_end(
     paths: &mut Paths,
     simulation: &Simulation,
@@ -238,7 +238,7 @@ fn shift_end(
         }
         Body::Vessel(vessel) if motion.axis < 3 => paths.vessels[vessel].0[0].shift_end(span, along),
         Body::Vessel(vessel) => {
-            // an angle is shifted at the same angular velocity, and the angular velocity at the same angles
+            // a change of an angle keeps the angular velocity, and a change of the angular velocity keeps the angles
             let path = &mut paths.vessels[vessel].0[1];
             let [angles, rates] = path.end().map(|lanes| lanes.xyz());
             let angles = simulation.model.vessels[vessel].attitude + angles;

@@ -1,5 +1,5 @@
-//! Tables over strain, height and place whose range a simulation leaves: tension-strain curves, current profiles,
-//! soundings. Tables in time are checked beforehand: [`crate::scene::Scene::notes`].
+//! Tables over strain, height and position whose range a simulation leaves: tension-strain curves, current profiles, soundings. Tables in time are
+//! checked beforehand: [`crate::scene::Scene::notes`].
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use super::is_beyond;
 use crate::scene::{Line, Note, Scene, Section};
 use crate::simulation::Simulation;
 
-/// Fraction of the height of a current profile by which a line may leave it without a note, as a line on the seabed does [-].
+/// Fraction of the height of a current profile by which a line may leave the profile without a note, as a line on the seabed does [-].
 const HEIGHT_MARGIN: f64 = 0.01;
 
 /// The tables of a scene.
@@ -17,7 +17,7 @@ const HEIGHT_MARGIN: f64 = 0.01;
 pub(super) struct LeftTables {
     /// Sections of every line with tension-strain curves, by line.
     stretched: Vec<(usize, Vec<Stretched>)>,
-    /// Lowest and highest row of the current [m].
+    /// Heights of the lowest and highest row of the current profile [m].
     heights: Option<[f64; 2]>,
     /// Least and greatest x and y of the soundings [m].
     soundings: Option<[[f64; 2]; 2]>,
@@ -28,15 +28,15 @@ pub(super) struct LeftTables {
 /// A section of a line.
 #[derive(Debug, Clone)]
 struct Stretched {
-    /// Arc length of its end [m].
+    /// Arc length at the end of the section [m].
     end: f64,
     line_type: String,
-    /// Strain of the last row [-]; infinite where there is no table, and once it was left.
+    /// Strain of the last row [-]; infinite if there is no table, or after it was left.
     strain_max: f64,
 }
 
 impl LeftTables {
-    /// The tables of a scene, none of them left yet.
+    /// Returns the tables of a scene, none of which has been left yet.
     pub(super) fn new(scene: &Scene) -> LeftTables {
         let lines = scene.lines.iter().enumerate();
         let stretched = lines.map(|(index, line)| (index, stretched(scene, line)));
@@ -52,7 +52,7 @@ impl LeftTables {
         }
     }
 
-    /// Notes on the tables that are newly left.
+    /// Adds notes on the tables that are left for the first time.
     pub(super) fn look(&mut self, simulation: &Simulation, notes: &mut Vec<Note>) {
         for (line, sections) in &mut self.stretched {
             look_at_strain(simulation, *line, sections, &mut self.left, notes);
@@ -97,7 +97,7 @@ fn stretched(scene: &Scene, line: &Line) -> Vec<Stretched> {
     line.sections.iter().map(of_section).collect()
 }
 
-/// Notes on segments that are strained beyond their tables.
+/// Adds notes on segments that are strained beyond their tables.
 fn look_at_strain(
     simulation: &Simulation,
     line: usize,
@@ -136,12 +136,12 @@ fn look_at_strain(
     }
 }
 
-/// A note on a line that is above or below the rows of the current [m].
+/// Note on a line above or below the rows of the current profile, given by its lowest and highest height [m].
 fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -> Option<String> {
     let margin = HEIGHT_MARGIN * (high - low);
     let heights = simulation.snapshot.state.lines[line].position.iter().map(|r| r.z);
     let mut beyond = heights.filter(|z| {
-        let above = *z > high + margin && *z < 0.0; // there is no water further up
+        let above = *z > high + margin && *z < 0.0; // no water above z = 0
         *z < low - margin || above
     });
     let z = beyond.next()?;
@@ -180,7 +180,7 @@ fn range(values: &[f64]) -> [f64; 2] {
     [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// Lowest and highest row of a current that changes with height [m].
+/// Heights of the lowest and highest row of a current that changes with height [m].
 fn heights(scene: &Scene) -> Option<[f64; 2]> {
     let current = scene.water.as_ref()?.current.as_ref()?;
     let rows = current.profile.as_ref().filter(|rows| rows.len() > 1)?;

@@ -1,8 +1,8 @@
-//! A beam on half as many elements, and its sections on the elements of the finer beam.
+//! Beam with half as many elements, and the transfer of its sections to the finer beam.
 //!
-//! Two neighbouring elements become one, with each of its stiffnesses that of both in series, l/k = l₁/k₁ + l₂/k₂, and the mean of their strains
-//! without stress. The node between them leaves half of its weight to each neighbour; the springs of the seabed add. On the way back it lies on the cubic
-//! through both neighbours along their directors d₃, turned by its part of the turn between them.
+//! Two neighbouring elements become one. Each of its stiffnesses is that of both in series, l/k = l₁/k₁ + l₂/k₂, and its strain without stress is
+//! their mean. Half of the weight of the node between them goes to each neighbour; the springs of the seabed are added. In the transfer back, the
+//! node lies on the cubic through both neighbours along their directors d₃, turned by its part of the turn between them.
 
 use nalgebra::Vector3;
 
@@ -16,7 +16,7 @@ pub(super) fn kept(elements: usize) -> Vec<usize> {
     (0..elements).step_by(2).chain([elements]).collect()
 }
 
-/// The beam on the nodes of [`kept`].
+/// Beam on the nodes of [`kept`].
 pub(super) fn coarser<'a>(case: &BeamCase<'a>) -> BeamCase<'a> {
     let pairs = || case.elements.chunks(2).zip(case.rest.chunks(2));
     BeamCase {
@@ -28,7 +28,7 @@ pub(super) fn coarser<'a>(case: &BeamCase<'a>) -> BeamCase<'a> {
     }
 }
 
-/// One element in place of one or two in a row.
+/// Element that replaces one or two consecutive elements.
 fn joined(row: &[BeamElement]) -> BeamElement {
     let length: f64 = row.iter().map(|element| element.length).sum();
     let along = |stiffness: fn(&SectionLaw) -> f64| {
@@ -48,14 +48,14 @@ fn joined(row: &[BeamElement]) -> BeamElement {
     }
 }
 
-/// Mean strain without stress of elements in a row.
+/// Mean strain without stress of consecutive elements.
 fn mean_rest(row: &[BeamElement], rest: &[Sextuple]) -> Sextuple {
     let length: f64 = row.iter().map(|element| element.length).sum();
     let parts = row.iter().zip(rest);
     parts.map(|(element, rest)| element.length / length * rest).sum()
 }
 
-/// Values of the kept nodes, with half of those of each neighbour that is not kept.
+/// Values of the kept nodes, plus half the value of each neighbour that is not kept.
 fn gathered(values: &[f64]) -> Vec<f64> {
     let kept = kept(values.len() - 1);
     let mut sums: Vec<f64> = kept.iter().map(|&node| values[node]).collect();
@@ -68,7 +68,7 @@ fn gathered(values: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// One spring under one or two elements in a row.
+/// Spring that replaces those under one or two consecutive elements.
 fn joined_spring(row: &[ElementSpring]) -> ElementSpring {
     ElementSpring {
         levels: [row[0].levels[0], row[row.len() - 1].levels[1]],
@@ -89,7 +89,7 @@ pub(super) fn finer(coarse: &[Section], elements: &[BeamElement]) -> Vec<Section
     sections
 }
 
-/// Section at a part of the way along an element of a length [m].
+/// Section at the fraction `part` of an element of this length [m].
 fn between(a: &Section, b: &Section, length: f64, part: f64) -> Section {
     let turn = cayley_vector(&(b.frame * a.frame.transpose()));
     let along = |section: &Section| -> Vector3<f64> { length * section.frame.column(2) };
@@ -111,7 +111,7 @@ mod tests {
     use approx::assert_relative_eq;
     use nalgebra::Matrix3;
 
-    /// A quarter circle of radius 1 m on elements of unlike lengths, over a seabed.
+    /// Quarter circle of radius 1 m with elements of unequal lengths, over a seabed.
     fn quarter(elements: usize) -> (BeamCase<'static>, Vec<Section>) {
         let angle = |i: usize| std::f64::consts::FRAC_PI_2 * (i as f64 / elements as f64).powf(1.2);
         let law = |i: usize| SectionLaw {

@@ -74,7 +74,7 @@ fn bench(sections: Vec<Section>, length: f64, law: SectionLaw, rests: bool) -> B
     }
 }
 
-/// Along x from the origin.
+/// Straight beam along x from the origin.
 fn straight_bench(n: usize, length: f64, law: SectionLaw) -> Bench {
     let frame = turned_to(&Matrix3::identity(), Vector3::x());
     let at = |i: usize| Section {
@@ -84,7 +84,7 @@ fn straight_bench(n: usize, length: f64, law: SectionLaw) -> Bench {
     bench((0..=n).map(at).collect(), length, law, true)
 }
 
-/// Clamped at A, loaded at B.
+/// Sections of a beam clamped at A and loaded at B.
 fn loaded(bench: &Bench, force: Vector3<f64>, moment: Vector3<f64>) -> Vec<Section> {
     let tip = BeamEnd {
         load: join(force, moment),
@@ -96,7 +96,7 @@ fn loaded(bench: &Bench, force: Vector3<f64>, moment: Vector3<f64>) -> Vec<Secti
     sections
 }
 
-/// Slope of log(error) over log(n), by least squares.
+/// Order of convergence: slope of ln(error) over −ln n, by least squares.
 fn order(points: &[(usize, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|(n, e)| (-(*n as f64).ln(), e.ln())).collect();
     let count = logs.len() as f64;

@@ -1,18 +1,18 @@
 //! Equilibrium of networks whose lines have bending stiffness.
 //!
-//! The elastic energy of bending is not convex, and a line that may push can buckle, so that there may be many equilibria. Tried in this
-//! order, until one is found that is stable, that is, whose exact tangent is positive definite:
+//! The elastic energy of bending is not convex, and a line that can carry compression can buckle, so that there may be many equilibria. The following
+//! are tried in this order until one is found that is stable, that is, whose exact tangent is positive definite:
 //!
-//! 1. Newton's method with the exact tangent from the shape at hand: the flexible line's catenary, or the equilibrium before.
+//! 1. Newton's method with the exact tangent from the present shape: the flexible line's catenary, or the previous equilibrium.
 //! 2. The same from the equilibrium of the perfectly flexible line.
-//! 3. Pseudo-transient relaxation from a small wave across the shape at hand: anchoring springs as stiff as the exact tangent needs to
+//! 3. Pseudo-transient relaxation from a small wave across the present shape: anchoring springs as stiff as the exact tangent needs to
 //!    be positive definite, so that unstable deflections grow.
 //! 4. The same from a smooth curve along the clamps, where the flexible line leaves them at too sharp an angle: a cantilever whose
 //!    flexible line hangs straight down starts unbent.
 //!
-//! An equilibrium that is not stable is left by a small wave too.
+//! A small wave is also used to leave an unstable equilibrium.
 //!
-//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the order is found by trial on cantilevers,
+//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the order was found by trial on cantilevers,
 //! arches, columns and slack lines in `tests/lines/bending.rs`.
 
 use nalgebra::Vector3;
@@ -22,25 +22,25 @@ use crate::elements::{Workspace, place_ends};
 use crate::model::{Line, State};
 use crate::statics::StaticsError;
 
-/// Greatest number of solves of one Newton iteration with bending.
+/// Maximum number of solves of one Newton iteration with bending.
 pub(super) const NEWTON_SOLVES_MAX: usize = 100;
-/// Greatest number of indefinite tangents in one Newton iteration.
+/// Maximum number of indefinite tangents in one Newton iteration.
 pub(super) const REFUSALS_MAX: usize = 8;
-/// Negative stiffness that does not count as instability, over the sum of the loads and the length of the longest line [-]: on a mass
-/// as heavy as the load it grows by a factor e in an hour.
+/// Negative stiffness that does not count as instability, relative to the sum of the loads per length of the longest line [-]: with a mass as heavy
+/// as the load, a disturbance grows by a factor e in an hour.
 pub(super) const INSTABILITY: f64 = 1e-7;
-/// Greatest turn of a segment in one step [rad].
+/// Maximum turn of a segment in one step [rad].
 const TURN_MAX: f64 = 0.5;
-/// Greatest number of solves of one relaxation.
+/// Maximum number of solves of one relaxation.
 const RELAX_SOLVES_MAX: usize = 1000;
-/// Longest step of a relaxation, over the longest line [-].
+/// Maximum step of a relaxation, relative to the longest line [-].
 const RELAX_STEP_MAX: f64 = 0.05;
 /// Ratio of anchoring to forces per length at which a relaxation is stopped [-].
 const RELAXATION_MAX: f64 = 1e20;
-/// Amplitude of the wave that leaves an unstable equilibrium, over the line's length [-].
+/// Amplitude of the wave that leaves an unstable equilibrium, relative to the line length [-].
 const WAVE: f64 = 1e-3;
 
-/// Greatest stiffness of a joint against a zigzag of its nodes [N/m].
+/// Largest stiffness of a joint against a zigzag of its nodes [N/m].
 pub(super) fn stiffest_joint(line: &Line) -> f64 {
     let Some(bending) = &line.bending else {
         return 0.0;
@@ -51,7 +51,7 @@ pub(super) fn stiffest_joint(line: &Line) -> f64 {
 }
 
 impl Problem<'_> {
-    /// Part of the last correction that turns no segment by more than [`TURN_MAX`] [-].
+    /// Fraction of the last correction that turns no segment by more than [`TURN_MAX`] [-].
     pub(super) fn turning_part(&self, state: &State, work: &Workspace) -> f64 {
         let mut turn = 0.0_f64;
         for &index in &self.network.lines {
@@ -98,7 +98,7 @@ impl Problem<'_> {
         Err(self.not_converged(state, work, start))
     }
 
-    /// Returns true where an equilibrium is stable and within the limits of its strain measures, or another one was found from it after a small wave.
+    /// Returns whether an equilibrium, or another one found from it after a small wave, is stable and within the limits of its strain measures.
     fn settle(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.full_case();
         let found =
@@ -147,7 +147,7 @@ impl Problem<'_> {
         false
     }
 
-    /// Puts a small wave on every line, across it in a vertical plane where it has one.
+    /// Puts a small wave on every line, mainly across it in its vertical plane, if it has one.
     fn wave(&self, state: &mut State) {
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
@@ -169,8 +169,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Lays every clamped line on a smooth curve along its clamps; returns true where there was one. A free point alone at the other end
-    /// moves along with it.
+    /// Lays every clamped line on a smooth curve along its clamps; returns whether there was one. A free point at the other end moves along with it
+    /// if no other line ends there.
     fn follow_clamps(&self, state: &mut State) -> bool {
         let mut any = false;
         for &index in &self.network.lines {

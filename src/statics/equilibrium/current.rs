@@ -1,12 +1,11 @@
 //! Equilibrium in a current.
 //!
-//! The drag of the current on a node depends on the node's place and on the direction of the line there, so it is
-//! part of the solution. The drag F of all nodes is kept while the equilibrium of the network is found as under any dead
-//! load. The drag G(F) of the resulting shape then replaces it until both agree, F = G(F), accelerated by
-//! [`Anderson`]; without acceleration light lines in a strong current would oscillate. Where the iteration does not
-//! converge, the current is raised in parts.
+//! The drag of the current on a node depends on the position of the node and on the direction of the line there, so it is part of the solution. The
+//! drag F of all nodes is kept constant while the equilibrium of the network is found as under any dead load. The drag G(F) of the resulting shape
+//! then replaces it until both agree, F = G(F), accelerated by [`Anderson`]; without acceleration light lines in a strong current would oscillate. If
+//! the iteration does not converge, the current is raised in parts.
 //!
-//! The iteration is accepted at a difference of the size of the equilibrium's accepted residual on every node.
+//! The iteration is accepted when the difference on every node is of the size of the equilibrium's accepted residual.
 //!
 //! Source: the iteration is derived here; its acceleration by Walker & Ni (2011), SIAM J. Numer. Anal. 49(4), 1715-1735.
 
@@ -20,7 +19,7 @@ use crate::physics::flow::Stream;
 use crate::physics::morison::drag;
 use crate::statics::StaticsError;
 
-/// Rounds of drag and equilibrium for each part of the current.
+/// Maximum number of rounds of drag and equilibrium for each part of the current.
 const ROUNDS_MAX: usize = 60;
 /// Number of rounds that the acceleration uses.
 const DEPTH: usize = 8;
@@ -70,7 +69,7 @@ impl Problem<'_> {
         result
     }
 
-    /// Rounds of drag and equilibrium until both agree.
+    /// Iterates drag and equilibrium until both agree.
     fn drift(&self, stream: Stream, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let mut anderson = Anderson::new(DEPTH);
         let (mut loads, mut image) = (Vec::new(), Vec::new());

@@ -1,22 +1,20 @@
 //! Equilibrium with the friction of the seabed.
 //!
-//! The friction of a line at rest depends on the way it was laid. As in the closed-form catenary, every line is taken
-//! as laid from end A without tension and hauled at end B, or from B where only B lies on the seabed. The equilibrium
-//! without friction is found first; there every node gets an anchor, its position on the same path if the line lay
-//! there without stretch,
+//! The friction of a line at rest depends on how it was laid. As in the closed-form catenary, every line is assumed to be laid from end A without
+//! tension and hauled at end B, or from B if only B lies on the seabed. The equilibrium without friction is found first. Every node there gets an
+//! anchor, its position on the same path if the line lay there without stretch,
 //!
 //!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i,
 //!
-//! and friction then pulls it towards that anchor: fully where the line slid, T falling by μw per metre towards A,
-//! and not at all beyond the point where no tension is left. The stiffness of sticking is raised in small steps. Free
-//! points have their anchors at their positions of rest without friction.
+//! and friction then pulls it towards that anchor: fully where the line slid, T falling by μw per metre towards A, and not at all beyond the point
+//! where no tension is left. The stiffness of sticking is raised in small steps. The anchors of free points are their positions of rest without
+//! friction.
 //!
-//! Newton's method may cycle between nodes that stick and nodes that slide: a change of one node's normal force
-//! changes the forces of its neighbours. In that case the normal forces that limit friction are kept constant for a
-//! number of steps. Friction then has the potential ∫ |f| d|r − a|, which is convex like that of springs, weight and
-//! seabed, and the sum of all is minimised with steps along which it falls. The springs of nodes that stick are stiffened in
-//! steps: at their full stiffness from the start, the minimisation stalls on about one ordinary line in ten thousand. The normal
-//! forces are then updated, and Newton's method ends the search.
+//! Newton's method may cycle between nodes that stick and nodes that slide: a change of one node's normal force changes the forces of its neighbours.
+//! In that case the normal forces that limit friction are kept constant for several steps. Friction then has the potential ∫ |f| d|r − a|, which is
+//! convex like that of springs, weight and seabed, and their sum is minimised with steps along which it falls. The springs of sticking nodes are
+//! stiffened in steps: at their full stiffness from the start, the minimisation stalls on about one ordinary line in ten thousand. The normal forces
+//! are then updated, and Newton's method ends the search.
 //!
 //! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5; the problem with kept normal forces is that of
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
@@ -27,15 +25,15 @@ use crate::model::{LineState, State};
 use crate::physics::catenary::is_laid_from_b;
 use crate::statics::StaticsError;
 
-/// First part of the stiffness of sticking, and the factor by which it is raised: friction then grows from nothing to
-/// the value that the displacement mobilises, and no sliding node is without a taut neighbour to hold it [-].
+/// Initial part of the stiffness of sticking, and the factor by which it is raised [-]. Friction then grows from nothing to the value that the
+/// displacement mobilises, and every sliding node has a taut neighbour that holds it.
 const SOFTEST: f64 = 1e-6;
 const GROWTH: f64 = 3.0;
-/// Rounds of normal forces and friction.
+/// Maximum number of rounds of normal forces and friction.
 const ROUNDS_MAX: usize = 20;
 
 impl Problem<'_> {
-    /// Returns true where the seabed may resist by friction.
+    /// Returns whether the seabed may resist by friction.
     pub(super) fn has_friction(&self) -> bool {
         let mut lines = self.model.lines_of(self.network);
         lines.any(|line| line.friction().is_some())
@@ -56,8 +54,8 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// Minimises the potential energy of the network under constant normal forces and updates them from the result,
-    /// until Newton's method finds the equilibrium from there; returns true where it did.
+    /// Minimises the potential energy of the network under constant normal forces and updates them from the result, until Newton's method finds the
+    /// equilibrium from there; returns whether it did.
     fn settle_pressure(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.full_case();
         let kept = |stick| StaticCase {
@@ -89,7 +87,7 @@ impl Problem<'_> {
         settled
     }
 
-    /// Sets the anchors of lines as laid on their present path.
+    /// Sets the anchors as if the lines were laid on their present path.
     fn lay(&self, state: &mut State) {
         for &index in &self.network.lines {
             let line = &self.model.lines[index];

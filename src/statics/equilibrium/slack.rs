@@ -7,11 +7,10 @@
 //!
 //!   T ≥ 0,  T − N(ε) ≥ 0,  T (T − N(ε)) = m EA,
 //!
-//! which makes T(ε) smooth and the energy of the network convex with a single minimum. m is the tension of a segment
-//! that is shortened to zero length. For m as great as all loads together the lines are pulled straight. From there m is
-//! reduced to zero, at the rate that Newton's method on positions and tensions together allows, along with the
-//! breadth of the water's surface, over which a line that floats gains its buoyancy. Where the equilibrium is not
-//! unique, the result is the one whose segments are shortened most evenly.
+//! which makes T(ε) smooth and the energy of the network convex with a single minimum. m is the tension of a segment that is shortened to zero
+//! length. With m as large as all loads together the lines are pulled straight. From there m is reduced to zero, at the rate that Newton's method on
+//! positions and tensions together allows, along with the breadth of the water surface, over which a floating line gains its buoyancy. Where the
+//! equilibrium is not unique, the result is the one whose segments are shortened most evenly.
 //!
 //! Source: the primal-dual interior point method, Nocedal & Wright (2006), Numerical Optimization, 2nd ed., sections 16.6 and 19.1, with the
 //! segments' tensions as multipliers; the elimination of the tensions is derived in `elements/line.rs`.
@@ -20,32 +19,32 @@ use super::{Problem, StaticCase};
 use crate::elements::{Workspace, copy_network};
 use crate::model::State;
 
-/// First m, over the sum of the loads [-].
+/// First m, relative to the sum of the loads [-].
 const TAUTEST: f64 = 1.0;
-/// Last m, over the sum of the loads: the search fails if no equilibrium is accepted by then [-].
+/// Last m, relative to the sum of the loads: the search fails if no equilibrium is accepted by then [-].
 const SLACKEST: f64 = 1e-26;
-/// Ratio of successive m: the first, the least, and the value close to one at which the method stops [-].
+/// Ratio of successive m: the first, the minimum, and the value close to one at which the method stops [-].
 const FALL: f64 = 0.3;
 const FALL_MIN: f64 = 0.01;
 const FALL_MAX: f64 = 0.9;
-/// Greatest number of solves for one m, and the number below which the next m falls by more.
+/// Maximum number of solves for one m, and the number below which the next m falls by more.
 const SOLVES_MAX: usize = 25;
 const SOLVES_FEW: usize = 8;
-/// Force out of balance that is left at one m, over the sum of the loads [-]; never more than m.
+/// Out-of-balance force that is left at one m, relative to the sum of the loads [-]; never more than m.
 const SHARE: f64 = 1e-3;
-/// Least tension, over m [-].
+/// Minimum tension relative to m [-].
 const TENSION_MIN: f64 = 0.01;
-/// Breadth of the water's surface at the first m, over the length of the longest line; it falls with the root of m [-].
+/// Breadth of the water surface at the first m, relative to the longest line; it falls with the square root of m [-].
 const BREADTH: f64 = 0.1;
 
 impl Problem<'_> {
-    /// Returns true where any line may pierce the water's surface.
+    /// Returns whether any line may pierce the water surface.
     pub(super) fn meets_surface(&self) -> bool {
         let mut lines = self.model.lines_of(self.network);
         lines.any(|line| line.surface.is_some())
     }
 
-    /// Follows the equilibrium from taut straight lines between their points to the actual slack ones; returns true where it converged.
+    /// Follows the equilibrium from taut straight lines between their points to the actual slack ones; returns whether it converged.
     pub(super) fn slacken(&self, state: &mut State, work: &mut Workspace) -> bool {
         self.pull_straight(state, work);
         let mut found = std::mem::take(&mut work.trial);
@@ -77,9 +76,8 @@ impl Problem<'_> {
         balanced
     }
 
-    /// Reduces the breadth of the water surface from a soft network, whose energy is minimised, to thin lines;
-    /// returns true where it converged. Where the end of a floating line is free and weighs next to nothing, no m
-    /// gives its last segment a direction, and this method finds the equilibrium.
+    /// Reduces the breadth of the water surface to that of thin lines, from a soft network whose energy is minimised; returns whether it converged.
+    /// If the end of a floating line is free and nearly weightless, no m gives its last segment a direction, and this method finds the equilibrium.
     pub(super) fn thin_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
         let lines = self.model.lines_of(self.network);
         let radii = lines.filter_map(|line| Some(&line.surface.as_ref()?.radius));
@@ -99,7 +97,7 @@ impl Problem<'_> {
         self.stiffen_gradually(state, work, wide) && self.raise(state, work, [first, 1.0 / FALL], case)
     }
 
-    /// The case with this m, over the sum of the loads [-].
+    /// Case with this m, relative to the sum of the loads [-].
     fn taut(&self, part: f64) -> StaticCase {
         StaticCase {
             slack: part * self.force,
@@ -123,7 +121,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Newton's method on positions and tensions of taut segments; returns true where it converged.
+    /// Newton's method on positions and tensions of taut segments; returns whether it converged.
     fn newton_taut(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) -> bool {
         case.predicted = true;
         case.anchoring = self.rounding_stiffness(&case);

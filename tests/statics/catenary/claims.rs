@@ -22,7 +22,7 @@ fn seafem_case_11_has_the_exact_sag_and_reactions() {
 }
 
 fn oc3(friction: f64) -> Line {
-    // MAP++ prints 698.094 N/m and computes with all digits: 77.7066 kg/m, 0.09 m, in 1025 kg/m³
+    // MAP++ prints 698.094 N/m but computes with all digits: 77.7066 kg/m, 0.09 m, in 1025 kg/m³
     let weight = 9.80665 * (77.7066 - 1025.0 * std::f64::consts::PI * 0.09 * 0.09 / 4.0);
     Line::uniform([902.2, weight, 384.243e6], [848.67, 250.0], seabed(0.0, friction))
 }
@@ -58,7 +58,7 @@ fn swapping_the_ends_mirrors_the_line() {
     let mut dice = Dice(11);
     for (name, make) in CLASSES.iter().flat_map(|class| [class; 200]) {
         let mut line = make(&mut dice);
-        // a line that lies with both ends, or with none, has the friction of one that was laid from end A
+        // a line that lies on the seabed with both ends, or with none, has the friction of a line laid from end A
         let (rise, length) = (line.rise, line.length());
         let slides = |seabed: FlatSeabed| {
             let [a, b] = [-seabed.height, rise - seabed.height];
@@ -117,7 +117,7 @@ fn a_taut_line_tends_to_its_stiffness_times_its_strain() {
         let line = Line::uniform([100.0, weight, 1e5], [61.2, 81.6], None).solve();
         0.5 * (line.tension_a() + line.tension_b()) - 1e5 * 0.02
     });
-    // the sag's share is quadratic in weight over tension
+    // the effect of sag is quadratic in weight over tension
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log10();
         assert!((order - 2.0).abs() < 0.1, "order {order} of {errors:?}");
@@ -128,7 +128,7 @@ fn a_taut_line_tends_to_its_stiffness_times_its_strain() {
 fn a_slack_line_hangs_vertically_and_pulls_with_the_weight_of_its_hanging_part() {
     let line = Line::uniform([100.0, 20.0, 1e9], [30.0, 40.0], seabed(0.0, 0.3)).solve();
     assert_eq!((line.horizontal(), line.tension_a()), (0.0, 0.0));
-    // T + T²/2EAw·w = w·40, the stretch of the hanging part
+    // T + T²/2EAw·w = w·40, including the stretch of the hanging part
     assert_near(line.vertical_b() + line.vertical_b().powi(2) / 2e9, 800.0, 1e-9);
     assert_near(line.at(100.0).x, 30.0, 1e-12);
 }
@@ -155,7 +155,7 @@ fn a_buoyant_line_is_a_heavy_one_upside_down_and_leaves_the_seabed_alone() {
 
 #[test]
 fn a_line_just_off_the_seabed_and_one_just_on_it_pull_alike() {
-    // the span at which V at A passes zero
+    // span at which V at A is zero
     let lift_off = bisect([850.0, 868.0], |span| {
         Line {
             span,

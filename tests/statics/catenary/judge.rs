@@ -1,10 +1,10 @@
-//! The judge: the end forces that the solver gives, integrated along the line.
+//! The judge: integration of a solved line from its end forces.
 
 use moorline::statics::catenary::{Catenary, Section, is_laid_from_b};
 
 use super::Line;
 
-/// Abscissae and weights of ten-point Gauss-Legendre quadrature on (-1, 1), the positive half.
+/// Abscissae and weights of ten-point Gauss-Legendre quadrature on (-1, 1), positive half.
 const GAUSS: [(f64, f64); 5] = [
     (0.148_874_338_981_631_22, 0.295_524_224_714_752_9),
     (0.433_395_394_129_247_2, 0.269_266_719_309_996_36),
@@ -25,7 +25,7 @@ fn quadrature(from: f64, to: f64, mut integrand: impl FnMut(f64) -> [f64; 3]) ->
     sum
 }
 
-/// x, z and elongation [m] over `length` metres of section that start under (h, v) and do not pass V = 0 inside.
+/// x, z and elongation [m] over `length` metres of section that start with forces (h, v), without V = 0 inside.
 fn integrate(section: &Section, length: f64, h: f64, v: f64) -> [f64; 3] {
     let (w, ea) = (section.weight, section.axial_stiffness);
     let (start, end) = (h.hypot(v), h.hypot(v + w * length));
@@ -37,7 +37,7 @@ fn integrate(section: &Section, length: f64, h: f64, v: f64) -> [f64; 3] {
             [h * rate, v * rate, t / ea]
         });
     }
-    // V = H sinh β spreads out the bend where V is small
+    // V = H sinh β resolves the bend where V is small
     let (from, to) = ((v / h).asinh(), ((v + w * length) / h).asinh());
     let cells = (to - from).abs().ceil().max(1.0);
     let mut sum = [0.0; 3];
@@ -66,7 +66,7 @@ struct Walk<'a> {
     h: f64,
     v: f64,
     elongation: f64,
-    /// Greatest miss of anything so far, over length or force [-].
+    /// Greatest deviation so far, relative to length or force [-].
     worst: f64,
 }
 
@@ -142,7 +142,7 @@ impl Walk<'_> {
             0.5 * hauled * hauled / (friction * section.weight)
         } / section.axial_stiffness;
         if before == 0.0 && after == 0.0 {
-            // nothing pulls it straight: it may lie anywhere its length allows
+            // without tension it may lie anywhere that its length allows
             let x = self.solved.at(to).x;
             self.miss(((x - self.x).abs() - length).max(0.0), self.length_scale());
             self.x = x;
@@ -172,14 +172,14 @@ impl Walk<'_> {
         let force = (point.horizontal - self.h).hypot(point.vertical - self.v);
         self.miss(force, self.force_scale());
         // residuals within the tolerance are ignored: far from A, or beyond a heavy section, a part may carry less
-        // than the rounding of V at A or of s times w
+        // than the rounding error of V at A or of s times w
         if force < 1e-12 * self.force_scale() {
             self.v = point.vertical;
         }
     }
 }
 
-/// Greatest violation of the cable equations by the solved line, over its length or its greatest force [-].
+/// Greatest violation of the cable equations by the solved line, relative to its length or its greatest force [-].
 pub fn judge(line: &Line, solved: &Catenary) -> f64 {
     let (h, v) = (solved.horizontal_a(), solved.vertical_a());
     let mut walk = Walk {

@@ -39,7 +39,7 @@ impl Dice {
         }
     }
 
-    /// Up to `most` sections of one order of magnitude; `weight` maps a positive weight to the wanted one.
+    /// Up to `most` sections of similar magnitude; `weight` maps a positive weight to the desired one.
     fn sections(&mut self, most: f64, mut weight: impl FnMut(&mut Dice, f64) -> f64) -> Vec<Section> {
         let base = self.section();
         let count = self.between(2.0, most + 1.0) as usize;
@@ -55,7 +55,7 @@ impl Dice {
             .collect()
     }
 
-    /// A chord of `share` times the length at any angle.
+    /// A line whose chord is `share` times its length, at any angle.
     fn chord(&mut self, sections: Vec<Section>, share: f64) -> Line {
         let length: f64 = sections.iter().map(|s| s.length).sum();
         let angle = self.between(-1.0, 1.0) * std::f64::consts::FRAC_PI_2;
@@ -67,7 +67,7 @@ impl Dice {
         )
     }
 
-    /// A line over a seabed through A, of a length between the chord and span + rise.
+    /// A line over a seabed through A, with a length between the chord and span + rise.
     fn over_seabed(&mut self, sections: Vec<Section>, friction: f64) -> Line {
         let length: f64 = sections.iter().map(|s| s.length).sum();
         let slope: f64 = self.decades(-2.0, 0.5);
@@ -77,7 +77,7 @@ impl Dice {
         Line::of(sections, span, slope * span, seabed(0.0, friction))
     }
 
-    /// Puts the seabed below the lower end by decades `lower` to `upper` of the length.
+    /// Puts the seabed below the lower end, by `lower` to `upper` decades of the length.
     fn lower_seabed(&mut self, mut line: Line, lower: f64, upper: f64) -> Line {
         let depth = line.length() * self.decades(lower, upper);
         line.seabed = seabed(
@@ -87,7 +87,7 @@ impl Dice {
         line
     }
 
-    /// The same for a part of the lines [-]; the others stay as they are.
+    /// Does the same for a fraction of the lines [-]; the others are unchanged.
     fn some_lower_seabed(&mut self, part: f64, line: Line, [lower, upper]: [f64; 2]) -> Line {
         match self.chance(part) {
             true => self.lower_seabed(line, lower, upper),
@@ -100,7 +100,7 @@ impl Dice {
         if self.chance(part) { -1.0 } else { 1.0 }
     }
 
-    /// No friction for three lines of ten.
+    /// Returns a friction coefficient [-], 0 for three lines out of ten.
     fn friction(&mut self) -> f64 {
         if self.chance(0.3) {
             0.0
@@ -112,7 +112,7 @@ impl Dice {
 
 pub type Make = fn(&mut Dice) -> Line;
 
-/// Every class of line with how to make one.
+/// Every class of line, with its generator.
 pub const CLASSES: [(&str, Make); 26] = [
     ("suspended", |d| {
         let (section, share) = (d.section(), d.between(0.05, 0.9999));
@@ -306,7 +306,7 @@ pub const CLASSES: [(&str, Make); 26] = [
     }),
 ];
 
-/// Judges `count` random lines of every class; the greatest violation, and where, is reported by class.
+/// Judges `count` random lines of every class; reports the greatest violation and its location by class.
 fn judge_classes(count: usize, tolerance: f64) {
     let mut failures = 0;
     for (index, (name, make)) in CLASSES.iter().enumerate() {

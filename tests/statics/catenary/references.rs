@@ -1,4 +1,4 @@
-//! Rows of reference values.
+//! Comparison with rows of reference values.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -8,8 +8,8 @@ use moorline::statics::catenary::{FlatSeabed, Section};
 use super::Line;
 use crate::common::greatest;
 
-/// Greatest difference of a solved line from a row of reference values: of forces over T at the fairlead (at least the anchor's where
-/// that one is zero), and of positions and lengths over the length [-].
+/// Greatest deviations of a solved line from a row of reference values: of forces relative to T at the fairlead (at least the anchor's if
+/// that one is zero), and of positions and lengths relative to the length [-].
 fn compare_row(row: &HashMap<String, String>, seabed: Option<FlatSeabed>) -> (f64, f64) {
     let number = |name: &str| -> f64 { row[name].parse().unwrap_or_else(|_| panic!("{name} of {row:?}")) };
     let section = |i: usize| Section {
@@ -52,7 +52,7 @@ fn compare_row(row: &HashMap<String, String>, seabed: Option<FlatSeabed>) -> (f6
     (most(&forces, scale).max(vertical), most(&lengths, line.length()))
 }
 
-/// Compares every row of a table; prints the greatest difference of every class; returns the number of rows.
+/// Compares every row of a table, prints the greatest deviation of every class, and returns the number of rows.
 fn compare_table(path: &Path, tolerance: f64) -> usize {
     let mut reader = csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mut worst = BTreeMap::<String, (usize, f64, f64)>::new();

@@ -1,4 +1,4 @@
-//! Snaps, damping, jumps and resonance: where energy comes in bursts.
+//! Snaps, damping, jumps and resonance: energy transferred in bursts.
 
 use moorline::scene::{Integrator, Reconstruction};
 
@@ -6,12 +6,12 @@ use super::Case;
 use super::run::Run;
 use super::scenes::*;
 
-/// Step of generalised-α [s].
+/// Time step of generalised-α [s].
 const IMPLICIT_STEP: f64 = 0.002;
-/// Period of the turns of Lindahl's chain [s].
+/// Period of the circular fairlead motion of Lindahl's chain [s].
 const TURN: f64 = 1.25;
 
-/// Lindahl's chain over its first 12 turns.
+/// Lindahl's chain over the first 12 periods.
 fn snapping(elements: usize, integrator: Integrator, damping: f64) -> Run {
     let scene = with_elements(shipped("lindahl_fast"), elements);
     let scene = more_damped(by(scene, integrator, IMPLICIT_STEP), damping);
@@ -63,7 +63,7 @@ fn undamped_ropes_that_slacken_gain_no_energy() {
     }
 }
 
-/// A line whose fairlead jumps by 1 m after a second, for a minute.
+/// A line whose fairlead jumps by 1 m after a second, for one minute.
 fn jump(name: &str, integrator: Integrator, reconstruction: Reconstruction) -> Run {
     let mut scene = by(shipped(name), integrator, 0.01);
     scene.solver.input_reconstruction = reconstruction;
@@ -81,7 +81,7 @@ fn a_fairlead_that_jumps_by_a_metre_leaves_a_line_that_settles() {
             for reconstruction in [Reconstruction::Smooth, Reconstruction::Jump] {
                 let run = jump(name, integrator, reconstruction);
                 let case = Case(format!("jump, {name}, {integrator:?}, {reconstruction:?}"));
-                // a jump makes waves as short as elements are, which explicit steps resolve least
+                // a jump makes waves as short as an element, which explicit steps resolve worst
                 let balance = match reconstruction {
                     Reconstruction::Jump => 0.1,
                     _ => 0.02,

@@ -1,4 +1,4 @@
-//! A folded chain that falls, the whip at its end, and a line that is released in full swing.
+//! A folded chain that falls, the whip at its end, and a line released during its motion.
 
 use moorline::scene::Integrator;
 use moorline::simulation::Simulation;
@@ -8,16 +8,16 @@ use super::Case;
 use super::run::Run;
 use super::scenes::*;
 
-/// The integrators that release an end.
+/// Integrators that support released ends.
 const FREE: [Integrator; 3] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
     Integrator::GeneralisedAlpha,
 ];
-/// Parts of the drop at which the fall is looked at [-].
+/// Fractions of the drop at which the fall is evaluated [-].
 const PARTS: [f64; 5] = [0.3, 0.5, 0.7, 0.8, 0.9];
 
-/// The folded chain when its free end should have fallen by [`PARTS`], and how far it has [-].
+/// The folded chain at the times when its free end should have fallen by [`PARTS`], and the actual fractions [-].
 fn falling(elements: usize, striping: usize, integrator: Integrator) -> (Run, Vec<f64>) {
     let scene = by(
         folded_chain(elements, striping),
@@ -46,7 +46,7 @@ fn the_free_end_of_a_folded_chain_outruns_free_fall_as_its_energy_says() {
             let now = [errors[1], errors[4]];
             case.at_most(bound, "up to 0.9 of the drop", now[1]);
             for (part, (now, last)) in [0.5, 0.9].iter().zip(now.iter().zip(last)) {
-                // no full order: the striping is as wide as two elements, and tightens with them
+                // not of full order: the fold is as wide as two elements, and narrows with them
                 case.at_most(0.75 * last, &format!("at {part} of the drop"), *now);
             }
             last = now;
@@ -89,8 +89,8 @@ fn a_whip_crack_gains_2_permille_of_energy_at_most_and_8_percent_by_the_axial_im
     }
 }
 
-/// Momentum [kg m/s], and angular momentum about the centre of mass [kg m²/s], of the first line, dry: of the leapfrogs with the velocities that they
-/// step, half a step before. Those extrapolated to the places' time differ by ½ Δt² Σ v × F in angular momentum.
+/// Momentum [kg m/s], and angular momentum about the centre of mass [kg m²/s], of the first line in air. For the leapfrogs, velocities are those
+/// at the half step before; velocities extrapolated to the time of the positions would differ by ½ Δt² Σ v × F in angular momentum.
 fn momenta(simulation: &Simulation) -> [Vector3<f64>; 2] {
     let shape = &simulation.state().lines[0];
     let mass = &simulation.model().lines[0].nodes.mass;
@@ -106,7 +106,7 @@ fn momenta(simulation: &Simulation) -> [Vector3<f64>; 2] {
     [linear, angular]
 }
 
-/// Internal step that a simulation made last [s]; 0 where velocities are those of its time.
+/// Last internal step of a simulation [s]; 0 if velocities refer to the current time.
 fn last_step(simulation: &Simulation) -> f64 {
     let half_step = &simulation.state().lines[0].half_step;
     match half_step.velocity.is_empty() {
@@ -132,7 +132,7 @@ fn a_line_released_in_full_swing_whips_and_keeps_its_momenta() {
         case.sound(&flight, 5e-3, 800.0);
         let mass: f64 = flight.end.model().lines[0].nodes.mass.iter().sum();
         let [before, after] = [&start, &flight].map(|run| momenta(&run.end));
-        // leapfrogs have velocities half a step before, and their steps follow the tension
+        // leapfrogs have velocities at the half step before, and their steps depend on the tension
         let [earlier, later] = [&start, &flight].map(|run| 0.5 * last_step(&run.end));
         let fallen = Vector3::new(0.0, 0.0, -(4.0 + earlier - later) * mass * G);
         let change = (after[0] - before[0] - fallen).norm() / fallen.norm();

@@ -1,13 +1,13 @@
-//! Chains whose touchdown wanders in a storm: the seabed adds no noise.
+//! Chains whose touchdown moves in a storm: the seabed adds no noise.
 
 use moorline::scene::{Integrator, Scene};
 
 use crate::common::*;
 
-/// Samples that are evaluated, of 0.05 s: three periods of the slower motion.
+/// Number of evaluated samples at intervals of 0.05 s [-]: three periods of the slower motion.
 const WINDOW: usize = 700;
 
-/// A chain in water of a depth [m], on `elements`, whose fairlead moves by `surge` and `heave` [m].
+/// A chain of `elements` elements in water of a depth [m], whose fairlead moves by `surge` and `heave` [m].
 fn chain([depth, span, length]: [f64; 3], [surge, heave]: [f64; 2], elements: usize) -> Scene {
     let fairlead = format!("x = [[{surge}, 11.5]], z = [[{heave}, 7.4]], ramp = 15.0");
     let chain = draft(format!(
@@ -30,7 +30,7 @@ fn history(elements: usize) -> History {
 
 #[test]
 fn a_touchdown_that_wanders_makes_no_noise() {
-    // with contact at nodes alone such chains have errors of 16 to 30 % with 40 elements
+    // with contact at nodes only, such chains have errors of 16 to 30 % with 40 elements
     let reference = history(320);
     let errors = [40, 80, 160].map(|elements| history(elements).tension_error(&reference, WINDOW));
     println!("RMS error of tension with 40, 80 and 160 elements: {errors:?}");

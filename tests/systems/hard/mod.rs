@@ -1,14 +1,14 @@
 //! Hard cases: scenes in which cable solvers lose energy, accuracy or convergence. Every case states its bounds: the
-//! error of the energy balance, the distance of tension or place from a closed form or a converged run, and the
+//! error of the energy balance, the deviation of tension or position from a closed form or a converged run, and the
 //! number of internal steps.
 //!
-//! The scenes are those of the example `hard_cases`, which draws the figures of `docs/hard-cases.md`. `--nocapture`
+//! The scenes are those of the example `hard_cases`, which plots the figures of `docs/hard-cases.md`. `--nocapture`
 //! prints the results.
 
-#[allow(dead_code)] // the example uses what the tests do not
+#[allow(dead_code)] // the example uses items that the tests do not
 #[path = "../../../examples/hard_cases/run.rs"]
 mod run;
-#[allow(dead_code)] // the same
+#[allow(dead_code)] // as above
 #[path = "../../../examples/hard_cases/scenes.rs"]
 mod scenes;
 
@@ -20,14 +20,14 @@ mod landing;
 mod motion;
 mod stiffness;
 
-/// A run that claims are made of, by name.
+/// Name of a run under test.
 struct Case(String);
 
-/// Error that Newton's method leaves of an energy balance, over the energy that flowed [-].
+/// Error of an energy balance caused by the tolerance of Newton's method, relative to the transferred energy [-].
 const NEWTON: f64 = 1e-5;
 
 impl Case {
-    /// Claims that a quantity of the case is no greater than a bound; prints both.
+    /// Asserts that a quantity of the case does not exceed a bound; prints both.
     fn at_most(&self, bound: f64, quantity: &str, value: f64) {
         let name = &self.0;
         println!("{name}, {quantity}: {value:.3e}, at most {bound:.3e}");
@@ -37,8 +37,8 @@ impl Case {
         );
     }
 
-    /// Claims that a run stayed finite, that its energy balance closes to a share of the energy that flowed [-], by an implicit integrator to the error that Newton's
-    /// method leaves, and that it took no more than a number of internal steps for a second [1/s].
+    /// Asserts that a run is finite, that the error of its energy balance is at most `balance` of the transferred energy [-] (for an implicit integrator,
+    /// that of Newton's method), and that it makes at most `steps` internal steps per second [1/s].
     fn sound(&self, run: &run::Run, balance: f64, steps: f64) {
         assert!(run.is_finite(), "{}", self.0);
         let balance = match run.chosen {

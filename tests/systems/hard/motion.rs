@@ -25,13 +25,13 @@ fn a_line_dragged_through_its_touchdown_at_10_metres_a_second_loses_what_it_shou
     }
 }
 
-/// The OC4 chain in irregular motion for some hours.
+/// The OC4 chain in irregular motion for `hours` hours.
 fn storm(integrator: Integrator, hours: f64) {
     let scene = by(irregular(shipped("oc4_chain"), 6.0, 12.0), integrator, 0.05);
     let run = Run::of(&scene, 3600.0 * hours, 0.5);
     let case = Case(format!("{hours} h, {integrator:?}"));
     case.sound(&run, 2e-3, 200.0);
-    // the energy balance's error grows no faster than the energy that flows
+    // the error of the energy balance grows no faster than the transferred energy
     let share = run.error[run.error.len() - 1].abs() / run.flowed;
     case.at_most(2e-3, "drift", share);
 }
@@ -77,8 +77,8 @@ fn communication_steps_from_a_millisecond_to_ten_seconds_give_one_answer() {
     }
 }
 
-/// Claims that a scene in these communication steps [s] follows its own motion to the same end as `truth`, and follows a host within
-/// a part [-] of the standard deviation of its tension.
+/// Asserts that a scene with these communication steps [s] follows its own motion to the same end as `truth`, and that with a host the
+/// error relative to the standard deviation of the tension is at most `host` [-].
 fn answers(case: &Case, scene: &Scene, steps: Vec<f64>, truth: &Run, host: f64) {
     let exact = Run::of_steps(scene, steps.iter().copied());
     let hosted = Run::hosted(scene, steps.into_iter(), say_slow);

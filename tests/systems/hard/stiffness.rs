@@ -1,4 +1,4 @@
-//! Numbers far apart: stiffness, lengths and masses that differ by orders of magnitude.
+//! Widely different magnitudes: stiffness, lengths and masses that differ by orders of magnitude.
 
 use moorline::scene::{ContactLaw, Integrator};
 
@@ -6,19 +6,19 @@ use super::Case;
 use super::run::Run;
 use super::scenes::*;
 
-/// Difference of two runs of a line that hardly stretches below 0.5 Hz: the shocks of its nodes that land are never alike [-]. Rounding alone moves the
-/// mean of four runs of generalised-α, by which the others are judged: the order of one product in the inertia of a node changed the distance of one
+/// Difference of two runs of a nearly inextensible line below 0.5 Hz: the shocks of nodes that touch down are never the same [-]. Rounding alone
+/// changes the reference, a mean of four runs of generalised-α: the order of one product in the inertia of a node changed the difference of one
 /// and the same axial-implicit run from 0.18 to 0.23.
 const SHOCKS: f64 = 0.3;
 
-/// The OC3 line for 40 s, its axial stiffness multiplied by a factor.
+/// The OC3 line for 40 s, its axial stiffness scaled by `factor`.
 fn stiff(integrator: Integrator, factor: f64) -> Run {
     let scene = stiffer(shipped("oc3_catenary"), factor);
     Run::of(&by(scene, integrator, 0.02), 40.0, 0.05)
 }
 
-/// The same line with hardly any stretch: the mean tension of runs that differ by their steps alone, whose shocks are
-/// not alike.
+/// The nearly inextensible line: mean tension of runs that differ only in their steps, and whose shocks therefore
+/// differ.
 fn inextensible() -> Run {
     let [mut mean, others @ ..] = [0.005, 0.0025, 0.00125, 0.000625].map(|step| {
         let scene = stiffer(shipped("oc3_catenary"), 1e4);
@@ -39,7 +39,7 @@ fn a_stiffer_line_tends_to_an_inextensible_one_in_steps_that_stay_affordable() {
     for integrator in INTEGRATORS {
         for (factor, steps) in [(1.0, 170.0), (100.0, 1200.0), (1e4, 300.0)] {
             if integrator == Integrator::Leapfrog && factor > 100.0 {
-                continue; // 11 000 steps for a second
+                continue; // 11 000 steps per second
             }
             let case = Case(format!("EA × {factor}, {integrator:?}"));
             let run = stiff(integrator, factor);
@@ -104,7 +104,7 @@ fn a_segment_1000_times_shorter_than_its_neighbours_changes_nothing_but_the_step
     }
 }
 
-/// The integrators of lines that end at a free point.
+/// Integrators of lines that end at a free point.
 const JOINED: [Integrator; 4] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
@@ -147,9 +147,9 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
         for mass in [1e-3, 1e-5] {
             let scene = || nearly_massless(mass, wet);
             let truth = Run::of(&by(scene(), Integrator::GeneralisedAlpha, 0.002), 12.0, 0.05);
-            // `auto` steps as far as the host does where the line is at rest in every step; the energy balance's sums have as many terms
+            // `auto` makes steps as long as the host's if the line is at rest in every step; the sums of the energy balance have as many terms
             for (integrator, balance, steps) in [
-                (Integrator::Leapfrog, 1e-4, 120_000.0), // in water half again by the drag along it
+                (Integrator::Leapfrog, 1e-4, 120_000.0), // in water, half as many again, because of the tangential drag
                 (Integrator::AxialImplicit, 1e-4, 10_000.0),
                 (Integrator::GeneralisedAlpha, 1e-4, 110.0),
                 (Integrator::Auto, 2e-4, 4000.0),

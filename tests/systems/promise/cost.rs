@@ -1,7 +1,7 @@
 //! Error and cost on the five public scenes and ten variants of them, at four tolerances.
 //!
-//! `tests/reference/promise.csv` holds the cost; for an intended change of cost write it again with `cargo test
-//! --release --test systems -- --ignored write_the_reference_work` and give the reason.
+//! `tests/reference/promise.csv` contains the cost; after an intended change, write it again with `cargo test
+//! --release --test systems -- --ignored write_the_reference_work` and state the reason.
 
 use std::path::PathBuf;
 
@@ -13,19 +13,19 @@ use moorline::scene::{Integrator, ToleranceOf};
 
 const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 
-/// Cost that may be more than before, over that [-]: runs that slacken are not the same on every machine.
+/// Greatest allowed ratio of the cost to the earlier one [-]: runs in which lines slacken are not the same on every machine.
 const DEARER: f64 = 1.3;
 
-/// Cost of an axial-implicit step over that of an explicit one [-].
+/// Cost of an axial-implicit step relative to an explicit one [-].
 const AXIAL_IMPLICIT_COST: f64 = 3.0;
 
-/// Result of a tolerance.
+/// Result for one tolerance.
 struct Outcome {
     name: String,
     tolerance: f64,
     /// RMS errors of the raw and of the low-passed tension [-].
     errors: [f64; 2],
-    /// Cost in explicit steps of an element to a second [-].
+    /// Cost in explicit element steps per second [1/s].
     work: f64,
     words: String,
 }
@@ -58,7 +58,7 @@ impl Outcome {
         }
     }
 
-    /// Prints the outcome.
+    /// Prints the outcome and returns it.
     fn said(self) -> Outcome {
         let (name, words) = (&self.name, &self.words);
         let [tolerance, raw, smooth] = [self.tolerance, self.errors[0], self.errors[1]].map(|e| 100.0 * e);
@@ -68,7 +68,7 @@ impl Outcome {
     }
 }
 
-/// Results of all tolerances on a scene.
+/// Results for all tolerances on a scene.
 fn outcomes(case: &Case) -> Vec<Outcome> {
     let (reference, _) = recorded(&converged(&case.1));
     TOLERANCES
@@ -80,7 +80,7 @@ fn path() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/reference/promise.csv")
 }
 
-/// Work of before.
+/// Earlier cost.
 fn known(outcome: &Outcome) -> f64 {
     let text = std::fs::read_to_string(path()).unwrap();
     let start = format!("{},{},", outcome.name, outcome.tolerance);
@@ -124,7 +124,7 @@ fn the_low_passed_error_is_kept_at_less_cost_where_the_tolerance_is_of_it() {
         "oc4_chain",
     ] {
         let mut scene = moved(name, [1.0, 1.0]);
-        // with fewer samples, slaps would be aliased to frequencies that pass the filter
+        // with fewer samples, slaps would be aliased to frequencies below the cutoff of the filter
         scene.output.interval = scene.output.interval.min(scene.shortest_period() / 100.0);
         let (reference, _) = recorded(&converged(&scene));
         for tolerance in [0.05, 0.02, 0.01] {

@@ -1,8 +1,9 @@
-//! The promise of `solver.tolerance`: the RMS error of the fairlead's tension over the second half of a run, at little more than the least cost.
+//! Claim of `solver.tolerance`: the RMS error of the fairlead tension over the second half of a run, at little more than the least cost.
 //!
-//! claim: on five public scenes and ten variants of them, whose elements, integrator and step are left open,
-//! tolerances of 5, 2, 1 and 0.5 % are kept against a converged solution of 640 elements; on networks, systems in waves, light lines and cables
-//! that bend every line keeps 5 and 2 %, most 0.5 % too, against three times the elements. [`survey`] has forty scenes, driven in three ways.
+//! claim: on five public scenes and ten variants of them, with elements, integrator and step left open,
+//! tolerances of 5, 2, 1 and 0.5 % are met, compared with a converged solution of 640 elements; on networks, systems in waves, light lines and cables
+//! with bending stiffness, every line meets 5 and 2 % and most meet 0.5 %, compared with three times the elements. [`survey`] has forty scenes, driven
+//! in three ways.
 //!
 //! `cargo test --release --features slow-tests --test systems promise -- --nocapture` prints the errors.
 
@@ -18,20 +19,20 @@ use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use scenes::*;
 
-/// Elements of the converged solution, and its steps to the shortest period [-].
+/// Number of elements of the converged solution, and its number of steps in the shortest period [-].
 const CONVERGED: (usize, f64) = (640, 4000.0);
 
-/// Fraction of the interval by which a period is longer than a whole number of readings [-]. Readings have other phases in every period, so that no snap is
-/// missed every time.
+/// Fraction of the sampling interval by which a period exceeds a whole number of intervals [-]. Samples thus have other phases in every period, so that
+/// no snap is always missed.
 const FRACTION: f64 = 0.381_966;
 
-/// Interval of readings [s], somewhat shorter than that of the scene's output.
+/// Sampling interval [s], slightly different from that of the scene's output.
 fn reading_interval(scene: &Scene) -> f64 {
     let period = scene.shortest_period();
     period / ((period / scene.output.interval).round() + FRACTION)
 }
 
-/// Runs a scene with the discretisation that is chosen for it.
+/// Runs a scene with the discretisation selected for it.
 fn recorded(scene: &Scene) -> (History, Simulation) {
     let mut simulation = following(&discretised(scene));
     let interval = reading_interval(scene);
@@ -47,26 +48,26 @@ fn converged(scene: &Scene) -> Scene {
     with_integrator(fine, Integrator::AxialImplicit, scene.shortest_period() / steps)
 }
 
-/// Source of the motion of the ends of lines.
+/// Source of the motion of line ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mover {
     /// The scene's own motion, followed exactly.
     Scene,
-    /// A host that gives displacements and velocities at communication points.
+    /// A host that sets displacements and velocities at communication points.
     Velocities,
-    /// A host that gives displacements there.
+    /// A host that sets displacements only.
     Displacements,
 }
 
 /// Result of a run.
 struct Run {
-    /// Tension of every line at the end that moves, over the second half of the run [N].
+    /// Tension of every line at its moving end, over the second half of the run [N].
     tensions: Vec<Vec<f64>>,
     /// Warning on the host's inputs.
     warning: Option<String>,
 }
 
-/// Runs a scene, whose discretisation is settled, for a number of communication steps [s].
+/// Runs a scene with selected discretisation for `count` communication steps of `step` [s].
 fn run_by(mover: Mover, scene: &Scene, step: f64, count: usize) -> Run {
     let mut simulation = start(scene);
     let velocities = mover == Mover::Velocities;
@@ -94,7 +95,7 @@ fn run_by(mover: Mover, scene: &Scene, step: f64, count: usize) -> Run {
     Run { tensions, warning }
 }
 
-/// The end of every line that is moved, B where both or none are.
+/// The moving end of every line; B if both or none move.
 fn ends_that_move(model: &Model) -> Vec<End> {
     let moves = |point: usize| {
         let role = &model.points[point].role;
@@ -114,14 +115,14 @@ fn tensions(scene: &Scene) -> Vec<Vec<f64>> {
     run_by(Mover::Scene, &discretised(scene), output.interval, count).tensions
 }
 
-/// The discretisation of a scene at a tolerance.
+/// Selects the discretisation of a scene at a tolerance.
 fn settled(scene: &Scene, tolerance: f64) -> Discretisation {
     let mut scene = scene.clone();
     scene.solver.tolerance = tolerance;
     discretisation::select(&scene).unwrap()
 }
 
-/// The same scene with three times the elements, in steps of a third at a tenth of the tolerance.
+/// The scene with three times the elements, a third of the step and a tenth of the tolerance.
 fn finer(scene: &Scene, settled: &Scene) -> Scene {
     let threefold = |elements: Option<usize>| elements.map(|elements| 3 * elements);
     let mut fine = settled.clone();
@@ -138,7 +139,7 @@ fn finer(scene: &Scene, settled: &Scene) -> Scene {
     fine
 }
 
-/// RMS error of every tension over the standard deviation of the right one [-].
+/// RMS error of every tension, relative to the standard deviation of the exact one [-].
 fn errors_between(found: &[Vec<f64>], exact: &[Vec<f64>]) -> Vec<f64> {
     let lines = found.iter().zip(exact);
     let errors = lines.map(|(own, right)| {

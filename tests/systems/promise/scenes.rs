@@ -1,9 +1,9 @@
-//! Scenes on which the promise is measured: public ones and variants of them, networks, cables that bend, systems in waves, and others that are built.
+//! Scenes on which the claim is tested: public ones and variants of them, networks, cables with bending stiffness, systems in waves, and other typical lines.
 
 use crate::common::*;
 use moorline::scene::{MotionPath, Scene};
 
-/// A scene, by name.
+/// Name and scene.
 pub(super) type Case = (String, Scene);
 
 pub(super) fn public() -> Vec<Case> {
@@ -13,7 +13,7 @@ pub(super) fn public() -> Vec<Case> {
         .collect()
 }
 
-/// A public scene with its motion's amplitudes and periods multiplied.
+/// A public scene with scaled amplitudes and periods of its motion.
 pub(super) fn moved(name: &str, [amplitude, period]: [f64; 2]) -> Scene {
     let mut scene = open(shipped(name));
     for path in scene.motion.values_mut() {
@@ -29,7 +29,7 @@ pub(super) fn moved(name: &str, [amplitude, period]: [f64; 2]) -> Scene {
     scene
 }
 
-/// A public scene in another depth [m], with another length of line [m].
+/// A public scene with another depth [m] and line length [m].
 fn laid(name: &str, [depth, length]: [f64; 2]) -> Scene {
     let mut scene = open(shipped(name));
     scene.points[0].position[2] = -depth;
@@ -55,7 +55,7 @@ pub(super) fn variants() -> Vec<Case> {
     ])
 }
 
-/// Two floats 300 m apart, each on a line to an anchor, with a shared line between them that carries a buoy in its middle.
+/// Two floats 300 m apart, each with a line to an anchor, and a shared line between them with a buoy in its middle.
 pub(super) fn farm() -> Scene {
     let mut farm = draft(
         "water.density = 1025.0
@@ -82,7 +82,7 @@ pub(super) fn farm() -> Scene {
         .scene()
 }
 
-/// One line of every cluster of the semi-submersible in the sea of a storm.
+/// One line of every cluster of the semi-submersible in storm waves.
 pub(super) fn clusters() -> Scene {
     let mut scene = shipped("storm_moored_semi");
     scene
@@ -98,7 +98,7 @@ pub(super) fn clusters() -> Scene {
     scene
 }
 
-/// A cable that hangs from a float to the seabed.
+/// A cable with bending stiffness that hangs from a float to the seabed.
 pub(super) fn umbilical() -> Scene {
     draft(
         "water.density = 1025.0
@@ -114,14 +114,14 @@ pub(super) fn umbilical() -> Scene {
     .scene()
 }
 
-/// The same, clamped to the float.
+/// The umbilical, clamped to the float.
 pub(super) fn clamped_umbilical() -> Scene {
     let mut scene = umbilical();
     scene.lines[0].clamped_b = Some([-0.1, 0.0, 1.0]);
     scene
 }
 
-/// A lazy wave in a tank, at a scale of 1:40, whose motion is fast compared with the longest step that is allowed.
+/// A lazy wave in a tank at a scale of 1:40, whose motion is fast relative to the maximum time step.
 pub(super) fn tank_cable() -> Scene {
     draft(
         "water.density = 1000.0
@@ -143,7 +143,7 @@ pub(super) fn tank_cable() -> Scene {
     .scene()
 }
 
-/// A cable with buoyancy in its middle between two floats.
+/// A cable between two floats, with a buoyant section in its middle.
 pub(super) fn cable_between_floats() -> Scene {
     draft(
         "water.density = 1025.0
@@ -165,7 +165,7 @@ pub(super) fn cable_between_floats() -> Scene {
     .scene()
 }
 
-/// A taut rope of polyester between two short lengths of chain.
+/// A taut polyester rope between two short chains.
 pub(super) fn deep_polyester() -> Scene {
     draft(
         "water.density = 1025.0
@@ -187,7 +187,7 @@ pub(super) fn deep_polyester() -> Scene {
     .scene()
 }
 
-/// A float on one leg: chain from the anchor to a submerged buoy, and rope from there.
+/// A float with one leg: chain from the anchor to a submerged buoy, then rope.
 fn buoyed_leg() -> Scene {
     draft(
         "water.density = 1025.0
@@ -208,7 +208,8 @@ fn buoyed_leg() -> Scene {
     .scene()
 }
 
-/// Two legs of chain from the seabed to a ring, and a wire from there to the fairlead, of lengths [m]; with less than 2 m to spare all slacken in every period.
+/// Two chain legs from the seabed to a ring, and a wire from the ring to the fairlead, with these lengths [m]; with less than 2 m of slack, all slacken in
+/// every period.
 pub(super) fn crowfoot([leg, wire]: [f64; 2]) -> Scene {
     draft(
         "water.density = 1025.0
@@ -231,7 +232,7 @@ pub(super) fn crowfoot([leg, wire]: [f64; 2]) -> Scene {
     .scene()
 }
 
-/// A tendon of steel tube that holds a platform down, in drift and waves.
+/// A tendon of steel tube that holds a platform down, with drift and wave motion.
 fn tendon() -> Scene {
     draft(
         "water.density = 1025.0
@@ -246,7 +247,7 @@ fn tendon() -> Scene {
     .scene()
 }
 
-/// A wave-energy buoy on three hawsers of nylon with chain on the seabed, without waves or in those given.
+/// A wave-energy buoy on three nylon hawsers with chain on the seabed, without waves or with those given.
 fn hawsers(waves: &str) -> Scene {
     let mut buoy = draft(
         "water.density = 1025.0
@@ -276,7 +277,7 @@ fn hawsers(waves: &str) -> Scene {
     buoy.scene()
 }
 
-/// A shipped scene in waves, its elements left open.
+/// A shipped scene with waves, its elements left open.
 fn in_waves(name: &str, waves: &str) -> Scene {
     let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).unwrap();
@@ -285,12 +286,12 @@ fn in_waves(name: &str, waves: &str) -> Scene {
     scene
 }
 
-/// Scenes with their names.
+/// Pairs scenes with their names.
 fn named<const N: usize>(scenes: [(&str, Scene); N]) -> Vec<Case> {
     scenes.map(|(name, scene)| (name.to_string(), scene)).into()
 }
 
-/// The public scenes, with the periods of their motion × 0.7 and × 1.4, and its amplitudes × 1.5.
+/// The public scenes, and variants with periods × 0.7 and × 1.4 and amplitudes × 1.5.
 pub(super) fn public_and_moved() -> Vec<Case> {
     let changes = [
         ("", [1.0, 1.0]),
@@ -307,7 +308,7 @@ pub(super) fn public_and_moved() -> Vec<Case> {
         .collect()
 }
 
-/// Networks of lines that meet at free points.
+/// Networks of lines joined at free points.
 pub(super) fn networks() -> Vec<Case> {
     named([
         ("farm", farm()),
@@ -318,7 +319,7 @@ pub(super) fn networks() -> Vec<Case> {
     ])
 }
 
-/// Cables that bend.
+/// Cables with bending stiffness.
 pub(super) fn cables() -> Vec<Case> {
     named([
         ("umbilical", umbilical()),
@@ -347,7 +348,7 @@ pub(super) fn systems_in_waves() -> Vec<Case> {
     ])
 }
 
-/// Other lines that are built: taut and deep ropes, hawsers, risers.
+/// Other typical lines: taut and deep ropes, hawsers, risers.
 pub(super) fn others() -> Vec<Case> {
     named([
         ("deep polyester", deep_polyester()),

@@ -1,4 +1,4 @@
-//! Selection of meshes by trials: short sections, meshes that cannot be tried, copies of a line, packaged scenes, positions.
+//! Selection of meshes by convergence trials: short sections, meshes that cannot be tried, copies of a line, packaged scenes, positions.
 
 use super::scenes::{crowfoot, deep_polyester, moved};
 use super::{CONVERGED, errors_between, recorded, settled, tensions};
@@ -7,7 +7,7 @@ use moorline::discretisation::{self, Discretisation, discretised};
 use moorline::scene::{Integrator, Scene, ToleranceOf};
 use moorline::simulation::Simulation;
 
-/// Notes on errors above the tolerance, a line each.
+/// Notes on errors above the tolerance, one per line.
 fn shortfalls(found: &Discretisation) -> String {
     let notes = found.shortfalls().into_iter().map(|note| note.text);
     notes.collect::<Vec<_>>().join("\n")
@@ -67,7 +67,7 @@ fn a_mesh_of_which_no_trial_could_be_run_is_told() {
     assert_says(&shortfalls(&found), &["leg: the error of this mesh is unknown"]);
 }
 
-/// The tension of lines that slacken jumps; with the instant of a jump off by the time of an element, its RMS error falls as slowly as n^-1/2.
+/// The tension of lines that slacken jumps. If a jump is shifted by the travel time through one element, the RMS error decreases only as n^-1/2.
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn the_error_of_an_extrapolated_mesh_is_told_as_it_is_where_lines_snap() {
@@ -79,7 +79,7 @@ fn the_error_of_an_extrapolated_mesh_is_told_as_it_is_where_lines_snap() {
     assert_says(&shortfalls(&found), &["above solver.tolerance = 0.02"]);
 }
 
-/// Snaps that last a fraction of a period: 25 samples at the same phases of every period miss some, or find all of them.
+/// Snaps last a fraction of a period: 25 samples at the same phases of every period would miss some of them, or find all.
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn few_samples_in_a_period_give_the_errors_of_trials_that_many_give() {
@@ -88,7 +88,7 @@ fn few_samples_in_a_period_give_the_errors_of_trials_that_many_give() {
         let mut many = few.clone();
         many.output.interval = few.shortest_period() / 200.0;
         let [few, many] = [few, many].map(|scene| settled(&scene, 0.05).meshes[0].trials.clone());
-        // on finer meshes some snaps are shorter than the time between few samples
+        // on finer meshes, some snaps are shorter than the interval of the few samples
         let coarse = few.iter().zip(&many).filter(|(few, _)| few.elements <= 56);
         for (few, many) in coarse {
             let ratio = few.error / many.error;
@@ -131,7 +131,7 @@ fn a_line_that_hardly_moves_takes_hardly_more_elements_than_one_that_does() {
     );
 }
 
-/// Copies of a scene's only line along the seabed, all moved alike, and one that is longer by a metre.
+/// Copies of a scene's only line along the seabed with the same motion, and one copy that is longer by a metre.
 fn field(name: &str, copies: usize) -> Scene {
     let mut scene = moved(name, [1.0, 1.0]);
     let (line, [from, to]) = (
@@ -176,7 +176,7 @@ fn of_lines_that_are_copies_one_is_tried() {
     assert_ne!(longer.trials, one.trials);
 }
 
-/// A line whose mesh is given does not prevent the trials of the other, which finds the mesh that it has alone.
+/// A line with a given mesh does not prevent the trials of the other line, which gets the mesh that it has alone.
 #[test]
 fn elements_given_for_a_line_leave_the_trials_of_another() {
     let alone = discretisation::select(&moved("taut_polyester", [1.0, 1.0])).unwrap();
@@ -195,7 +195,7 @@ fn elements_given_for_a_line_leave_the_trials_of_another() {
     }
 }
 
-/// The integrator of beams is not tried: a riser that is a beam does not prevent the trials of a rope, and a note says that the error of its open mesh
+/// Beams are not tried: a riser modelled as a beam does not prevent the trials of a rope, and a note states that the error of its open mesh
 /// is unknown.
 #[test]
 fn a_beam_leaves_the_trials_of_other_lines() {
@@ -241,7 +241,7 @@ sections = [{ type = "rod", length = 139.5 }]
     assert_eq!(shortfalls(&selected), "");
 }
 
-/// RMS error of the position of the middle of a scene's line on the mesh selected, over its deviation from its mean [-].
+/// RMS error of the position of a line's middle node on the selected mesh, relative to its deviation from its mean [-].
 fn error_of_middle(scene: &Scene) -> f64 {
     let middle = |scene: &Scene| {
         let mut simulation = following(scene);
@@ -291,7 +291,7 @@ fn the_trials_are_described_in_words() {
     );
 }
 
-/// RMS difference of tension, and of the middle's position, of runs with twice the elements each time.
+/// RMS differences of tension and of the middle node's position between runs with successively doubled elements.
 fn refined(name: &str, elements: &[usize]) -> Vec<[f64; 2]> {
     let scene = shipped(name);
     let step = scene.shortest_period() / CONVERGED.1;

@@ -1,25 +1,26 @@
-//! Forty scenes at 5, 2 and 0.5 %, each moved in three ways: by its own motion, by a host that gives displacements and velocities forty times
-//! in the shortest period of the motion, and by one that gives displacements alone.
+//! Forty scenes at tolerances of 5, 2 and 0.5 %, each moved in three ways: by its own motion, by a host that sets displacements and velocities forty times
+//! per shortest period of the motion, and by a host that sets displacements only.
 //!
-//! claim: every line keeps the tolerance, or a note or warning says that it may not. The table of docs/validation.md is the output of
+//! claim: every line meets the tolerance, or a note or warning states that it may not. The table of docs/validation.md is the output of
 //!
 //! ```text
 //! cargo test --release --test systems -- --ignored --nocapture forty
 //! ```
 //!
-//! `SCENES=lazy` runs the scenes whose names contain that, and prints the error of every line.
+//! `SCENES=lazy` runs the scenes whose names contain that word, and prints the error of every line.
 
 use super::*;
 
-/// Communication steps in the shortest period of the motion [-].
+/// Number of communication steps in the shortest period of the motion [-].
 const POINTS: f64 = 40.0 + FRACTION;
-/// Readings of a scene that follows its own motion for each reading of a host [-].
+/// Number of samples of a scene that follows its own motion for each sample of a host [-].
 const FINER: usize = 4;
 const TOLERANCES: [f64; 3] = [0.05, 0.02, 0.005];
 const MOVERS: [Mover; 3] = [Mover::Scene, Mover::Velocities, Mover::Displacements];
 
-/// Errors above the tolerance without a note: scene, mover, tolerance, and the bound that holds instead [-]. `oc4_chain`: the mesh keeps the tolerance over all
-/// times, but the host reads few of the snaps. `lindahl_fast`: displacements alone shift the instants of snaps by 1.9 %, of which 1.0 % are estimated.
+/// Errors above the tolerance without a note: scene, mover, tolerance, and the bound that holds instead [-]. `oc4_chain`: the mesh meets the tolerance
+/// over all times, but a host samples few of the snaps. `lindahl_fast`: with displacements only, the snaps shift in time; the error is 1.9 %, of which
+/// 1.0 % are estimated.
 const SILENT: [(&str, Mover, f64, f64); 2] = [
     ("lindahl_fast, periods × 0.7", Mover::Displacements, 0.02, 0.024),
     ("oc4_chain, amplitudes × 1.5", Mover::Velocities, 0.05, 0.052),
@@ -27,15 +28,15 @@ const SILENT: [(&str, Mover, f64, f64); 2] = [
 
 /// Result of a run of a scene.
 struct Kept {
-    /// Greatest error of a line [-].
+    /// Greatest error of all lines [-].
     error: f64,
     tolerance: f64,
-    /// True if a note on the mesh or a warning on the inputs says that the tolerance may be missed.
+    /// True if a note on the mesh or a warning on the inputs states that the tolerance may be missed.
     told: bool,
 }
 
 impl Kept {
-    /// Returns true where the promise holds: the tolerance is kept, or a note says that it may not be, or the error is a known one.
+    /// Returns whether the claim holds: the tolerance is met, or a note states that it may be missed, or the error is a known one.
     fn holds(&self, name: &str, mover: Mover) -> bool {
         let known = |&&(scene, by, tolerance, _): &&(&str, Mover, f64, f64)| {
             (scene, by, tolerance) == (name, mover, self.tolerance)
@@ -45,7 +46,7 @@ impl Kept {
     }
 }
 
-/// Results of a scene at tolerances, by mover, against a converged scene.
+/// Results of a scene at several tolerances, by mover, compared with a converged scene.
 fn results(case: &Case, tolerances: &[f64], converged: &Scene) -> [Vec<Kept>; 3] {
     let (name, scene) = case;
     let verbose = std::env::var("SCENES").is_ok();
@@ -78,8 +79,8 @@ fn results(case: &Case, tolerances: &[f64], converged: &Scene) -> [Vec<Kept>; 3]
     })
 }
 
-/// Runs a scene at tolerances in all ways, prints its row of the table, and returns the misses of which nothing tells. The converged
-/// solution has three times the elements of the last tolerance unless another is given.
+/// Runs a scene at several tolerances in all three ways, prints its row of the table, and returns the errors above the tolerance without a note. The
+/// converged solution has three times the elements of the last tolerance unless another is given.
 fn silent_misses(case: &Case, tolerances: &[f64], converged: Option<Scene>) -> Vec<String> {
     let (name, scene) = case;
     let last = tolerances[tolerances.len() - 1];

@@ -1,9 +1,9 @@
-//! Energy balance of the axial-implicit leapfrog ([`crate::dynamics::leapfrog::balance`]): T̄ does work on the free nodes, and (T̄ − S) on the dampers, with S
-//! the part of T̄ from the springs.
+//! Energy balance of the axial-implicit leapfrog ([`crate::dynamics::leapfrog::balance`]): T̄ does work on the free nodes, and T̄ − S on the dampers,
+//! with S the part of T̄ from the springs.
 //!
-//! The averaging dissipates the work of S less that of the discrete gradient of the springs' energy from half a step before t_n to half a step after
-//! it. That is ½(T₋ + T₊)(T₊ − T₋)/(U₊ − U₋) for springs whose tension is proportional to strain, with U the tension they would have if
-//! they also pushed: the mean of both except in segments that slacken or snap taut. The averaging of ρ = 1 is this mean and dissipates nothing.
+//! The averaging dissipates the difference between the work of S and that of the discrete gradient of the energy of the springs from t_{n−½} to
+//! t_{n+½}. For springs whose tension is proportional to strain, the gradient is ½(T₋ + T₊)(T₊ − T₋)/(U₊ − U₋), with U the tension as if they also
+//! pushed: the mean of both tensions except in segments that slacken or snap taut. The averaging with ρ = 1 is this mean and does not dissipate.
 
 use super::AxialLine;
 use super::rows::{SegmentRow, Sizes, pulled};
@@ -12,11 +12,11 @@ use crate::dynamics::leapfrog::step::Step;
 use crate::dynamics::viscoelastic::Relaxed;
 use crate::math::lanes::{Lanes, Vectors};
 
-/// Change of strain above which the difference of the energies gives the mean tension [-].
+/// Change of strain above which the mean tension is evaluated from the difference of the energies [-].
 const STRAIN_RESOLVED: f64 = 1e-9;
 
 impl AxialLine {
-    /// Adds a step; `velocity_before` holds the new velocities, positions and rows are those of t_n.
+    /// Adds a step. `velocity_before` must hold the new velocities; positions and rows must be those at t_n.
     #[inline(always)]
     pub(super) fn balance_step(&mut self, step: Step, sizes: &Sizes) {
         let Some(mut balance) = self.balance.take() else {
@@ -51,7 +51,7 @@ impl AxialLine {
         }
     }
 
-    /// Sum of old and new velocities of the free nodes of a row, and of those after them [m/s].
+    /// Sum of old and new velocities of the free nodes of a row, and of the next nodes [m/s].
     #[inline(always)]
     fn both(&self, at: usize) -> [Vectors; 2] {
         let (line, nodes) = (&self.layout, &self.kernel.rows.nodes);
@@ -80,7 +80,7 @@ impl AxialLine {
     #[inline(always)]
     fn work_on_dampers(&self, at: usize, sizes: &Sizes) -> Lanes {
         if self.layout.viscoelastic.is_some() {
-            return Lanes::splat(0.0); // part of the memory
+            return Lanes::splat(0.0); // see `balance_viscoelastic`
         }
         let (segment, [along, moved]) = (&self.kernel.rows.segments[at - 1], self.stretching(at, sizes));
         (segment.tension - segment.spring(along).positive()) * moved
@@ -94,7 +94,7 @@ impl AxialLine {
         [along, sizes.kick * (segment.along + along)]
     }
 
-    /// Twice the energy that the averaging dissipates on a row of segments [J].
+    /// Twice the energy dissipated by the averaging on a row of segments [J].
     #[inline(always)]
     fn averaged(&self, at: usize, step: Step, sizes: &Sizes) -> Lanes {
         let (segment, [along, moved]) = (&self.kernel.rows.segments[at - 1], self.stretching(at, sizes));
@@ -131,7 +131,7 @@ impl AxialLine {
         segment.axial_stiffness * segment.unstretched_length * secant
     }
 
-    /// Power of the drag on the velocity of the water and of the Froude-Krylov force on a row of nodes [W].
+    /// Power of the drag at the velocity of the water, and of the Froude-Krylov force, on a row of nodes [W].
     #[inline(always)]
     fn water_power(&self, at: usize) -> Lanes {
         let (line, node) = (&self.layout, &self.kernel.rows.nodes[at - 1]);
@@ -148,8 +148,8 @@ impl AxialLine {
         node.free * (power + current.froude_krylov.dot(mean))
     }
 
-    /// Adds the dissipation of the dampers of viscoelastic segments, and that of the averaging: the work of T̄ less that of the tension of the
-    /// memory over the step. The new velocities are in place.
+    /// Adds the dissipation of the dampers of viscoelastic segments, and that of the averaging: the work of T̄ less that of the viscoelastic
+    /// tension over the step. `velocity` must hold the new velocities.
     #[inline(always)]
     pub(super) fn balance_viscoelastic(&mut self, at: usize, relaxed: Relaxed, step: Step) {
         let (velocity, row) = (&self.layout.velocity, &self.kernel.rows.segments[at - 1]);

@@ -1,18 +1,18 @@
 //! Free points of a network with implicit tension.
 //!
-//! Given the velocity v of the free point at an end, the tensions T̄ of a line are linear in s = d·v, with d = q at end B and −q at end A: the system in
-//! T̄ has r s on the right-hand side of the end segment, with r the slope of T̄ with its stretching velocity. Hence
+//! For a given velocity v of the free point at an end, the tensions T̄ of a line are linear in s = d·v, with d = q at end B and −q at end A. The
+//! right-hand side of the end segment in the system in T̄ is r s, with r the slope of T̄ with the stretching velocity. Hence
 //!
 //! T̄ = T⁰ + Σ_e g_e s_e,
 //!
-//! with T⁰ that of free points at rest, and g_e the solution for r at the end segment alone. The momentum of a point with the mass M, which includes the
-//! half nodes of its lines, and the force f without tension,
+//! with T⁰ the tension for free points at rest, and g_e the solution for r at the end segment alone. The momentum equation of a point with the mass M,
+//! which includes the half nodes of its lines, and the force f without tension,
 //!
 //! M (v − v⁻) = Δt [f − Σ_e d_e T̄_e],
 //!
 //! is then a symmetric positive definite system in the velocities of the points, with a block for every line between two of them: the graph of the
-//! network. It is solved by sparse elimination ([`PointSystem`]). Springs of the seabed that push add to M, and are checked with the flags of slack and
-//! contact of the lines; friction is the part of the impulse that would stop the point that Coulomb's law allows, iterated until both agree.
+//! network. It is solved by sparse elimination ([`PointSystem`]). Seabed springs that push are included in M, and are checked together with the slack and
+//! contact of the lines. Friction is the impulse that would stop the point, limited by Coulomb's law; friction and velocity are iterated to convergence.
 //!
 //! Source: static condensation of the lines to their ends (Guyan 1965, AIAA J. 3, 380) in the equations of [`super`].
 
@@ -34,7 +34,7 @@ use crate::model::{End, Model, Network};
 use crate::physics::friction::Friction;
 use crate::physics::slender::Slender;
 
-/// Change of friction relative to the push of the seabed that requires another pass [-].
+/// Change of friction that requires another pass, relative to the push of the seabed [-].
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
 /// Tensions of four segments as functions of the velocities of free points.
@@ -42,7 +42,7 @@ const FRICTION_TOLERANCE: f64 = 1e-4;
 pub(super) struct OpenRow {
     /// T⁰ [N].
     base: Lanes,
-    /// g of ends A and B [N s/m].
+    /// g for ends A and B [N s/m].
     slopes: [Lanes; 2],
 }
 
@@ -74,13 +74,12 @@ pub struct Coupling {
     system: Option<PointSystem>,
 }
 
-/// A free point during a step.
 #[derive(Debug, Clone)]
 struct CoupledPoint {
     load: PointLoad,
     /// Velocity before the step [m/s].
     last: Vector3<f64>,
-    /// Velocity that the last pass found [m/s].
+    /// Velocity found by the last pass [m/s].
     velocity: Vector3<f64>,
     /// Springs of the seabed, and whether they push.
     springs: Vec<(ContactSpring, bool)>,
@@ -88,14 +87,13 @@ struct CoupledPoint {
     normal: Vector3<f64>,
     /// Impulse of friction [N s].
     friction: Vector3<f64>,
-    /// Inverse of the block of the point on itself without friction [1/kg].
+    /// Inverse of the diagonal block of the point [1/kg].
     inverse: Matrix3<f64>,
-    /// 1 along the axes on which it moves, else 0.
+    /// 1 along the free axes of the point, else 0.
     free: Vector3<f64>,
 }
 
 impl Coupling {
-    /// Allocates for a network.
     pub(super) fn new(model: &Model, network: &Network) -> Coupling {
         let points = &network.free_points;
         if points.is_empty() {
@@ -186,7 +184,7 @@ impl LeapfrogNetwork<AxialImplicit> {
         ends.filter(|(line, end)| !line.is_released(*end))
     }
 
-    /// Sum of d T̄ at a free point [N].
+    /// Sum of d T̄ over the ends of lines at a free point [N].
     fn pull_on(&self, free: usize) -> Vector3<f64> {
         let pull = |(line, end): (&AxialLine, End)| {
             let (segment, sign) = line.layout.end_segment(end);
@@ -197,7 +195,7 @@ impl LeapfrogNetwork<AxialImplicit> {
 }
 
 impl CoupledPoint {
-    /// Finds loads and contact at the start of a step from `t` [s].
+    /// Evaluates loads and contact at the start of a step from `t` [s].
     fn prepare(
         &mut self,
         network: &LeapfrogNetwork<AxialImplicit>,
@@ -228,7 +226,7 @@ impl CoupledPoint {
         self.friction = Vector3::zeros();
     }
 
-    /// Revises contact and friction from the velocity that a pass found; false if that requires another one.
+    /// Revises contact and friction for the velocity found by a pass; returns false if another pass is required.
     fn seabed_holds(&mut self, friction: Option<&Friction>, step: Step) -> bool {
         let rise = self.normal.dot(&self.velocity);
         let (mut push, mut holds) = (0.0, true);
@@ -255,7 +253,7 @@ impl CoupledPoint {
 }
 
 impl Coupling {
-    /// Solves for the velocities of the points, with the tensions found for the lines.
+    /// Solves for the velocities of the points, from the tensions of the lines as functions of these velocities.
     fn solve(&mut self, network: &LeapfrogNetwork<AxialImplicit>, step: Step) {
         let Some(system) = &mut self.system else {
             return;
@@ -314,7 +312,7 @@ impl Coupling {
 }
 
 impl AxialLine {
-    /// d of an end: the direction in which a velocity stretches the line [-].
+    /// d of an end: the direction in which a velocity of the end stretches the line [-].
     fn outward(&self, end: End) -> Vector3<f64> {
         let (segment, sign) = self.layout.end_segment(end);
         -sign
@@ -323,7 +321,6 @@ impl AxialLine {
                 .get(segment.lane)
     }
 
-    /// Tension at an end as a function of the velocities of free points.
     fn end_tension(&self, end: End) -> EndTension {
         let (segment, _) = self.layout.end_segment(end);
         let row = &self.kernel.open[segment.row - 1];
@@ -341,7 +338,7 @@ impl AxialLine {
         ENDS.into_iter().filter(move |&end| open[end as usize])
     }
 
-    /// Load and mass of the half node at an end without tension and contact, with implicit drag like that of the other nodes.
+    /// Load and mass of the half node at an end without tension, and its contact. The drag is implicit, as at the other nodes.
     fn end_share(&self, end: End, step: Step) -> PointLoad {
         let layout: &Layout = &self.layout;
         let at = layout.end_slot(end);
@@ -384,7 +381,6 @@ impl AxialLine {
         share
     }
 
-    /// Sets the velocity of the node at an end to that of its point [m/s].
     fn set_end_velocity(&mut self, end: End, velocity: Vector3<f64>) {
         let at = self.layout.end_slot(end);
         let node = &mut self.kernel.rows.nodes[at.row - 1];
@@ -392,7 +388,7 @@ impl AxialLine {
         node.loose.set(at.lane, velocity);
     }
 
-    /// Finds T⁰ and g at the ends tied to free points.
+    /// Computes T⁰ and g of the ends tied to free points.
     #[inline(always)]
     fn find_open_tensions(&mut self, sizes: &Sizes) {
         self.open_ends()
@@ -420,7 +416,7 @@ impl AxialLine {
         }
     }
 
-    /// T̄ at velocities of the free points at the ends [m/s]. Returns that of the segments before those of the first row [N].
+    /// Sets T̄ from the velocities of the free points at the ends [m/s]. Returns T̄ of the segments before the first row [N].
     #[inline(always)]
     fn combine_tensions(&mut self, velocities: [Vector3<f64>; 2]) -> Lanes {
         let mut speeds = [Lanes::splat(0.0); 2];
@@ -439,7 +435,6 @@ impl AxialLine {
     }
 }
 
-/// Evaluates everything that precedes the tensions of a line.
 struct Prepare<'a> {
     step: Step,
     ends: &'a [Vector3<f64>; 2],
@@ -454,7 +449,7 @@ impl Stage for Prepare<'_> {
     }
 }
 
-/// Tensions of a line at the velocities of free points at its ends.
+/// Tensions of a line as functions of the velocities of free points at its ends.
 struct Tensions {
     step: Step,
 }
@@ -472,7 +467,7 @@ impl Stage for Tensions {
     }
 }
 
-/// Velocities of a line, with those of the free points at its ends [m/s]. Returns whether the assumptions hold.
+/// Velocities of a line, from those of the free points at its ends [m/s]. Returns whether the assumptions hold.
 struct Settle {
     step: Step,
     velocities: [Vector3<f64>; 2],
@@ -495,7 +490,7 @@ impl Stage for Settle {
     }
 }
 
-/// Motion of the nodes to t_{n+1}, with ends at these positions [m].
+/// Motion of the nodes to t_{n+1}, with the ends at given positions [m].
 struct Finish<'a> {
     step: Step,
     ends: &'a [Vector3<f64>; 2],

@@ -1,7 +1,7 @@
-//! A seabed with a slope, soundings or friction under the axial-implicit leapfrog.
+//! Contact of the axial-implicit leapfrog with a seabed with a slope, soundings or friction.
 //!
-//! With the parts of water and damping in its mass M, a node on the seabed obeys M (v − u) = Δt pull + λ_n n + λ_t, with u its velocity
-//! without tension and seabed. It is in one of three states, which are assumed before the system in T̄ is solved and checked afterwards:
+//! A node on the seabed obeys M (v − u) = Δt pull + λ_n n + λ_t. Its mass M includes the implicit parts of drag and damping, and u is its velocity
+//! without tension and seabed. The node has one of three states, which are assumed before the system in T̄ is solved, and checked afterwards:
 //!
 //! ```text
 //! off       λ = 0                                    v = u + M⁻¹ Δt pull
@@ -9,16 +9,16 @@
 //! sticks    v = v_n n                                v_n = (n·M u + a + Δt n·pull)/(n·M n + b): of rank one itself
 //! ```
 //!
-//! a and b are those of [`crate::dynamics::leapfrog::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows
-//! ([`crate::physics::friction`]) at the velocity along the seabed that it would have without friction and with the normal velocity of the pass: with the
-//! inverse mass W in the axes of [`Footing`] and d the determinant of its block of n and a,
+//! a and b are those of [`crate::dynamics::leapfrog::contact`]. After a pass, the friction on every node on the seabed is revised by Coulomb's law
+//! ([`crate::physics::friction`]), for the velocity along the seabed without friction and with the normal velocity of the pass. With the inverse mass W in
+//! the axes of [`Footing`] and d the determinant of its block of n and a, this velocity is
 //!
 //! ```text
-//! v⁰_a = u_a + (d Δt pull_a + W_na (v_n − u_n))/W_nn,   to λ_a with the compliance d/W_nn;   v⁰_b = u_b + W_bb Δt pull_b
+//! v⁰_a = u_a + (d Δt pull_a + W_na (v_n − u_n))/W_nn,   with the compliance d/W_nn to λ_a;   v⁰_b = u_b + W_bb Δt pull_b
 //! ```
 //!
-//! The step is repeated until states and friction hold. The first assumption follows in the same way from the velocities that
-//! the nodes would have under the tensions expected from t_n, without friction. Without friction nodes slide with λ_t = 0.
+//! The step is repeated until states and friction have converged. The first assumption follows in the same way from the velocities that the nodes
+//! would have under the tensions expected from t_n, without friction. On a seabed without friction, nodes slide with λ_t = 0.
 
 use super::AxialLine;
 use super::rows::{NodeRow, Sizes, under};
@@ -29,22 +29,22 @@ use crate::physics::friction::Friction;
 use crate::physics::friction_step::Footing;
 use crate::physics::slender::Slender;
 
-/// Change of friction that requires another pass, relative to the greater of the push of the seabed and the greatest tension [-].
+/// Change of friction that requires another pass, relative to the larger of the push of the seabed and the largest tension [-].
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
 /// State of a row of nodes on the seabed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeabedRow {
-    /// 1 where nodes slide or stick, else −1.
+    /// 1 for nodes that slide or, in `sticks`, stick; else −1.
     slides: Lanes,
     sticks: Lanes,
     /// Normal n of the seabed [-].
     normal: Vectors,
-    /// Inverse mass off the seabed [1/kg], W n, and 1/(1 + b W_nn) [-].
+    /// Inverse mass without seabed [1/kg], W n [1/kg], and 1/(1 + b W_nn) [-].
     inverse: Slender<Lanes>,
     response: Vectors,
     softness: Lanes,
-    /// Data of friction.
+    /// Inverse mass in the axes of the seabed.
     rough: RoughRow,
     /// λ_t [N s].
     friction: Vectors,
@@ -61,7 +61,7 @@ struct RoughRow {
 }
 
 impl RoughRow {
-    /// Nodes with an inverse mass [1/kg] along a tangent, of which `yields` is W_nn, on a seabed with a normal and a resistance b [kg].
+    /// Row of nodes with an inverse mass [1/kg], a tangent [-] and W_nn = `yields` [1/kg], on a seabed with a normal [-] and a resistance b [kg].
     #[inline(always)]
     fn new(
         inverse: Slender<Lanes>,
@@ -78,7 +78,6 @@ impl RoughRow {
 }
 
 impl SeabedRow {
-    /// Nodes without a seabed.
     pub(super) fn new() -> SeabedRow {
         let ([zero, off], none) = ([0.0, -1.0].map(Lanes::splat), Vectors::zero());
         let inverse = Slender {
@@ -97,7 +96,7 @@ impl SeabedRow {
         }
     }
 
-    /// Sets normal and inverse mass of nodes that may touch the seabed; initially they are off it.
+    /// Sets normal and inverse mass of nodes that may touch the seabed.
     #[inline(always)]
     fn approach(&mut self, node: &NodeRow, normal: Vectors, has_friction: bool) {
         let inverse = Slender {
@@ -113,7 +112,7 @@ impl SeabedRow {
         }
     }
 
-    /// Revises states and friction from a velocity [m/s], under an impulse of the greatest tension [N s]; positive where they change.
+    /// Revises states and friction for a velocity [m/s]; `greatest` is the impulse of the largest tension [N s]. Returns a positive value where they change.
     #[inline(always)]
     fn revise(
         &mut self,
@@ -146,7 +145,8 @@ impl SeabedRow {
         changed.max(flips)
     }
 
-    /// Friction on nodes that leave the seabed at `rise` [m/s] under the impulse `push` of the seabed [N s]; positive where they slide.
+    /// Impulse of friction [N s] on nodes that leave the seabed at `rise` [m/s] under the impulse `push` of the seabed [N s]. The first value is positive for
+    /// nodes that slide.
     #[inline(always)]
     fn friction_on(&self, node: &NodeRow, rise: Lanes, friction: &Friction, push: Lanes) -> (Lanes, Vectors) {
         let RoughRow { footing, upright, .. } = &self.rough;
@@ -165,7 +165,7 @@ impl SeabedRow {
 }
 
 impl NodeRow {
-    /// Adds the seabed to the equations of the nodes.
+    /// Adds the seabed to the equations of motion of the nodes.
     #[inline(always)]
     fn settle_on(&mut self, seabed: &SeabedRow, has_friction: bool) {
         let (zero, slides) = (Lanes::splat(0.0), seabed.slides);
@@ -193,7 +193,7 @@ impl NodeRow {
 }
 
 impl AxialLine {
-    /// Finds the nodes on the seabed, and the state and the friction that they are first assumed to have.
+    /// Finds the nodes on the seabed, and sets their first assumptions of state and friction.
     #[inline(always)]
     pub(super) fn meet_seabed(&mut self, sizes: &Sizes) {
         let line = &self.layout;
@@ -226,7 +226,7 @@ impl AxialLine {
         }
     }
 
-    /// Finds the velocities under the tensions that follow from t_n at unchanged stretching velocities. Returns the greatest tension in each lane [N].
+    /// Computes the velocities under the tensions expected from t_n at unchanged stretching velocities. Returns the largest tension in each lane [N].
     #[inline(always)]
     fn expect_tensions(&mut self, sizes: &Sizes) -> Lanes {
         let mut greatest = Lanes::splat(0.0);
@@ -242,7 +242,7 @@ impl AxialLine {
         greatest
     }
 
-    /// Compares the states with those assumed, under a greatest tension in the lanes [N]; false if that requires another pass.
+    /// Revises the assumed states; `greatest` is the largest tension in each lane [N]. Returns false if another pass is required.
     #[inline(always)]
     pub(super) fn seabed_holds(&mut self, greatest: Lanes, sizes: &Sizes) -> bool {
         let (line, friction) = (&self.layout, self.layout.friction());
@@ -265,7 +265,6 @@ impl AxialLine {
         !changed.any_positive()
     }
 
-    /// Stores the friction of the step for the state.
     #[inline(always)]
     pub(super) fn keep_friction(&mut self, step: Step) {
         if self.layout.friction().is_none() {

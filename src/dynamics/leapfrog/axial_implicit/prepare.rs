@@ -1,4 +1,4 @@
-//! Quantities of a step of the axial-implicit leapfrog that precede its system: segments, nodes, and contact with a level seabed.
+//! Quantities of a step of the axial-implicit leapfrog that do not depend on T̄: segments, nodes, and contact with a level seabed.
 //!
 //! Loops address the rows by index: with iterators the compiler would combine four rows and process them lane by lane.
 
@@ -10,13 +10,13 @@ use crate::dynamics::leapfrog::layout::inverse_norm;
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 
-/// Greatest excess of the weight of the new strain rate over that of the old one in the axial damping [-].
+/// Maximum difference between the weights of the new and the old strain rate in the axial damping [-].
 const DAMPING_SHIFT: f64 = 0.2; // θ
-/// Stiffness r of the dampers over a step from which on θ has that value [-].
+/// Stiffness r of the dampers over a step above which θ has this value [-].
 const DAMPING_HARD: f64 = 4.0;
 
-/// Springs: their tension now as if they also pushed [N], b₁ times the tension after the step without further strain [N], and b₁ times its slope with
-/// the length [N/m].
+/// Springs of a row of segments: tension at t_n as if they also pushed [N], b₁ times the tension after the step without further strain [N], and b₁ times
+/// its slope with the length [N/m].
 struct Springs {
     now: Lanes,
     ahead: Lanes,
@@ -24,7 +24,6 @@ struct Springs {
 }
 
 impl AxialLine {
-    /// Sizes of a step.
     #[inline(always)]
     pub(super) fn sizes(&self, step: Step) -> Sizes {
         let hardness = self.kernel.damping_rate * step.kick;
@@ -39,7 +38,6 @@ impl AxialLine {
         }
     }
 
-    /// Springs of a row of segments.
     #[inline(always)]
     fn springs<const SPRINGS: u8>(&mut self, at: usize) -> Springs {
         if SPRINGS == springs::VISCOELASTIC {
@@ -56,7 +54,7 @@ impl AxialLine {
             };
         }
         let law = &self.layout.law;
-        // the segment beyond an end has no stiffness, and may have no length: the logarithm of its stretch is infinite
+        // a segment beyond an end has no stiffness and may have zero length: the logarithm of its stretch would be infinite
         let strain = (longer * self.layout.inverse_length.load(at)).where_positive(stiffness);
         let [force, slope] = pulled(law, strain);
         let stretched = row.unstretched_length * force;
@@ -67,7 +65,6 @@ impl AxialLine {
         }
     }
 
-    /// Viscoelastic springs.
     #[inline(always)]
     fn viscoelastic_springs(&mut self, at: usize) -> Springs {
         let strain = self.layout.strain(at);
@@ -88,7 +85,7 @@ impl AxialLine {
         }
     }
 
-    /// Directions of segments and tangents of nodes.
+    /// Computes the directions and lengths of the segments, and the tangents of the nodes.
     #[inline(always)]
     pub(super) fn prepare_geometry(&mut self) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
@@ -109,7 +106,7 @@ impl AxialLine {
         }
     }
 
-    /// The segments, from geometry and velocities at t_{n−½}.
+    /// Prepares the segments, from their geometry and the velocities at t_{n−½}.
     #[inline(always)]
     pub(super) fn prepare_segments<const SPRINGS: u8>(&mut self, sizes: &Sizes) {
         let half = Lanes::splat(0.5);
@@ -134,7 +131,7 @@ impl AxialLine {
             row.stiffness = found.slope * sizes.drift;
             let bend = (relative.dot(relative) - along * along) * row.inverse;
             row.curvature = half * row.stiffness * sizes.drift * bend;
-            // at the strain reached at the present stretching velocity
+            // linearised at the strain reached with the current stretching velocity
             if SPRINGS == springs::CURVED {
                 let inverse = self.layout.inverse_length.load(at);
                 row.follow(&self.layout.law, along, inverse, [b1, sizes.drift]);
@@ -153,7 +150,7 @@ impl AxialLine {
         }
     }
 
-    /// Includes the springs up to t_n, some of which push in this step or did in the last one.
+    /// Includes the earlier tensions, where springs are in compression in this step or were in the last one.
     #[inline(always)]
     fn remember_segments(&mut self, sizes: &Sizes) {
         for row in &mut self.kernel.rows.segments {
@@ -167,8 +164,8 @@ impl AxialLine {
         }
     }
 
-    /// Drag of the velocity relative to the water: across the line by the velocities extrapolated to t_n, along it by those of t_{n−½} and
-    /// t_{n+½}, with its slope at the extrapolated values of these.
+    /// Evaluates the drag at the velocities relative to the water: across the line at those extrapolated to t_n; along the line as the mean of
+    /// t_{n−½} and t_{n+½}, with a slope at the extrapolated velocities.
     #[inline(always)]
     fn prepare_drag<const CURRENT: bool>(&mut self, step: Step) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
@@ -201,7 +198,7 @@ impl AxialLine {
         }
     }
 
-    /// Inverse masses, and the velocities that nodes would reach without tension and seabed, in moving or still water.
+    /// Computes the inverse masses, and the velocities that the nodes would reach without tension and seabed, in moving or still water.
     #[inline(always)]
     pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, step: Step, sizes: &Sizes) {
         self.prepare_drag::<CURRENT>(step);
@@ -232,7 +229,6 @@ impl AxialLine {
         }
     }
 
-    /// Finds the contact of the nodes with the level seabed.
     #[inline(always)]
     pub(super) fn prepare_contact(&mut self, sizes: &Sizes) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
@@ -248,14 +244,14 @@ impl AxialLine {
         }
     }
 
-    /// Held ends move along the secant of their path and yield to no force.
+    /// Sets the velocities of prescribed ends to the secant velocities of their paths.
     #[inline(always)]
     pub(super) fn prepare_ends(&mut self, step: Step, ends: &[Vector3<f64>; 2]) {
         for end in self.prescribed_ends() {
             let at = self.layout.end_slot(end);
             let secant = (ends[end as usize] - self.layout.position.get(at)) / step.drift;
             if !self.layout.has_row(at) {
-                self.layout.velocity_before.set(at, secant); // where the new velocities go
+                self.layout.velocity_before.set(at, secant); // the array that holds the new velocities
                 continue;
             }
             let node = &mut self.kernel.rows.nodes[at.row - 1];
@@ -266,7 +262,7 @@ impl AxialLine {
 }
 
 impl NodeRow {
-    /// Masses across and along the line [kg], with the implicit parts of the drag, where there is any, and of mass damping [N s/m] in a step of
+    /// Masses across and along the line [kg], with the implicit parts of drag, if there is any, and of mass damping [N s/m] in a step of
     /// `kick` [s].
     #[inline(always)]
     pub(super) fn effective_masses(&self, has_drag: bool, damping: Option<Lanes>, kick: Lanes) -> [Lanes; 2] {
@@ -293,7 +289,8 @@ impl NodeRow {
         self.held = Lanes::splat(0.0);
     }
 
-    /// Sets the velocity that follows from `velocity` [m/s] under the weight [N] and, if `drawn`, the drag at velocities `past` the water.
+    /// Sets the velocity after the step that follows from `velocity` [m/s] under the weight [N] and, if `drawn` is true, the drag at velocities `past`
+    /// relative to the water [m/s].
     #[inline(always)]
     fn fall(&mut self, weight: Lanes, [velocity, past]: [Vectors; 2], drawn: bool, sizes: &Sizes) {
         let (across, excess) = (self.across * sizes.kick, self.excess * sizes.kick);
@@ -338,14 +335,14 @@ impl NodeRow {
         self.fall = self.fall + (force.scale(self.across) + along).scale(sizes.kick);
     }
 
-    /// 1 where the level seabed pushes nodes that rise at `rise` [m/s], else −1.
+    /// Returns 1 where a level seabed pushes nodes that leave it at `rise` [m/s], else −1.
     #[inline(always)]
     pub(super) fn pushed(&self, rise: Lanes) -> Lanes {
-        let pushes = self.contact.push(rise).where_positive(self.free); // held ends yield to no seabed
+        let pushes = self.contact.push(rise).where_positive(self.free); // the seabed does not act on prescribed ends
         pushes.choose(Lanes::splat(1.0), Lanes::splat(-1.0))
     }
 
-    /// Adds the level seabed to the nodes it pushes: a rank-one update of the inverse mass, and its impulse.
+    /// Adds a level seabed to the nodes that it pushes: a rank-one update of the inverse mass, and the impulse.
     #[inline(always)]
     pub(super) fn settle(&mut self) {
         (self.held, self.loose) = (Lanes::splat(0.0), self.fall);

@@ -9,22 +9,19 @@ use crate::math::striped_tridiagonal::{Eliminated, Equations};
 use crate::math::striping::Slot;
 use crate::physics::stretch::StretchLaw;
 
-/// Strain below which slack springs continue along their tangent [-]: below it, measures of strain bend back.
+/// Strain below which slack springs continue along their tangent [-]: at lower strains, strain measures become non-monotonic.
 const SHORTEST: f64 = -0.2;
 
-/// Kinds of springs.
 pub(super) mod springs {
     /// Engineering strain.
     pub(crate) const LINEAR: u8 = 0;
-    /// Another measure of strain, or a table.
+    /// Another strain measure, or a table.
     pub(crate) const CURVED: u8 = 1;
-    /// Viscoelastic.
     pub(crate) const VISCOELASTIC: u8 = 2;
 }
 
 /// Kinds of seabed under the nodes.
 pub(super) mod under {
-    /// No seabed.
     pub(crate) const NOTHING: u8 = 0;
     /// A level seabed without friction.
     pub(crate) const LEVEL: u8 = 1;
@@ -32,12 +29,12 @@ pub(super) mod under {
     pub(crate) const ROUGH: u8 = 2;
 }
 
-/// Sizes of a step, in every lane.
+/// Time increments and weights of a step, in every lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes {
     pub kick: Lanes,
     pub drift: Lanes,
-    /// ½(1+θ) and ½(1−θ), the weights of the new strain rate and the old one in the damping [-].
+    /// ½(1+θ) and ½(1−θ), the weights of the new and the old strain rate in the damping [-].
     pub damping: [Lanes; 2],
     /// 1 where dampers act in slack segments, else 0 [-].
     pub push: Lanes,
@@ -45,7 +42,7 @@ pub(super) struct Sizes {
     pub weights: [Lanes; 4],
 }
 
-/// Force over EA [-] of four segments by the law of their springs, and its slope with the strain.
+/// Force of the springs of four segments divided by EA [-], and its slope with the strain [-].
 #[inline(always)]
 pub(super) fn pulled(law: &StretchLaw, strain: Lanes) -> [Lanes; 2] {
     let mut found = [Lanes::splat(0.0); 2];
@@ -56,10 +53,10 @@ pub(super) fn pulled(law: &StretchLaw, strain: Lanes) -> [Lanes; 2] {
     found
 }
 
-/// Segments, each between its node and the one after.
+/// Segments, each between the node of the same index and the next one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SegmentRow {
-    /// Length at which T̄ + P is 0 without stretching, the unstretched L where P is 0 [m], EA/L [N/m] and BA/L [N s/m].
+    /// Length at which the spring tension is −P, equal to the unstretched length L where P is 0 [m]; EA/L [N/m] and BA/L [N s/m].
     pub unstretched_length: Lanes,
     pub axial_stiffness: Lanes,
     pub axial_damping: Lanes,
@@ -72,19 +69,19 @@ pub(super) struct SegmentRow {
     pub along: Lanes,
     /// dT̄/d(q·(v_{i+1} − v_i)) of the springs [N s/m].
     pub stiffness: Lanes,
-    /// Part of T̄ from the springs at zero stretching velocity, on the tangent of their linearisation [N].
+    /// Part of T̄ from the linearised springs, at zero stretching velocity [N].
     pub elastic: Lanes,
-    /// The part of it from the springs up to t_n [N], kept where springs are curved or [`super::AxialLine::forgets`].
+    /// Part of it from the earlier tensions, up to t_n [N]; set if springs are nonlinear or [`super::AxialImplicit::forgets`] is true.
     pub memory: Lanes,
     /// Part of BA/L that acts in T̄ [N s/m].
     pub damping: Lanes,
-    /// EA·b₁ times the strain by transverse motion [N].
+    /// EA·b₁ times the strain due to transverse motion [N].
     pub curvature: Lanes,
     /// 1 where the segment is taut, −1 where it is slack.
     pub taut: Lanes,
-    /// Tensions of the springs at t_{n−1} and t_{n−2} as if they also pushed [N]; once a step is prepared, at t_n, t_{n−1} and t_{n−2}.
+    /// Tensions of the springs as if they also pushed, at t_{n−1} and t_{n−2} [N]; after a step is prepared, at t_n, t_{n−1} and t_{n−2}.
     pub history: [Lanes; 3],
-    /// Pulls of the damper below and above 0 at which T̄ has more or fewer of the earlier tensions [N].
+    /// Pull of the damper, negative and positive, at which T̄ loses or gains one of the earlier tensions [N].
     pub margins: [Lanes; 2],
     /// Rows of the system in T̄ [N], and the rows after elimination.
     pub equations: Equations,
@@ -94,7 +91,6 @@ pub(super) struct SegmentRow {
 }
 
 impl SegmentRow {
-    /// Row `at` of a line.
     pub(super) fn new(line: &Layout, at: usize) -> SegmentRow {
         let zero = Lanes::splat(0.0);
         let inverse = line.inverse_length.load(at);
@@ -122,8 +118,8 @@ impl SegmentRow {
         }
     }
 
-    /// Writes the equations T̄ − r q·(v_{i+1} − v_i) = known with the velocities that follow from the nodes' momentum: from the difference
-    /// of the nodes' loose velocities [m/s], and from the forms of both.
+    /// Writes the equations T̄ − r q·(v_{i+1} − v_i) = known, with the velocities eliminated by the momentum equations of the nodes: from the
+    /// difference of the `loose` velocities of the nodes [m/s], and from the `forms` of both nodes.
     #[inline(always)]
     pub(super) fn assemble(
         &mut self,
@@ -152,8 +148,8 @@ impl SegmentRow {
         self.taut.choose(self.stiffness + damping, sizes.push * damping)
     }
 
-    /// Linearises the springs at the strain that a stretching velocity [m/s] leads to in a step of `drift` [s]; `share` is b₁ and
-    /// `inverse` 1/L [1/m]. Returns their force there [N].
+    /// Linearises the springs at the strain that is reached with a stretching velocity [m/s] in a step of `drift` [s]; `share` is b₁ and
+    /// `inverse` is 1/L [1/m]. Returns their force in T̄ there [N].
     #[inline(always)]
     pub(super) fn follow(
         &mut self,
@@ -182,14 +178,14 @@ impl SegmentRow {
         self.elastic + self.curvature + self.stiffness * along
     }
 
-    /// Stretching velocity that the damper acts on in a step that ends with one [m/s].
+    /// Weighted stretching velocity of the damper in a step that ends with the stretching velocity `along` [m/s].
     #[inline(always)]
     pub(super) fn rate(&self, along: Lanes, sizes: &Sizes) -> Lanes {
         sizes.damping[0] * along + sizes.damping[1] * self.along
     }
 
-    /// Part of T̄ from the springs up to t_n [N], and the damper's share in it [-], where it pulls with `pull` [N]: springs that push more
-    /// than that contribute nothing, and neither does the damper with them.
+    /// Part of T̄ from the earlier tensions, up to t_n [N], and the share of the damper in T̄ [-], if the damper pulls with `pull` [N]. A
+    /// spring with a larger compression contributes nothing, and neither does the damper with its weight.
     #[inline(always)]
     fn remembered(&self, pull: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let [mut share, weights @ ..] = sizes.weights;
@@ -202,7 +198,7 @@ impl SegmentRow {
         [memory, share.max(sizes.push)]
     }
 
-    /// Part of T̄ from the springs up to t_n where none of them pushes [N].
+    /// Part of T̄ from the earlier tensions if no spring is in compression [N].
     #[inline(always)]
     pub(super) fn all_remembered(&self, sizes: &Sizes) -> Lanes {
         let [_, h0, h1, h2] = sizes.weights;
@@ -210,7 +206,7 @@ impl SegmentRow {
         h0 * now + h1 * last + h2 * before
     }
 
-    /// Includes the springs up to t_n with the damper at a stretching velocity [m/s].
+    /// Includes the earlier tensions, with the damper at a stretching velocity [m/s].
     #[inline(always)]
     pub(super) fn remember(&mut self, rate: Lanes, sizes: &Sizes) {
         let pull = (Lanes::splat(1.0) - sizes.push) * self.axial_damping * rate;
@@ -227,21 +223,21 @@ impl SegmentRow {
         self.margins = margins.map(|margin| share * margin);
     }
 
-    /// < 0 where T̄ has other springs up to t_n than are included, with the damper pulling at `pull` [N].
+    /// Margin [N], negative where T̄ includes the wrong earlier tensions for a pull of the damper of `pull` [N].
     #[inline(always)]
     pub(super) fn margin(&self, pull: Lanes) -> Lanes {
         let [less, more] = self.margins;
         (less + pull).min(more - pull)
     }
 
-    /// Contribution of the damper at a stretching velocity [m/s] to the force that decides whether the segment is taut [N].
+    /// Contribution of the damper, at a stretching velocity [m/s], to the force that determines whether the segment is taut [N].
     #[inline(always)]
     pub(super) fn pull(&self, rate: Lanes, sizes: &Sizes) -> Lanes {
         (Lanes::splat(1.0) - sizes.push) * self.damping * rate
     }
 
-    /// Force that is positive where the segment is taut at a stretching velocity [m/s], and the contribution of earlier springs and of the damper to T̄
-    /// in excess of that included [N].
+    /// Force that is positive where the segment is taut at a stretching velocity [m/s], and the contribution of earlier tensions and of the damper to T̄ in
+    /// excess of that included [N].
     #[inline(always)]
     pub(super) fn total(&self, along: Lanes, sizes: &Sizes) -> [Lanes; 2] {
         let (zero, rate) = (Lanes::splat(0.0), self.rate(along, sizes));
@@ -263,10 +259,10 @@ pub(super) struct NodeRow {
     /// Masses across and along the line [kg].
     pub mass_normal: Lanes,
     pub mass_tangent: Lanes,
-    /// 1 for free nodes, 0 for held ends and padding.
+    /// 1 for free nodes, 0 for prescribed ends and padding.
     pub free: Lanes,
-    /// Drag over relative velocity, across and along the line [N s/m]: that in the middle of the step, and that after it; and what the latter
-    /// leaves out [N].
+    /// Drag divided by relative velocity [N s/m]: across the line in the middle of the step, and along it after the step; and the rest of the drag
+    /// along the line [N].
     pub drag: [Lanes; 2],
     pub drag_rest: Lanes,
     /// a, including drag [1/kg].
@@ -277,13 +273,13 @@ pub(super) struct NodeRow {
     pub tangent: Vectors,
     /// s of nodes on a seabed with a slope, soundings or friction [1/kg].
     pub response: Vectors,
-    /// c, 0 off the seabed [kg].
+    /// c, zero off the seabed [kg].
     pub held: Lanes,
-    /// The level seabed.
+    /// Contact with the seabed.
     pub contact: NodeContact,
     /// 1 where the level seabed pushes, −1 elsewhere.
     pub touches: Lanes,
-    /// Velocity without tension, without and with the seabed [m/s].
+    /// Velocity after the step without tension: without and with the seabed [m/s].
     pub fall: Vectors,
     pub loose: Vectors,
     /// Impulse of the segments on nodes over a seabed with a slope, soundings or friction [N s].
@@ -293,7 +289,7 @@ pub(super) struct NodeRow {
 }
 
 impl NodeRow {
-    /// Padding, which stays where it is.
+    /// Padding, which does not move.
     pub(super) fn new() -> NodeRow {
         let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
         NodeRow {
@@ -316,13 +312,13 @@ impl NodeRow {
         }
     }
 
-    /// b t_z, which makes s = a ẑ + b t_z t over a level seabed [1/kg].
+    /// b t_z, so that s = a ẑ + b t_z t over a level seabed [1/kg].
     #[inline(always)]
     pub(super) fn lift(&self) -> Lanes {
         self.excess * self.tangent.z
     }
 
-    /// s·x [1/kg] over a seabed, and t·x, of a vector x.
+    /// s·x over a seabed, and t·x, for a vector x.
     #[inline(always)]
     fn shares<const SEABED: u8>(&self, x: Vectors) -> [Lanes; 2] {
         let along = self.tangent.dot(x);
@@ -351,7 +347,7 @@ impl NodeRow {
         inverted
     }
 
-    /// Finds the forms of the unit vectors q and q′ of the segments before and after.
+    /// Computes the forms for the unit vectors q and q′ of the segments before and after the nodes.
     #[inline(always)]
     pub(super) fn weigh<const SEABED: u8>(&mut self, q: Vectors, other: Vectors) {
         let [rise, along] = self.shares::<SEABED>(q);
@@ -374,12 +370,11 @@ impl NodeRow {
     }
 }
 
-/// Water that flows past nodes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CurrentRow {
     /// Velocity of the water [m/s].
     pub flow: Vectors,
-    /// Force of water that waves accelerate [N].
+    /// Froude-Krylov force [N].
     pub froude_krylov: Vectors,
 }
 
@@ -392,12 +387,12 @@ impl CurrentRow {
     }
 }
 
-/// The rows of a line; row 1 of the layout is the first.
+/// Rows of a line; the first is row 1 of the layout.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
     pub segments: Vec<SegmentRow>,
     pub nodes: Vec<NodeRow>,
-    /// Rows of moving water; none in still water.
+    /// Rows of moving water; `None` in still water.
     pub current: Option<Vec<CurrentRow>>,
 }
 

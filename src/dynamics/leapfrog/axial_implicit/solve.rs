@@ -1,4 +1,4 @@
-//! A pass of the axial-implicit leapfrog: the system in T̄, the velocities that follow, and the check of the assumptions.
+//! Pass of the axial-implicit leapfrog: the system in T̄, the resulting velocities, and the check of the assumptions.
 //!
 //! Loops address the rows by index: with iterators the compiler would combine four rows and process them lane by lane.
 
@@ -8,25 +8,25 @@ use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striped_tridiagonal::Eliminated;
 use crate::physics::stretch::StretchLaw;
 
-/// Change of tension by the true stretch, relative to the greatest tension, that requires another pass [-].
+/// Change of tension due to the true stretch that requires another pass, relative to the largest tension [-].
 const STRETCH_TOLERANCE: f64 = 1e-3;
-/// Square of transverse over axial length up to which the stretch by transverse motion is approximated by its first term [-].
+/// Squared ratio of transverse to axial length up to which the stretch due to transverse motion is approximated by its first term [-].
 const FLAT: f64 = 1e-3;
-/// Least ratio of the new length of a segment to its length for the same [-].
+/// Minimum ratio of the new length of a segment to its old length for this approximation [-].
 const SHORT: f64 = 0.9;
 
 /// Differences between the result of a pass and its assumptions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Found {
-    /// > 0 where the seabed pushes other nodes than assumed, or other segments are slack.
+    /// Positive where the contact of nodes, or in `flipped` the slackness of segments, differs from that assumed.
     landed: Lanes,
     flipped: Lanes,
-    /// 2·[`SHORT`] times the greatest change of T̄ by the true stretch [N], for segments that turn little; > 0 where one turns more.
+    /// 2·[`SHORT`] times the largest change of T̄ due to the true stretch [N], for segments with small rotations; `turned` is positive where one rotates more.
     bent: Lanes,
     turned: Lanes,
-    /// Least margin of segments [N]: < 0 where T̄ has other springs up to t_n than are included.
+    /// Smallest margin of segments [N]: negative where T̄ includes the wrong earlier tensions.
     margin: Lanes,
-    /// Greatest T̄ [N].
+    /// Largest T̄ [N].
     pub greatest: Lanes,
 }
 
@@ -45,7 +45,7 @@ impl Found {
 }
 
 impl AxialLine {
-    /// Finds the coefficients that couple the segments through their nodes.
+    /// Computes the coefficients that couple the segments through their nodes.
     #[inline(always)]
     pub(super) fn weigh_nodes<const SEABED: u8>(&mut self) {
         let segments = &self.kernel.rows.segments[..self.kernel.rows.nodes.len()];
@@ -59,7 +59,6 @@ impl AxialLine {
         }
     }
 
-    /// Writes the rows of the system in T̄.
     #[inline(always)]
     pub(super) fn assemble(&mut self, sizes: &Sizes) {
         let nodes = &self.kernel.rows.nodes;
@@ -70,7 +69,7 @@ impl AxialLine {
             segment.assemble(relative, [low.forms, high.forms], sizes);
         }
         let (low, high) = (&nodes[last], &nodes[0]);
-        // behind the last node there is none, or an end that is prescribed
+        // after the last row there is no node, or a prescribed end
         let zero = Lanes::splat(0.0);
         let behind = self.layout.velocity_before.load(nodes.len() + 1);
         let relative = high.loose.moved_down_before(behind) - low.loose;
@@ -78,7 +77,7 @@ impl AxialLine {
         self.kernel.rows.segments[last].assemble(relative, forms, sizes);
     }
 
-    /// Solves for T̄, down the rows and up again. Returns T̄ of the segments before those of the first row [N].
+    /// Solves for T̄, down the rows and up again. Returns T̄ of the segments before the first row [N].
     #[inline(always)]
     pub(super) fn solve_tensions(&mut self) -> Lanes {
         let segments = &mut self.kernel.rows.segments[..];
@@ -102,7 +101,7 @@ impl AxialLine {
         before
     }
 
-    /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N].
+    /// Computes the new velocities from T̄, and stores them in `velocity_before`; `before` is T̄ of the segments before the first row [N].
     #[inline(always)]
     pub(super) fn find_velocities<const SEABED: u8>(&mut self, before: Lanes, sizes: &Sizes) {
         let (rows, kick) = (self.kernel.rows.nodes.len(), sizes.kick);
@@ -126,7 +125,6 @@ impl AxialLine {
         self.layout.velocity_before.wrap();
     }
 
-    /// Compares the new velocities with the assumptions.
     #[inline(always)]
     pub(super) fn look_over<const SEABED: u8>(&mut self, sizes: &Sizes) -> Found {
         let mut found = Found::new();
@@ -136,7 +134,7 @@ impl AxialLine {
             &self.kernel.rows.nodes[..last],
         );
         let new = line.velocity_before.rows(last);
-        // an inclusive range would cost more in every row; the results keep the compiler from combining four rows
+        // an inclusive range would cost more in every row; accumulated results prevent the compiler from combining four rows
         for at in 1..last + 1 {
             found.check(&segments[at - 1], new[at + 1] - new[at], sizes);
         }
@@ -150,14 +148,13 @@ impl AxialLine {
 }
 
 impl Found {
-    /// Checks that the seabed pushes the nodes that it was assumed to push.
     #[inline(always)]
     fn look_at(&mut self, node: &NodeRow, velocity: Vectors) {
         let touches = node.pushed(velocity.z);
         self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
     }
 
-    /// Compares a segment's slackness and stretch by transverse motion with those assumed.
+    /// Compares slackness and stretch due to transverse motion of a row of segments with those assumed.
     #[inline(always)]
     fn check(&mut self, segment: &SegmentRow, relative: Vectors, sizes: &Sizes) {
         let (zero, drift) = (Lanes::splat(0.0), sizes.drift);
@@ -183,7 +180,7 @@ impl Found {
 }
 
 impl AxialLine {
-    /// Corrects the contact of the nodes where a pass contradicts the assumption; false if that requires another pass.
+    /// Corrects the contact of the nodes where a pass contradicts the assumption; returns false if another pass is required.
     #[inline(always)]
     pub(super) fn contact_holds<const SEABED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
         if SEABED == under::ROUGH {
@@ -196,7 +193,7 @@ impl AxialLine {
         !landed
     }
 
-    /// Corrects the assumptions on the segments that a pass contradicts; false if that requires another pass.
+    /// Corrects the assumptions on the segments that a pass contradicts; returns false if another pass is required.
     #[inline(always)]
     pub(super) fn segments_hold(&mut self, found: &Found, sizes: &Sizes) -> bool {
         let tolerance = Lanes::splat(STRETCH_TOLERANCE) * found.greatest.greatest();
@@ -214,13 +211,13 @@ impl AxialLine {
         !(revised || curved)
     }
 
-    /// Returns whether the tension of the springs is not proportional to their strain, without being viscoelastic.
+    /// Returns whether the springs are nonlinear in the strain and not viscoelastic.
     #[inline(always)]
     pub(super) fn is_curved(&self) -> bool {
         self.layout.law != StretchLaw::Engineering && self.layout.viscoelastic.is_none()
     }
 
-    /// Linearises the springs' tension at the strains that the last pass found; returns whether that requires another pass.
+    /// Linearises the tension of the springs at the strains found by the last pass; returns whether another pass is required.
     #[inline(always)]
     fn follow_curve(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (velocity, law) = (&self.layout.velocity_before, &self.layout.law);
@@ -236,7 +233,7 @@ impl AxialLine {
             let off = (curve.positive() - spring.positive()).abs() - tolerance;
             let off = off.where_positive(segment.taut);
             if off.any_positive() {
-                *segment = laid; // otherwise the energy balance keeps the law of the step
+                *segment = laid; // unchanged otherwise, so that the energy balance uses the law of the step
             }
             again = again.max(off);
         }
@@ -253,8 +250,8 @@ impl AxialLine {
         }
     }
 
-    /// Sets slackness and true stretch by transverse motion of the segments to those found by the last pass, and includes the springs up to t_n according
-    /// to the pull of the dampers; returns whether that requires another pass.
+    /// Sets slackness and true stretch due to transverse motion of the segments to those found by the last pass, and includes the earlier tensions according
+    /// to the pull of the dampers; returns whether another pass is required.
     #[inline(always)]
     fn revise_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (zero, one, drift) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.drift);

@@ -1,4 +1,4 @@
-//! Energy balance of the explicit leapfrog ([`crate::dynamics::leapfrog::balance`]): the elastic tension does work on the free nodes.
+//! Energy balance of the explicit leapfrog ([`crate::dynamics::leapfrog::balance`]), from the work of the elastic tension on the free nodes.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -22,7 +22,7 @@ impl NullaryFnOnce for BalanceNodes<'_> {
 }
 
 impl ExplicitLine {
-    /// Adds the work on the nodes between t_{n−½} and t_{n+½}, the positions being those of t_n.
+    /// Adds the work on the nodes from t_{n−½} to t_{n+½}; the positions must be those at t_n.
     pub(super) fn balance_nodes(&mut self, step: Step) {
         if self.balance.is_none() {
             return;
@@ -75,7 +75,7 @@ impl ExplicitLine {
         }
     }
 
-    /// Power of the resistance of the water on its own velocity [W].
+    /// Power of the drag at the velocity of the water [W].
     #[inline(always)]
     fn drag_power(&self, at: usize) -> Lanes {
         let mut drag = self.kernel.resistance.load(at);
@@ -85,7 +85,7 @@ impl ExplicitLine {
         drag.dot(self.layout.water_velocity(at))
     }
 
-    /// Adds the work of the ends over a step, and that on the dampers next to them.
+    /// Adds the work of the ends over a step, and the work on the dampers of the end segments.
     pub(super) fn balance_ends(&mut self, step: Step) {
         let Some(mut balance) = self.balance.take() else {
             return;
@@ -112,8 +112,8 @@ impl ExplicitLine {
         }
     }
 
-    /// Displacement of an end from half a step before t_n, where it was at `half_place` [m], to half a step after it [m]. That of a prescribed end is
-    /// the difference of its positions: where its acceleration jumps, no velocity yields it. The material at a winch moves with its velocities.
+    /// Displacement of an end from t_{n−½}, where it was at `half_place` [m], to t_{n+½} [m]. For a prescribed end, it is the difference of positions:
+    /// velocities would give a wrong value where the acceleration jumps. The material at a winch moves with its velocities.
     fn end_way(&self, end: End, step: Step, half_place: &mut Vector3<f64>) -> Vector3<f64> {
         let at = self.layout.end_slot(end);
         let [before, after] = [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));

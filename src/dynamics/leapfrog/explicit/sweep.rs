@@ -1,7 +1,7 @@
 //! Stages of a step of a line over its rows, four nodes at a time.
 //!
-//! Three loops: forces of the segments; resistance of water and damping; and the kick, immediately followed by the drift of the nodes. A row is a chain
-//! of some forty dependent operations, including roots and quotients. A processor holds about one row of the whole chain at a time, but several rows of
+//! There are three loops: forces of the segments; drag and damping; and the kick, immediately followed by the drift of the nodes. A row is a chain of
+//! about forty dependent operations, including roots and quotients. A processor can hold about one row of the whole chain at a time, but several rows of
 //! a third of it: in three loops the operations of neighbouring rows overlap, and the operands of a loop fit into the registers.
 //!
 //! Halo rows are copied before any node has moved, and the ends are moved to their points last.
@@ -23,21 +23,18 @@ use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Water around the nodes.
 mod around {
-    /// None.
     pub(super) const DRY: u8 = 0;
-    /// At rest, or mass damping.
+    /// Still water, or mass damping.
     pub(super) const STILL: u8 = 1;
-    /// In motion.
     pub(super) const FLOWING: u8 = 2;
 }
 
 /// Seabed under the nodes.
 mod under {
-    /// None.
     pub(super) const NOTHING: u8 = 0;
-    /// Level and without friction.
+    /// Level seabed without friction.
     pub(super) const LEVEL: u8 = 1;
-    /// With a slope, soundings or friction.
+    /// Seabed with a slope, soundings or friction.
     pub(super) const ROUGH: u8 = 2;
 }
 
@@ -55,11 +52,11 @@ impl NullaryFnOnce for Pull<'_> {
     }
 }
 
-/// Resistance and kick for the vector unit of the machine.
+/// Drag and kick for the vector unit of the machine.
 pub(super) struct Sweep<'a> {
     pub work: &'a mut ExplicitLine,
     pub size: &'a Step,
-    /// True if the nodes drift and the ends are placed too.
+    /// True if the sweep also moves the nodes and the ends to t_{n+1}.
     pub drifts: bool,
     pub ends: [&'a EndMotion; 2],
 }
@@ -101,7 +98,7 @@ impl NullaryFnOnce for Drift<'_> {
     }
 }
 
-/// Sizes of a step, in every lane.
+/// Time increments and extrapolation weight of a step, in every lane.
 #[derive(Clone, Copy)]
 struct Sizes {
     kick: Lanes,
@@ -109,7 +106,6 @@ struct Sizes {
     extrapolation: Lanes,
 }
 
-/// Motion and forces, row by row.
 struct Moving<'a> {
     position: &'a mut [Vectors],
     velocity: &'a [Vectors],
@@ -121,7 +117,6 @@ struct Moving<'a> {
     friction: &'a mut [Vectors],
 }
 
-/// Coefficients of the nodes, row by row.
 struct NodeRows<'a> {
     weight: &'a [Lanes],
     inverse_mass: &'a [Lanes],
@@ -143,7 +138,7 @@ struct WaterRows<'a> {
     excess: &'a [Lanes],
 }
 
-/// Contact with the seabed; empty without one.
+/// Contact with the seabed; empty without a seabed.
 #[derive(Default)]
 struct ContactRows<'a> {
     spring: &'a [Lanes],
@@ -168,7 +163,7 @@ impl ExplicitLine {
         }
     }
 
-    /// The same by an elastic force of a row at a strain [N].
+    /// The same, with the elastic force [N] of a row at a strain from `elastic`.
     #[inline(always)]
     fn pull_by(&mut self, elastic: impl Fn(&Layout, usize, Lanes) -> Lanes) {
         let line = &self.layout;
@@ -194,7 +189,6 @@ impl ExplicitLine {
         }
     }
 
-    /// Adds the forces of the joints.
     #[inline(always)]
     fn pull_joints(&mut self) {
         self.layout.bend(0.0);
@@ -206,7 +200,6 @@ impl ExplicitLine {
         }
     }
 
-    /// Slices of the rows of the line for the loops of a sweep.
     #[inline(always)]
     fn cut(&mut self) -> Swept<'_> {
         let (last, line) = (self.layout.striping.rows(), &mut self.layout);
@@ -257,22 +250,21 @@ impl ExplicitLine {
     }
 }
 
-/// Geometry and forces of a row of nodes.
 struct Kicking {
     /// Sum of the forces of the segments [N].
     pull: Vectors,
-    /// Resistance of water and damping [N].
+    /// Drag and mass damping [N].
     resistance: Vectors,
     /// Froude-Krylov force [N].
     froude_krylov: Vectors,
-    /// From the nodes before to those after [m].
+    /// Chord from the previous to the next nodes [m].
     chord: Vectors,
     /// Inverse square of the chord [1/m²].
     inverse_square: Lanes,
 }
 
 impl NodeRows<'_> {
-    /// Velocities at t_{n+½} [m/s] of row number `at`.
+    /// Velocities of row `at` at t_{n+½} [m/s].
     #[inline(always)]
     fn kick<const AROUND: u8, const UNDER: u8>(
         &self,
@@ -306,7 +298,7 @@ impl NodeRows<'_> {
         kicked
     }
 
-    /// Velocities [m/s] of row number `at` on a seabed with a slope, soundings or friction, and the force of friction [N], from the velocities without it.
+    /// Velocities of row `at` on a seabed with a slope, soundings or friction [m/s], and the friction [N]; `free` are the velocities without seabed [m/s].
     #[inline(always)]
     fn land(&self, at: usize, by: &Kicking, free: Vectors, sizes: Sizes) -> (Vectors, Vectors) {
         let none = (free, Vectors::zero());
@@ -335,7 +327,7 @@ impl NodeRows<'_> {
 }
 
 impl WaterRows<'_> {
-    /// Resistance of the water at the nodes of a row [N].
+    /// Resistance of the water at the nodes of a row, opposite to the drag [N].
     #[inline(always)]
     fn drag(&self, at: usize, past: Vectors, chord: Vectors, inverse_square: Lanes) -> Vectors {
         let k = DragCoefficients {
@@ -347,7 +339,7 @@ impl WaterRows<'_> {
 }
 
 impl ContactRows<'_> {
-    /// Force of the seabed: F = P − R u' ≥ 0 with u' = u + Δt μ F; `rise` is u [m/s], and `yields` Δt μ [s/kg].
+    /// Force of the seabed F [N]: F = P − R u' ≥ 0 with u' = u + Δt μ F; `rise` is u [m/s], and `yields` Δt μ [s/kg].
     #[inline(always)]
     fn push(&self, at: usize, [rise, yields]: [Lanes; 2]) -> Lanes {
         let resistance = self.resistance[at];
@@ -395,26 +387,24 @@ impl ExplicitLine {
     }
 }
 
-/// 1 over the square of a chord [1/m²].
+/// Inverse square of a chord [1/m²].
 #[inline(always)]
 fn inverse_square(chord: Vectors) -> Lanes {
     (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).recip()
 }
 
-/// Rows of a line.
 struct Swept<'a> {
     moving: Moving<'a>,
     nodes: NodeRows<'a>,
 }
 
 impl Swept<'_> {
-    /// The last row without the halo.
+    /// Index of the last row before the halo.
     #[inline(always)]
     fn last(&self) -> usize {
         self.moving.position.len() - 2
     }
 
-    /// Evaluates resistance and Froude-Krylov force.
     #[inline(always)]
     fn resist<const AROUND: u8>(&mut self, sizes: Sizes) {
         for at in 1..=self.last() {
@@ -439,7 +429,7 @@ impl Swept<'_> {
         }
     }
 
-    /// Kicks the nodes, which then move for `drift` [s].
+    /// Advances the velocities of the nodes, and then their positions by `drift` [s].
     #[inline(always)]
     fn kick<const AROUND: u8, const UNDER: u8>(&mut self, sizes: Sizes, drift: Lanes) {
         let last = self.last();

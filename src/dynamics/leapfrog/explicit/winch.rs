@@ -1,20 +1,20 @@
-//! A line on a winch: the length of its end segment changes in time.
+//! A line on a winch: the length of its end segment changes with time.
 //!
-//! The winch is at end B, x_B, and prescribes the paid-out length ℓ(t). The unstretched length e of the end segment changes as
-//! ℓ does, and with it the lumped properties of its two nodes. With the stretch λ = l/e and the direction q, the material that passes the winch moves at
+//! The winch is at end B, x_B, and prescribes the paid-out length ℓ(t). The unstretched length e of the end segment changes with ℓ,
+//! and so do the lumped properties of its two nodes. With the stretch λ = l/e and the direction q, the velocity of the material at the winch is
 //!
 //!   V_B = ẋ_B − ℓ̇ λ q,      so that      λ̇ e = q·(V_B − v) = q·(ẋ_B − v) − λ ℓ̇,
 //!
-//! with v the velocity of the neighbour. The end node has the velocity V_B, which gives the rate of strain of the end segment and the
-//! velocity of a node that is inserted into it. The neighbour gains mass that moves with it: M v̇ = f with growing M.
+//! with v the velocity of the neighbour. The end node has the velocity V_B, which gives the strain rate of the end segment and the
+//! velocity of a node that is inserted into it. The neighbour gains mass that moves with it: M v̇ = f with increasing M.
 //!
 //! Beyond the lengths given by [`Winch::passage`](crate::model::Winch::passage), the end segment splits in two, or merges with its
 //! neighbour. A split interpolates position and velocity linearly. Lumped masses are linear in the adjacent lengths, so that mass and
-//! momentum are conserved, including the half node at the winch, which moves at V_B. A merge gives the neighbour the remaining
-//! momentum; it reverses a split exactly. The energy that either adds or removes counts as work of the winch.
+//! momentum are conserved, including the half node at the winch, which moves with V_B. A merge gives the remaining momentum to the node before the
+//! removed one; it reverses a split exactly. The energy that a split or a merge adds or removes counts as work of the winch.
 //!
 //! The winch supplies (W − T λ)·ℓ̇ to the line, with W the energy per unstretched length of the end segment, and the kinetic and
-//! potential energy of the mass that the neighbour gains. The end's force times V_B contains the second part.
+//! potential energy of the mass that the neighbour gains. The end force times V_B contains the part −T λ ℓ̇.
 //!
 //! Derivation: dE/dt of the segment energy e·W(λ − 1) with e(t) and l(t), W′ = T.
 //! Valid for winches that are slow compared with axial waves. A merge replaces the curved line within the merged segments by their chord: a relative
@@ -31,22 +31,20 @@ use crate::model::{End, Line, LineState, Passage, Winch, WinchState};
 /// Number of segments, counted from the winch, whose energy a split or a merge can change.
 const CHANGED: usize = 3;
 
-/// Scratch of a line on a winch.
 #[derive(Debug, Clone)]
 pub(super) struct WinchWork {
-    /// The line as it is at t_n.
     line: Line,
     /// Paid-out length over time [m].
     path: AxisPath,
     winch_state: WinchState,
-    /// The winch at t_{n+1}, while the energy of a step is added to the balance.
+    /// State of the winch at t_{n+1}, used while the energy of a step is added to the balance.
     next: WinchState,
     /// Energy of the end segment at t_n per unstretched length [N].
     density: f64,
 }
 
 impl WinchWork {
-    /// For a line on a winch.
+    /// Allocates the workspace of a line; `None` if it is not on a winch.
     pub(super) fn new(line: &Line) -> Option<Box<WinchWork>> {
         line.winch.as_ref()?;
         Some(Box::new(WinchWork {
@@ -63,13 +61,13 @@ impl WinchWork {
         winch.expect("made for a line on a winch")
     }
 
-    /// Length of the end segment at a length change [m].
+    /// Unstretched length of the end segment [m] at a length change [m].
     fn end_length(&self, change: f64) -> f64 {
         self.winch().end_length(self.line.segment_count(), change)
     }
 
-    /// Energy that the neighbour of the end gains between t_{n−½} and t_{n+½}, and the kinetic part of it, ½ M_n v² [J], from its
-    /// velocities [m/s] and heights [m] then.
+    /// Energy that the neighbour of the end gains from t_{n−½} to t_{n+½}, and its kinetic part, ½ M_n v² [J], from the velocities [m/s] and
+    /// heights [m] at these times; `halves` are the length changes then [m].
     fn taken_up(&self, halves: [f64; 2], velocities: [Vector3<f64>; 2], heights: [f64; 2]) -> [f64; 2] {
         let (n, nodes) = (self.line.segment_count(), &self.line.nodes);
         let per_length = |values: &[f64]| 0.5 * values[n] / nodes.length[n];
@@ -86,7 +84,7 @@ impl WinchWork {
 }
 
 impl ExplicitLine {
-    /// Loads the state of the winch, and lays out the line accordingly.
+    /// Loads the state of the winch, and updates the arrays of the line to its length.
     pub(super) fn load_winch(&mut self, state: &LineState) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -97,7 +95,7 @@ impl ExplicitLine {
         self.lay_out(0);
     }
 
-    /// Stores the paid-out length, and resizes the arrays of the nodes.
+    /// Stores the state of the winch, and resizes the arrays of the nodes.
     pub(super) fn store_winch(&self, state: &mut LineState) {
         if let Some(winch) = &self.kernel.winch {
             let nodes = self.layout.segment_count + 1;
@@ -111,7 +109,7 @@ impl ExplicitLine {
         }
     }
 
-    /// Sets the path of the winch from `t` [s] on, after the end was moved to its position then; `fresh` before the first step from rest.
+    /// Sets the path of the winch from `t` [s] on. The end must already have its position at that time. `fresh` is true before the first step from rest.
     pub(super) fn start_winch(&mut self, path: &AxisPath, (t, fresh): (f64, bool), step: Step) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -124,7 +122,7 @@ impl ExplicitLine {
         self.transport(winch_state, step.lag());
     }
 
-    /// Gives the end the velocity of its material half a step, `lag` [s], before the time of the positions.
+    /// Sets the velocity of the end to that of its material half a step, `lag` [s], before the time of the positions.
     fn transport(&mut self, winch_state: WinchState, lag: f64) {
         let Some(winch) = &self.kernel.winch else {
             return;
@@ -152,8 +150,8 @@ impl ExplicitLine {
         winch.density = winch.line.spring(i, chord.norm() / length - 1.0).energy;
     }
 
-    /// Advances the winch to `t` [s], the end of a step, after the end was moved: adds the work of the winch to the energy balance, and sets
-    /// the velocity of the material at the end.
+    /// Advances the winch to `t` [s], the end of a step: adds its work to the energy balance, and sets the velocity of the material at the end.
+    /// The end must already have moved.
     pub(super) fn wind(&mut self, t: f64, step: Step) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -184,7 +182,7 @@ impl ExplicitLine {
         self.transport(next, 0.5 * step.drift);
     }
 
-    /// Lays out the end segment at its new length, and splits or merges it, after the work of the ends was added to the balance.
+    /// Sets the end segment to its new length, and splits or merges it. The work of the ends must already be part of the energy balance.
     pub(super) fn renew_end_segment(&mut self, step: Step) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -209,7 +207,7 @@ impl ExplicitLine {
         self.lay_out(0);
     }
 
-    /// Splits the end segment or merges it; the velocities are those of a time `lag` [s] before the positions.
+    /// Splits or merges the end segment; the velocities are those `lag` [s] before the time of the positions.
     fn pass(&mut self, passage: Passage, lag: f64) {
         let Some(winch) = &mut self.kernel.winch else {
             return;
@@ -254,8 +252,8 @@ impl ExplicitLine {
         self.supply([0, 1].map(|part| after[part] - before[part]));
     }
 
-    /// Energy of the segments from `first` on and of the nodes between them, with their mass along the line equal to that across it, and the kinetic
-    /// part of it [J], at the time of the velocities, `lag` [s] before the positions; zero without an energy balance.
+    /// Energy of the segments from `first` on and of the nodes between them, and its kinetic part [J], at the time of the velocities, `lag` [s] before
+    /// that of the positions. The mass along the line is taken as equal to that across it. Zero without an energy balance.
     fn energy_from(&self, first: usize, lag: f64) -> [f64; 2] {
         let (Some(winch), Some(_)) = (&self.kernel.winch, &self.balance) else {
             return [0.0; 2];
@@ -282,7 +280,7 @@ impl ExplicitLine {
         [kinetic + rest, kinetic]
     }
 
-    /// Writes segments and nodes from `from` on into the arrays of the kernel, with padding behind them.
+    /// Writes segments and nodes from `from` on to the arrays of the layout and the kernel, followed by padding.
     fn lay_out(&mut self, from: usize) {
         let Some(winch) = &self.kernel.winch else {
             return;
@@ -345,7 +343,6 @@ impl ExplicitLine {
         self.lay_out_water(from);
     }
 
-    /// Writes the water coefficients of the nodes from `from` on.
     fn lay_out_water(&mut self, from: usize) {
         let (Some(winch), Some(water)) = (&self.kernel.winch, &mut self.kernel.water) else {
             return;
@@ -366,7 +363,7 @@ fn last_masses(line: &Line, first: usize) -> [f64; 3] {
     [0, 1, 2].map(|k| masses.get(first + k).copied().unwrap_or(0.0))
 }
 
-/// Writes `count` values, from number `from` on, and padding behind them.
+/// Writes values `from` to `count` − 1, followed by padding.
 fn put(into: &mut Column, from: usize, count: usize, value: impl Fn(usize) -> f64, padding: f64) {
     let striping = into.striping();
     (from..count).for_each(|i| into[striping.slot(i)] = value(i));
@@ -374,20 +371,20 @@ fn put(into: &mut Column, from: usize, count: usize, value: impl Fn(usize) -> f6
     into.wrap();
 }
 
-/// Slots behind `count` nodes that need padding again, where nodes from `from` on have changed: none if the end has not moved.
+/// Slots after `count` nodes that must be reset to padding: all if `from` is 0, else none.
 fn beyond(striping: Striping, from: usize, count: usize) -> impl Iterator<Item = Slot> {
     let end = if from == 0 { striping.room() } else { count };
     (count..end).map(move |i| striping.slot(i))
 }
 
-/// Inserts a node into the last segment, which ends at node `end`, at a part [-] of it.
+/// Inserts a node into the last segment, which ends at node `end`, at a fraction `part` [-] of its length.
 fn split(motion: &mut Field, striping: Striping, end: usize, part: f64) {
     let [near, far] = [end - 1, end].map(|i| motion.get(striping.slot(i)));
     motion.set(striping.slot(end), near + part * (far - near));
     motion.set(striping.slot(end + 1), far);
 }
 
-/// Removes the neighbour of the end and conserves momentum, with masses `old` of the last three nodes and `new` of the two that remain, then zero [kg].
+/// Removes the neighbour of the end and conserves momentum; `old` are the masses of the last three nodes, `new` those of the two that remain [kg].
 fn merge(velocity: &mut Field, striping: Striping, end: usize, old: [f64; 3], new: [f64; 3]) {
     let last = [end - 2, end - 1, end].map(|i| striping.slot(i));
     let [before, near, far] = last.map(|at| velocity.get(at));
@@ -402,7 +399,7 @@ mod tests {
     use crate::draft::draft;
     use approx::assert_relative_eq;
 
-    /// The line with 6.2 m of end segment, in irregular motion.
+    /// Line with an end segment of 6.2 m, in irregular motion.
     fn work() -> ExplicitLine {
         let rope = draft("line_types.rope = { mass = 20.0, axial_stiffness = 1.0e6 }");
         let ends = rope

@@ -1,4 +1,4 @@
-//! The seabed under a line.
+//! Seabed under a line.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::physics::seabed::Part;
 /// Contact with the seabed.
 #[derive(Debug, Clone)]
 pub struct ContactArrays {
-    /// z below which the nodes are pushed [m]; over a seabed with a slope, soundings or friction the height above it, along its normal.
+    /// z below which contact acts on the nodes [m]; for a seabed with a slope, soundings or friction, the height above it along its normal.
     pub level: Column,
     /// Stiffness of the segments [N/m].
     pub stiffness: Column,
@@ -23,27 +23,27 @@ pub struct ContactArrays {
     pub yields: Column,
     /// Force on the nodes over the step, at zero velocity [N].
     pub spring: Column,
-    /// Decrease of that force with the velocity at which a node leaves the seabed [N s/m].
+    /// Decrease of that force with the velocity at which the nodes leave the seabed [N s/m].
     pub resistance: Column,
     /// Parts of a segment at which contact acts.
     pub parts: &'static [Part; 4],
-    /// The seabed where it has a slope, soundings or friction.
+    /// Seabed with a slope, soundings or friction; `None` for a level plane without friction.
     pub seabed: Option<SeabedArrays>,
 }
 
-/// A seabed with a slope, soundings or friction.
+/// Seabed with a slope, soundings or friction.
 #[derive(Debug, Clone)]
 pub struct SeabedArrays {
     pub seabed: Arc<Seabed>,
-    /// Cells of the soundings under the nodes, row by row, each kept until a node leaves it; none on a plane.
+    /// Cells of the soundings under the nodes, row by row, each kept until a node leaves it; empty for a plane.
     pub cells: Vec<Cell<Lanes>>,
-    /// Stiffness along the seabed of a node that sticks [N/m]; 0 without friction.
+    /// Stiffness of sticking nodes along the seabed [N/m]; 0 without friction.
     pub stick: Column,
     /// Friction on the nodes in the last step [N].
     pub friction: Field,
     /// Normals at the nodes at t_n [-]; zero in rows above the highest point of the seabed.
     pub normal: Field,
-    /// Penetrations of the nodes at t_n [m]; bounds of them in such rows.
+    /// Penetrations of the nodes at t_n [m]; upper bounds in rows above the highest point of the seabed.
     pub penetration: Column,
     /// Velocities at which the nodes leave the seabed [m/s].
     pub rise: Column,
@@ -80,12 +80,12 @@ impl ContactArrays {
 }
 
 impl Layout {
-    /// The seabed, where it is more than a level plane without friction.
+    /// Seabed; `None` if it is a level plane without friction.
     pub fn seabed(&self) -> Option<&SeabedArrays> {
         self.contact.as_ref()?.seabed.as_ref()
     }
 
-    /// Shape of the seabed, where it is more than a level plane without friction.
+    /// Shape of the seabed; `None` if it is a level plane without friction.
     #[inline(always)]
     pub fn ground(&self) -> Option<&Ground> {
         Some(&self.seabed()?.seabed.ground)

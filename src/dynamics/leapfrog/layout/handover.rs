@@ -1,4 +1,4 @@
-//! Loading of a line's state before steps, and its check and storage after them.
+//! Loading of a line's state before the steps, and its check and storage after them.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -9,10 +9,10 @@ use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striping::{Field, Slot, Striping};
 use crate::model::LineState;
 
-/// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
+/// Speed that only unstable steps reach [m/s]: about that of the fastest axial waves.
 const SPEED_MAX: f64 = 1e4;
 
-/// Nodes of a state: positions [m], velocities at the time of these, and half a step and one and a half steps before [m/s].
+/// Nodes of a state: positions [m]; velocities at the same time, half a step earlier, and one and a half steps earlier [m/s].
 struct Nodes<'a> {
     position: &'a mut [Vector3<f64>],
     velocity: &'a mut [Vector3<f64>],
@@ -21,7 +21,7 @@ struct Nodes<'a> {
 }
 
 impl<'a> Nodes<'a> {
-    /// The first `count` values of each, so that the compiler drops bound checks.
+    /// Returns the first `count` values of each, so that the compiler omits bounds checks.
     #[inline(always)]
     fn first(self, count: usize) -> Nodes<'a> {
         Nodes {
@@ -32,7 +32,7 @@ impl<'a> Nodes<'a> {
         }
     }
 
-    /// Copies the values of a node from a lane `of` these; does nothing if it is padding.
+    /// Copies the values of a node from a lane of `of`; does nothing if the node is padding.
     #[inline(always)]
     fn take(&mut self, node: usize, lane: usize, of: &[Vectors; 4]) {
         if node < self.position.len() {
@@ -72,7 +72,7 @@ impl NullaryFnOnce for AreSound<'_> {
     }
 }
 
-/// Padding far away and apart: its chords are never zero.
+/// Padding nodes at different positions: their chords are never zero.
 pub(super) fn padded_positions(striping: Striping) -> Field {
     let mut position = Field::zeros(striping);
     for (i, at) in striping.slots().enumerate() {
@@ -81,14 +81,14 @@ pub(super) fn padded_positions(striping: Striping) -> Field {
     position
 }
 
-/// Position of node `i` where it is padding [m].
+/// Position of node `i` as padding [m].
 fn padding(i: usize) -> Vector3<f64> {
     i as f64 * Vector3::x()
 }
 
 impl Layout {
-    /// Loads positions and velocities of a line; the halo still has to be renewed. Padding is reset: a step that was too long may have
-    /// affected it through its neighbours.
+    /// Loads the state of a line; the halo must be renewed afterwards. Padding is reset: a step that was too long may have affected it through
+    /// its neighbours.
     pub fn load(&mut self, state: &LineState) {
         self.released = state.released;
         let memory = &state.half_step;
@@ -122,8 +122,8 @@ impl Layout {
         }
     }
 
-    /// Copies them back after steps of `steps` [s], with velocities extrapolated to the time of the positions. Returns whether all nodes have
-    /// finite positions, and speeds that mooring lines reach.
+    /// Stores the state after steps of `steps` [s], newest first, with velocities extrapolated to the time of the positions. Returns whether all
+    /// nodes have finite positions and physically possible speeds.
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
         self.vector_unit.dispatch(HandBack(self, state, steps))
     }
@@ -152,14 +152,14 @@ impl Layout {
         for row in 0..rows {
             let values = self.motion(row + 1, extrapolation);
             sound = sound.where_positive(self.soundness(row + 1));
-            // a loop over lanes would be vectorised, and vectors cannot be stored like this
+            // not a loop over lanes: the compiler would vectorise it, which does not suit these stores
             nodes.take(row, 0, &values);
             nodes.take(rows + row, 1, &values);
             nodes.take(2 * rows + row, 2, &values);
             nodes.take(3 * rows + row, 3, &values);
         }
         if count > 4 * rows {
-            // the node behind the rows
+            // the node after the last row
             nodes.take(4 * rows, 3, &self.motion(rows + 1, extrapolation));
         }
         if let Some(seabed) = self.seabed() {
@@ -171,7 +171,7 @@ impl Layout {
         sound.all_positive()
     }
 
-    /// Positions of the nodes of a row [m], and their velocities now, half a step before and three halves before [m/s].
+    /// Positions of the nodes of a row [m], and their velocities at the same time, half a step and one and a half steps earlier [m/s].
     #[inline(always)]
     fn motion(&self, row: usize, extrapolation: Lanes) -> [Vectors; 4] {
         let (half, before) = (self.velocity.load(row), self.velocity_before.load(row));
@@ -179,23 +179,23 @@ impl Layout {
         [self.position.load(row), velocity, half, before]
     }
 
-    /// > 0 for the nodes of a row that have a finite position, and a speed that mooring lines reach [m²/s²].
+    /// Positive for nodes of a row that have a finite position and a physically possible speed [m²/s²].
     #[inline(always)]
     pub fn soundness(&self, row: usize) -> Lanes {
         let (position, velocity) = (self.position.load(row), self.velocity.load(row));
-        let zero = (position.x + position.y + position.z) * Lanes::splat(0.0); // or not a number
+        let zero = (position.x + position.y + position.z) * Lanes::splat(0.0); // NaN unless finite
         let fastest = Lanes::splat(SPEED_MAX * SPEED_MAX);
         fastest + zero - velocity.dot(velocity)
     }
 
-    /// Index of the node that moves fastest.
+    /// Index of the fastest node.
     pub fn fastest_node(&self) -> usize {
         let speeds = self.nodes().map(|at| self.velocity.get(at).norm_squared());
         let fastest = speeds.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b));
         fastest.map_or(0, |(node, _)| node)
     }
 
-    /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
+    /// Index of the first node whose position is not finite or whose speed is physically impossible.
     pub fn broken_node(&self) -> Option<usize> {
         let broken = |at: Slot| {
             let (position, velocity) = (self.position.get(at), self.velocity.get(at));

@@ -1,4 +1,4 @@
-//! Motion of the water around a line, and the position of the water's surface on it.
+//! Motion of the water around a line, and the position of the water surface on it.
 
 use nalgebra::Vector3;
 
@@ -15,14 +15,14 @@ use crate::physics::slender::Slender;
 /// Sources of the motion of the water around a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Water<'a> {
-    /// Shape of the current, where the water flows.
+    /// Profile of the current; `None` without a current.
     pub profile: Option<&'a Profile>,
     /// True if waves act on the line.
     pub waves: bool,
 }
 
 impl<'a> Water<'a> {
-    /// Around a line of a model.
+    /// Sources around a line of a model.
     pub fn around(model: &'a Model, line: &Line) -> Water<'a> {
         Water {
             profile: model.current.as_ref().map(|current| &current.profile),
@@ -31,11 +31,11 @@ impl<'a> Water<'a> {
     }
 }
 
-/// The current at t_n.
+/// Current at t_n.
 #[derive(Debug, Clone)]
 pub struct CurrentNow {
     pub profile: Profile,
-    /// Factor of the velocity [-].
+    /// Factor on the velocity of the profile [-].
     pub factor: f64,
 }
 
@@ -48,7 +48,7 @@ impl CurrentNow {
     }
 }
 
-/// Motion of the water due to waves over a time span: coefficients of the powers of the elapsed part of the span.
+/// Wave kinematics over a time span, as polynomials in the elapsed fraction of the span.
 #[derive(Debug, Clone)]
 pub struct WaveArrays {
     /// Coefficients of the velocity [m/s].
@@ -60,9 +60,9 @@ pub struct WaveArrays {
     tangent: Column,
     /// Start and end of the span [s].
     times: [f64; 2],
-    /// Part of the span that has passed at t_n [-].
+    /// Elapsed fraction of the span at t_n [-].
     passed: f64,
-    /// Elevation of the surface over the nodes, and its rate, at both ends of the span [m, m/s].
+    /// Surface elevation at the nodes [m] and its rate [m/s], at both ends of the span.
     surface: Vec<[[f64; 2]; 2]>,
 }
 
@@ -85,7 +85,7 @@ impl WaveArrays {
         }
     }
 
-    /// Advances to a time [s].
+    /// Advances by a time [s].
     fn pass(&mut self, time: f64) {
         let [t0, t1] = self.times;
         if t1 > t0 {
@@ -93,7 +93,7 @@ impl WaveArrays {
         }
     }
 
-    /// Elevation of the surface over a node [m].
+    /// Surface elevation at a node [m].
     fn elevation(&self, node: usize) -> f64 {
         let [[p0, m0], [p1, m1]] = self.surface[node];
         let [t0, t1] = self.times;
@@ -104,20 +104,20 @@ impl WaveArrays {
         cubic.at(t0 + self.passed * (t1 - t0)).value
     }
 
-    /// Velocities of the water at the nodes at t_n [m/s].
+    /// Velocities of the water due to waves at the nodes at t_n [m/s].
     #[inline(always)]
     fn velocity(&self, at: usize) -> Vectors {
         polynomial(&self.velocity, self.passed, at)
     }
 
-    /// Forces of the accelerated water on nodes with these unit tangents [N].
+    /// Froude-Krylov forces on nodes with these tangents [N].
     #[inline(always)]
     pub fn froude_krylov(&self, at: usize, tangent: Vectors) -> Vectors {
         let acceleration = polynomial(&self.acceleration, self.passed, at);
         Slender::new([self.normal.load(at), self.tangent.load(at)]).times(acceleration, tangent)
     }
 
-    /// Force of the accelerated water on a node with this unit tangent [N].
+    /// Froude-Krylov force on a node with this tangent [N].
     pub fn froude_krylov_of(&self, at: Slot, tangent: Vector3<f64>) -> Vector3<f64> {
         let acceleration = self.value(&self.acceleration, at);
         Slender::new([self.normal[at], self.tangent[at]]).times(acceleration, tangent)
@@ -129,7 +129,7 @@ impl WaveArrays {
     }
 }
 
-/// Velocities of the water at the nodes of a row at the heights z [m], in [m/s].
+/// Velocities of the water [m/s] at the nodes of a row at heights `z` [m].
 #[inline(always)]
 pub(in crate::dynamics::leapfrog) fn water_flow(
     current: Option<&CurrentNow>,
@@ -157,7 +157,7 @@ fn polynomial(powers: &[Field; 4], passed: f64, at: usize) -> Vectors {
 }
 
 impl Layout {
-    /// Finds where the surface crosses the line, and sets the weights of the nodes it crosses.
+    /// Finds the surface-piercing nodes at t_n, and sets their weight, Froude-Krylov mass and drag.
     pub fn find_surface(&mut self) {
         let Some(surface) = &mut self.surface else {
             return;
@@ -187,7 +187,7 @@ impl Layout {
         }
     }
 
-    /// Adds the work of the difference in buoyancy between waves and still water over a step, except at ends that are `held`.
+    /// Adds the work of the difference in buoyancy between waves and still water over a step, except at prescribed ends, which `held` marks.
     pub fn balance_lift(&mut self, step: Step, held: [bool; 2]) {
         let (Some(surface), Some(_)) = (&mut self.surface, &self.waves) else {
             return;
@@ -200,7 +200,7 @@ impl Layout {
         }
     }
 
-    /// Buoyancy that an end lacks at t_n [N].
+    /// Buoyancy that an end loses at t_n [N]; in waves, that which it would lose in still water.
     pub fn end_lack(&self, end: End) -> f64 {
         let node = self.end_node(end);
         let surface = self.surface.as_ref();
@@ -214,7 +214,7 @@ impl Layout {
         }
     }
 
-    /// Returns whether the waves loaded are those of another span of time.
+    /// Returns whether the loaded waves are those of another time span.
     pub fn lacks_waves(&self, span: &WaveSpan) -> bool {
         let waves = self.waves.as_ref();
         waves.is_some_and(|waves| waves.times != span.times)
@@ -243,7 +243,7 @@ impl Layout {
         }
     }
 
-    /// Sets the waves to those of t_n [s].
+    /// Sets the waves to those at time `t` [s].
     pub fn set_time(&mut self, t: f64) {
         if let Some(waves) = &mut self.waves {
             let [t0, t1] = waves.times;
