@@ -11,13 +11,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Version of this interface, which a host gives to load and read; it changes with every change that breaks a host.
+// Version of this interface, which a host passes to load and read; it changes with every incompatible change.
 #define MOORLINE_ABI_VERSION 1
 
 // The call succeeded.
 #define MOORLINE_OK 0
 
-// A handle is null, closed, or none.
+// A handle is null, closed or unknown.
 #define MOORLINE_INVALID_HANDLE 1
 
 // An argument is null, of a wrong length, or has a value that cannot be used.
@@ -26,22 +26,22 @@
 // The host was built for another version of this interface.
 #define MOORLINE_WRONG_VERSION 3
 
-// The scene or deck cannot be read, or has mistakes.
+// The scene or deck cannot be read, or contains mistakes.
 #define MOORLINE_SCENE_ERROR 4
 
-// There is no static equilibrium.
+// No static equilibrium was found.
 #define MOORLINE_STATICS_ERROR 5
 
-// A step failed; the state is that before it.
+// A step failed; the state is unchanged.
 #define MOORLINE_STEP_ERROR 6
 
-// The call comes too early or too late: before or after start.
+// The call is not allowed in this phase: before or after start.
 #define MOORLINE_WRONG_PHASE 7
 
-// moorline does not find it for this scene.
+// moorline does not compute this result for the scene.
 #define MOORLINE_NOT_AVAILABLE 8
 
-// A fault inside the library: the simulation serves nothing but close any more.
+// Internal fault of the library: the simulation can only be closed.
 #define MOORLINE_INTERNAL_ERROR 9
 
 // Causality of a variable: the host sets it before a step.
@@ -66,63 +66,64 @@ typedef struct MoorlineSimulationTarget *moorline_simulation;
 extern "C" {
 #endif // __cplusplus
 
-// Gives the number of bodies that the host moves: coupled points, then vessels.
+// Gets the number of bodies that the host moves: coupled points, then vessels.
 int moorline_body_count(moorline_simulation simulation, size_t *count);
 
-// Gives the name of a body, counted from 0. `moorline_message` says how a text is given.
+// Gets the name of a body, counted from 0. The text is returned as by `moorline_message`.
 int moorline_body_name(moorline_simulation simulation, size_t body, char *text, size_t room, size_t *needed);
 
-// Gives the degrees of freedom of a body: 3 of a point, 6 of a vessel.
+// Gets the number of degrees of freedom of a body: 3 for a point, 6 for a vessel.
 int moorline_body_size(moorline_simulation simulation, size_t body, size_t *size);
 
-// Sets the displacement of a body from its reference [m], with roll, pitch and yaw of a vessel added to those of its reference attitude [rad], body to
-// global by yaw, pitch, roll (Z-Y-X); and its velocity [m/s] and angular velocity in global axes [rad/s], which are derived where `velocity` is null.
+// Sets the displacement of a body from its reference position [m] and, for a vessel, roll, pitch and yaw relative to its reference attitude
+// [rad] (body to global by yaw, pitch, roll, Z-Y-X); and its velocity [m/s] and angular velocity in global axes [rad/s], which are derived if
+// `velocity` is null.
 int moorline_move(moorline_simulation simulation,
                   size_t body,
                   const double *place,
                   const double *velocity,
                   size_t size);
 
-// Gives the force of the mooring on a body [N] and, on a vessel, its moment about the vessel's origin [N m], in global axes.
+// Gets the force of the mooring on a body [N] and, for a vessel, the moment about the vessel's origin [N m], in global axes.
 int moorline_force(moorline_simulation simulation, size_t body, double *force, size_t size);
 
-// Gives the 36 values of the stiffness of the mooring on a vessel as it is now, by rows of force [N/m, N] and moment [N, N m].
+// Gets the 36 values of the current stiffness of the mooring on a vessel, row by row: force [N/m, N] and moment [N, N m].
 int moorline_stiffness(moorline_simulation simulation, size_t body, double *stiffness, size_t count);
 
-// Gives the number of lines.
+// Gets the number of lines.
 int moorline_line_count(moorline_simulation simulation, size_t *count);
 
-// Gives the name of a line, counted from 0. `moorline_message` says how a text is given.
+// Gets the name of a line, counted from 0. The text is returned as by `moorline_message`.
 int moorline_line_name(moorline_simulation simulation, size_t line, char *text, size_t room, size_t *needed);
 
-// Gives the number of nodes of a line, from start on.
+// Gets the number of nodes of a line; only after start.
 int moorline_node_count(moorline_simulation simulation, size_t line, size_t *count);
 
-// Gives x, y, z of every node of a line, from end A to end B [m]: three values a node.
+// Gets x, y, z of every node of a line, from end A to end B [m]: three values per node.
 int moorline_node_positions(moorline_simulation simulation, size_t line, double *positions, size_t count);
 
-// Gives the effective tension at every node of a line, from end A to end B [N].
+// Gets the effective tension at every node of a line, from end A to end B [N].
 int moorline_node_tensions(moorline_simulation simulation, size_t line, double *tensions, size_t count);
 
-// Gives x, y, z of the places for which the flow of the water is due next, for the nodes of a line from end A to end B [m]: three values a node. These
-// are the places of the nodes now or, where inputs hold for the end of the step, the places they are expected to reach. From start on.
+// Gets x, y, z of the positions at which the water flow is required next, for the nodes of a line from end A to end B [m]: three values per
+// node. These are the current positions of the nodes or, if inputs refer to the end of the step, their expected positions there. Only after start.
 int moorline_flow_places(moorline_simulation simulation,
                          size_t line,
                          double *places,
                          size_t count);
 
-// Sets the velocity [m/s] and the acceleration [m/s2] of the water at those places, three values a node, in a scene with `flow = "host"` in [water].
+// Sets velocity [m/s] and acceleration [m/s2] of the water at those positions, three values per node, in a scene with `flow = "host"` in [water].
 int moorline_set_flow(moorline_simulation simulation,
                       size_t line,
                       const double *velocities,
                       const double *accelerations,
                       size_t count);
 
-// Returns the version of this interface; it is MOORLINE_ABI_VERSION of the header that the library was built with.
+// Returns the version of this interface: MOORLINE_ABI_VERSION of the header with which the library was built.
 uint32_t moorline_abi_version(void);
 
-// Gives the message of the last call of this thread that failed. A text is written with a zero byte into `room` bytes and cut to them; `needed`,
-// unless it is null, becomes the room of the whole text. With room 0, `text` may be null.
+// Gets the message of the last call that failed on this thread. A text is copied with a zero byte into `room` bytes and truncated to fit; `needed`,
+// unless null, receives the size needed for the whole text. With room 0, `text` may be null.
 int moorline_message(char *text,
                      size_t room,
                      size_t *needed);
@@ -130,95 +131,94 @@ int moorline_message(char *text,
 // Loads a scene, or a deck of MoorDyn or MAP++, from a file. `abi_version` is MOORLINE_ABI_VERSION.
 int moorline_load(uint32_t abi_version, const char *path, moorline_simulation *simulation);
 
-// Reads a scene from a text in TOML, which names no other files.
+// Reads a scene from a TOML text that refers to no other files.
 int moorline_read(uint32_t abi_version, const char *toml, moorline_simulation *simulation);
 
-// Closes a simulation; its handle is refused from then on. Null is nothing to close.
+// Closes a simulation; its handle becomes invalid. Null is ignored.
 int moorline_close(moorline_simulation simulation);
 
-// Selects by trials what the scene leaves open: elements, integrator and time step. Takes up to seconds; without it, rules choose. Before start.
+// Selects by convergence trials the values that the scene leaves open: elements, integrator and time step. Takes up to seconds; otherwise, rules choose
+// them. Only before start. Set the flow of the water after it, for the nodes of the selected mesh.
 int moorline_select(moorline_simulation simulation);
 
-// Starts at a time [s], in the scene's initial shapes (static equilibrium by default) at the present inputs.
+// Starts at a time [s], in the scene's initial shapes (static equilibrium by default) with the current inputs.
 int moorline_start(moorline_simulation simulation, double time);
 
-// Goes back to before start; parameters and inputs stay.
+// Returns to the state before start; parameters and inputs are kept.
 int moorline_reset(moorline_simulation simulation);
 
-// Steps by a time [s]. Inputs hold for the start of the step, or for its end where the scene says so.
+// Steps by a time [s]. Inputs refer to the start of the step, or to its end if the scene specifies that.
 int moorline_step(moorline_simulation simulation, double step);
 
-// Gives the warnings on the scene, the start and the steps that were not given before, a line each; an empty text where there are none. A text that
-// does not fit into `room` is given again.
+// Gets the warnings on the scene, the start and the steps that have not been read yet, one per line; an empty text if there are none. A text that
+// does not fit into `room` is kept for the next call.
 int moorline_warnings(moorline_simulation simulation,
                       char *text,
                       size_t room,
                       size_t *needed);
 
-// Gives the time [s].
+// Gets the time [s].
 int moorline_time(moorline_simulation simulation, double *time);
 
-// Gives the state as bytes. `needed`, unless it is null, becomes their number; with room 0, `bytes` may be null.
+// Gets the state as bytes. `needed`, unless null, receives their number; with room 0, `bytes` may be null.
 int moorline_save(moorline_simulation simulation, uint8_t *bytes, size_t room, size_t *needed);
 
-// Goes back to a state of `moorline_save`, from which it goes on bit for bit. A state may be that of another simulation of the same scene.
+// Restores a state of `moorline_save`; the simulation continues bit for bit. The state may come from another simulation of the same scene.
 int moorline_restore(moorline_simulation simulation, const uint8_t *bytes, size_t count);
 
-// Gives the static equilibrium of the scene at its reference positions as JSON, as `moorline statics --json` does. `moorline_message` says how a text is given.
+// Gets the static equilibrium of the scene at its reference positions as JSON, as `moorline statics --json`. The text is returned as by `moorline_message`.
 int moorline_statics(moorline_simulation simulation,
                      char *text,
                      size_t room,
                      size_t *needed);
 
-// Gives the scene with its present parameters as TOML. `moorline_message` says how a text is given.
+// Gets the scene with its current parameters as TOML. The text is returned as by `moorline_message`.
 int moorline_scene(moorline_simulation simulation, char *text, size_t room, size_t *needed);
 
-// Gives the number of variables; their references are 1 to this number.
+// Gets the number of variables, which is also the greatest reference; references count from 1.
 int moorline_variable_count(moorline_simulation simulation, size_t *count);
 
-// Gives the reference of a variable by its name, such as `fairlead.x`.
+// Gets the reference of a variable by its name, for example `fairlead.x`.
 int moorline_find(moorline_simulation simulation, const char *name, uint32_t *reference);
 
-// Gives the name of a variable. `moorline_message` says how a text is given.
+// Gets the name of a variable. The text is returned as by `moorline_message`.
 int moorline_variable_name(moorline_simulation simulation, uint32_t reference, char *text, size_t room, size_t *needed);
 
-// Gives the unit of a variable. `moorline_message` says how a text is given.
+// Gets the unit of a variable. The text is returned as by `moorline_message`.
 int moorline_variable_unit(moorline_simulation simulation, uint32_t reference, char *text, size_t room, size_t *needed);
 
-// Gives the description of a variable in a sentence. `moorline_message` says how a text is given.
+// Gets the description of a variable, one sentence. The text is returned as by `moorline_message`.
 int moorline_variable_description(moorline_simulation simulation, uint32_t reference, char *text, size_t room, size_t *needed);
 
-// Gives the causality of a variable: MOORLINE_INPUT, MOORLINE_OUTPUT, MOORLINE_PARAMETER or MOORLINE_CALCULATED_PARAMETER.
+// Gets the causality of a variable: MOORLINE_INPUT, MOORLINE_OUTPUT, MOORLINE_PARAMETER or MOORLINE_CALCULATED_PARAMETER.
 int moorline_variable_causality(moorline_simulation simulation, uint32_t reference, int *causality);
 
-// Sets inputs, and parameters before start: all of them or, where one is refused, none. Displacements are from the reference positions [m, rad].
+// Sets inputs, and before start parameters: all of them, or none if one is refused. Displacements are relative to the reference positions [m, rad].
 int moorline_set(moorline_simulation simulation,
                  const uint32_t *references,
                  const double *values,
                  size_t count);
 
-// Gets variables. Results have values from start on.
+// Gets the values of variables. Results are available after start.
 int moorline_get(moorline_simulation simulation, const uint32_t *references, double *values, size_t count);
 
-// Gives the derivatives of `count` outputs by an input, a displacement or a velocity, at the end of the last step. The scene asks for them with
-// `derivatives = true` in `[output]`.
-int moorline_derivatives(moorline_simulation simulation,
-                         const uint32_t *outputs,
-                         double *values,
-                         size_t count,
-                         uint32_t input);
+// Gets the derivatives of `count` outputs with respect to an input, a displacement or a velocity, at the end of the last step. Requires
+// `derivatives = true` in `[output]` of the scene.
+int moorline_derivatives(moorline_simulation simulation, const uint32_t *outputs, double *values, size_t count, uint32_t input);
 
-// Gives the rates of `count` outputs in time, per second, at the end of the last step. The scene asks for them with `derivatives = true` in
-// `[output]`.
-int moorline_rates(moorline_simulation simulation, const uint32_t *outputs, double *values, size_t count);
+// Gets the time derivatives of `count` outputs [per second] at the end of the last step. Requires `derivatives = true` in `[output]` of the scene.
+int moorline_rates(moorline_simulation simulation,
+                   const uint32_t *outputs,
+                   double *values,
+                   size_t count);
 
-// Gives the number of inputs.
+// Gets the number of inputs.
 int moorline_input_count(moorline_simulation simulation, size_t *count);
 
-// Gives the number of outputs.
+// Gets the number of outputs.
 int moorline_output_count(moorline_simulation simulation, size_t *count);
 
-// Gives the number of parameters.
+// Gets the number of parameters.
 int moorline_parameter_count(moorline_simulation simulation, size_t *count);
 
 // Sets all inputs, in the order of their references.

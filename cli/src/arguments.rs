@@ -21,9 +21,9 @@ const EXIT_CODES: &str =
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Say in words what a scene models and what it does not; find every mistake
+    /// Describe what a scene models and what it does not; find every mistake
     Check {
-        /// Write the selected elements, integrator and step into the scene's file, so that later commands need no trials
+        /// Write the selected elements, integrator and step to the scene file, so that later commands run no trials
         #[arg(long)]
         write: bool,
         #[command(flatten)]
@@ -31,7 +31,7 @@ pub(crate) enum Command {
     },
     /// Static equilibrium: forces, shape, sag, length on the seabed
     Statics {
-        /// Print JSON with every number in full
+        /// Print JSON, with all digits of every number
         #[arg(long)]
         json: bool,
         #[command(flatten)]
@@ -39,36 +39,36 @@ pub(crate) enum Command {
     },
     /// Natural periods and shapes of lines and networks about the static equilibrium
     ///
-    /// Added mass is included; drag, damping and waves are not. The seabed's springs act where nodes rest on it, and slack segments resist
-    /// nothing, both as at rest.
+    /// Added mass is included; drag, damping and waves are not. Contact and slack are those of the equilibrium: seabed springs act under
+    /// the nodes that rest on them, and slack segments have no stiffness.
     Modes {
         #[command(flatten)]
         input: Input,
-        /// Modes of all lines together, from the lowest frequency up
+        /// Number of modes of all lines together, from the lowest frequency up
         #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u16).range(1..))]
         count: u16,
-        /// Print JSON with shapes and every number in full
+        /// Print JSON with shapes, and with all digits of every number
         #[arg(long)]
         json: bool,
-        /// Folder for modes.svg, a figure of the lowest modes; made where it is missing
+        /// Folder for modes.svg, a figure of the lowest modes; created if missing
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
-    /// Run in time with the scene's motion: tables, ParaView files, figures, report
+    /// Time-domain run with the scene's motion: tables, ParaView files, figures, report
     ///
-    /// Tables and shapes are written as the run goes. Ctrl-C ends the run after its present step, with the results so far and a saved state in DIR;
-    /// the state is saved every minute too.
+    /// Tables and shapes are written during the run. Ctrl-C ends the run after the current step; DIR then contains the results so far and a saved
+    /// state. The state is also saved every minute.
     Run {
-        /// Folder for the results; made where it is missing
+        /// Folder for the results; created if missing
         #[arg(short, long, value_name = "DIR")]
         output: PathBuf,
-        /// Drive the run as a host does: set the motion at every multiple of H [s], then step by H; a row of results each. With input_reconstruction = "interpolate" the motion set is that of the end of the step
+        /// Drive the run as a host does: set the motion at every multiple of H [s], step by H and write a row. With input_reconstruction = "interpolate" the motion is that at the end of the step
         #[arg(long, value_name = "H", value_parser = positive_number)]
         communication_step: Option<f64>,
         /// Set velocities as well as displacements
         #[arg(long, requires = "communication_step")]
         velocities: bool,
-        /// Continue the interrupted run in DIR from its saved state, to the same rows as without the interruption
+        /// Continue the interrupted run in DIR from its saved state, to the same rows as an uninterrupted run
         #[arg(long)]
         resume: bool,
         /// Stop at T [s] and save the state, as if interrupted there
@@ -79,22 +79,22 @@ pub(crate) enum Command {
         #[command(flatten)]
         input: Input,
     },
-    /// Run a scene case by case, with other values of its keys, on all cores
+    /// Run load cases, with other values of the scene's keys, on all cores
     ///
-    /// CASES is CSV (a row a case) or TOML (lists multiply); its columns are keys of the scene by path, such as water.waves.peak_period,
-    /// lines.line1.length or seed, and motion files. Called again with the same input, an interrupted or killed sweep goes on where it was.
+    /// CASES is CSV (one case per row) or TOML (all combinations of its lists); its columns are keys of the scene by path, such as water.waves.peak_period,
+    /// lines.line1.length or seed, and motion files. With the same input, an interrupted or killed sweep continues where it stopped.
     Sweep {
         #[command(flatten)]
         base: Input,
-        /// File of the cases
+        /// Case file
         cases: PathBuf,
-        /// Folder for the table and the journal; made where it is missing
+        /// Folder for the table and the journal; created if missing
         #[arg(short, long, value_name = "DIR")]
         output: PathBuf,
-        /// Count results from T [s]; from the end of the ramps of motions and waves where absent
+        /// Start of the statistics, T [s]; by default the end of the ramps of motions and waves
         #[arg(long, value_name = "T", value_parser = time)]
         from: Option<f64>,
-        /// Keep all results in time of every case too
+        /// Also keep the time series of every case
         #[arg(long)]
         series: bool,
     },
@@ -110,26 +110,26 @@ pub(crate) enum Command {
     },
     /// Package a scene as an FMU for co-simulation
     ///
-    /// The date of SOURCE_DATE_EPOCH, where the environment has it, is written into the description; else there is none, and the same scene gives
+    /// If SOURCE_DATE_EPOCH is set in the environment, its date is written into the description. Otherwise there is no date; the same scene then gives
     /// the same bytes.
     Fmu {
         #[command(flatten)]
         packaging: Packaging,
-        /// Replay the reference results in an FMU, given in place of the scene; exit code 1 where they are not met
+        /// Replay the reference results in an FMU, which is given instead of the scene; exit code 1 if they are not reproduced
         #[arg(long, conflicts_with_all = ["output", "author", "ssp"])]
         verify: bool,
     },
     /// Speed against error on this machine: meshes, integrators and steps against a converged solution
     Accuracy {
-        /// Scenes of moorline, or decks of MoorDyn or MAP++; the public scenes where none is given
+        /// Scenes of moorline, or decks of MoorDyn or MAP++; the public scenes if none is given
         scenes: Vec<PathBuf>,
-        /// Folder for tables and figures; made where it is missing
+        /// Folder for tables and figures; created if missing
         #[arg(short, long, value_name = "DIR", default_value = "moorline-accuracy")]
         output: PathBuf,
-        /// Keep the other scenes whose results DIR holds, and add these to its tables and figures
+        /// Keep the results of other scenes in DIR, and add these scenes to its tables and figures
         #[arg(long)]
         add: bool,
-        /// Run MoorDyn and CableDyn too, in the same run on the same core; PYTHON is an interpreter, or the folder of a virtual
+        /// Also run MoorDyn and CableDyn, on the same core; PYTHON is an interpreter, or the folder of a virtual
         /// environment, that can import moordyn and cabledyn
         #[arg(long, value_name = "PYTHON")]
         peers: Option<PathBuf>,
@@ -138,20 +138,20 @@ pub(crate) enum Command {
         #[command(flatten)]
         host: FromHost,
     },
-    /// Package the built-in scene as an FMU, drive it as a host does, show what comes out
+    /// Package the built-in scene as an FMU, drive it as a host does, and show the results
     Demo {
-        /// Folder for the results; made where it is missing
+        /// Folder for the results; created if missing
         #[arg(short, long, value_name = "DIR", default_value = "moorline-demo")]
         output: PathBuf,
     },
-    /// Print the completions of a shell
+    /// Print completions for a shell
     Completions {
         /// The shell
         shell: Shell,
     },
     /// Print the manual page, or write the pages of all commands
     Man {
-        /// Folder for the pages; made where it is missing
+        /// Folder for the pages; created if missing
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
@@ -169,7 +169,7 @@ pub(crate) struct Packaging {
     /// Author of the model, for the description
     #[arg(long, value_name = "NAME")]
     pub author: Option<String>,
-    /// Write a system of SSP 1.0 that holds the FMU, with connectors for the motion of the body and the force on it
+    /// Write a system of SSP 1.0 that contains the FMU, with connectors for the motion of the body and the force on it
     #[arg(long)]
     pub ssp: bool,
     #[command(flatten)]
@@ -188,10 +188,10 @@ pub(crate) struct Input {
 /// Values that a deck of another program leaves to its host.
 #[derive(Debug, Args)]
 pub(crate) struct FromHost {
-    /// Water depth D [m], where a deck leaves it to its host
+    /// Water depth D [m], if the deck leaves it to its host
     #[arg(long, value_name = "D", value_parser = positive_number)]
     depth: Option<f64>,
-    /// Reference position of a vessel [m], where a deck leaves it to its host; may be given several times
+    /// Reference position of a vessel [m], if the deck leaves it to its host; may be given several times
     #[arg(long, value_name = "NAME=X,Y,Z", value_parser = placed_vessel)]
     at: Vec<(String, [f64; 3])>,
     /// Join all coupled points of a deck to one vessel of this name, with its origin at (0, 0, 0)
@@ -220,10 +220,10 @@ pub struct Moved {
     /// Regular motion of a vessel or coupled point: amplitude [m, rad], period [s], phase [rad]; may be given several times
     #[arg(long = "move", value_name = "BODY.AXIS=A,T[,PHASE]")]
     regular: Vec<RegularMotion>,
-    /// Let the regular motion grow for R [s]
+    /// Ramp of the regular motion, R [s]
     #[arg(long, value_name = "R", value_parser = positive_number, requires = "regular")]
     ramp: Option<f64>,
-    /// End the run at T [s]; else with the motion file, or as the scene says
+    /// End the run at T [s]; by default at the end of the motion file, or at the duration of the scene
     #[arg(long, value_name = "T", value_parser = positive_number)]
     duration: Option<f64>,
 }

@@ -6,10 +6,7 @@ use crate::model::{LineState, Model, Network, PointState, State};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
     /// Node of a line, by their indices.
-    Node {
-        line: usize,
-        node: usize,
-    },
+    Node { line: usize, node: usize },
     /// Free point, by its index.
     Point(usize),
 }

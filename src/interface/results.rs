@@ -70,7 +70,7 @@ results! {
         InputError = "input_error" => |simulation, _| Some(simulation.input_error()),
         /// Energy that the time integration has produced (positive) or lost since the start [J].
         EnergyError = "energy_error" => |simulation, _| simulation.energy_balance().map(|balance| balance.error()),
-        /// Energy error over the time since the start [W].
+        /// Energy error divided by the time since the start [W].
         PowerResidual = "power_residual" => |simulation, _| simulation.power_residual(),
     }
 }

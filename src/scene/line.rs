@@ -17,17 +17,17 @@ table! {
         pub to: String,
         /// Sections from A to B.
         pub sections: Vec<Section>,
-        /// Number of elements of the whole line [-], in place of the solver's; sections that have a number of their own keep it.
+        /// Number of elements of the whole line [-], instead of that of the solver; sections with a number of their own keep it.
         pub elements: Option<usize> => elements(),
         /// Shape at the start, at rest.
         pub initial: InitialShape = InitialShape::Static,
         /// Shape without bending and torsion.
         pub rest_shape: RestShape = RestShape::Straight,
-        /// Direction of the line from A to B at end A [-], where that end is clamped; pinned where absent.
+        /// Direction of the line from A to B at end A [-], if that end is clamped; pinned by default.
         pub clamped_a: Option<[f64; 3]> => magnitude(1e6),
-        /// Direction of the line from A to B at end B [-], where that end is clamped; pinned where absent.
+        /// Direction of the line from A to B at end B [-], if that end is clamped; pinned by default.
         pub clamped_b: Option<[f64; 3]> => magnitude(1e6),
-        /// End that is released from its point when the host's input `L.release` becomes true; there is no such input where absent.
+        /// End that is released from its point when the host's input `L.release` becomes true; by default there is no such input.
         pub release: Option<LineEnd>,
         /// Tension or time at which the line breaks from one of its points.
         pub failure: Option<Break> => super::table::PLAIN.called("break"),
@@ -87,10 +87,10 @@ table! {
         pub line_type: String => super::table::PLAIN.called("type").elsewhere(&["line_type"]),
         /// Unstretched length [m].
         pub length: f64 => positive(1e6).elsewhere(&["unstrlen", "unstretched_length"]).parameter(),
-        /// Number of elements [-]; chosen from the tolerance where absent.
+        /// Number of elements [-]; selected for the tolerance by default.
         pub elements: Option<usize> => elements(),
-        /// Number of elements that the line type's `damping_ratio` refers to [-]; where absent, the section's share of 40 elements of the longest
-        /// line of its network.
+        /// Number of elements to which the `damping_ratio` of the line type refers [-]; by default the share of the section in 40 elements of the
+        /// longest line of its network.
         pub damping_elements: Option<usize> => within(1.0, 1e9),
     }
 }
@@ -102,7 +102,7 @@ table! {
         pub end: LineEnd,
         /// Greatest length paid out, in addition to that of the section at its end [m].
         pub length_max: f64 => positive(1e6),
-        /// Greatest speed [m/s]; if the host requests more, the winch lags behind. No limit where absent.
+        /// Maximum speed [m/s]; if the host requests more, the winch lags behind. No limit by default.
         pub speed_max: Option<f64> => positive(1e3),
         /// Length paid out in time [m], negative where the line is hauled in, where the scene's own motion is followed.
         pub path: Option<TimeFunction>,
@@ -146,7 +146,7 @@ choice_of_values! {
     pub enum InitialShape {
         /// Static equilibrium.
         Static = "static",
-        /// The closed-form catenary of the line between its points where the scene has them, or straight where it has none.
+        /// The closed-form catenary of the line between its points at their positions in the scene, or a straight line if there is none.
         Catenary = "catenary",
         /// Straight between its ends.
         Straight = "straight";

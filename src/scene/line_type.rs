@@ -31,16 +31,16 @@ table! {
         pub torsional_stiffness: Option<f64> => positive(1e15).elsewhere(&["gj"]).label("torsional stiffness GJ").parameter(),
         /// Rotary inertia of a beam's section per unstretched length [kg m], about any axis.
         pub rotary_inertia: Option<f64> => positive(1e9).label("rotary inertia").acts(Acts::InMotion).parameter(),
-        /// Mass in air per unstretched length [kg/m]; weight/gravity where absent.
+        /// Mass in air per unstretched length [kg/m]; by default weight/gravity.
         pub mass: Option<f64> => not_negative(1e6).elsewhere(&["mass/l", "massden", "m"]).label("mass").parameter(),
-        /// Weight in water, or in air without water, per unstretched length [N/m]; buoyancy is included in it.
+        /// Weight in water, or in air without water, per unstretched length [N/m], reduced by buoyancy.
         pub weight: Option<f64> => magnitude(1e8).elsewhere(&["w"]).label("weight").parameter(),
         /// Volume-equivalent diameter [m].
         pub diameter: Option<f64> => positive(100.0).elsewhere(&["diam", "d"]).label("diameter").parameter(),
         /// Axial damping BA [N s].
         pub axial_damping: Option<f64> => not_negative(1e15).elsewhere(&["ba"]).acts(Acts::InMotion).parameter(),
-        /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`. It becomes one BA, the same on every
-        /// mesh, as `damping_elements` of a section says.
+        /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`. It is converted to one BA for all
+        /// meshes, see `damping_elements` of a section.
         pub damping_ratio: Option<f64> => RATIO.label("axial damping ratio").acts(Acts::InMotion)
             .instead_of(&["axial_damping", "dynamic_damping"]).parameter(),
         /// Rayleigh damping, in addition to the axial damping.
@@ -61,7 +61,7 @@ table! {
             .label("tangential added-mass coefficient").absence("tangential added mass"),
         /// Solid round section from which stiffnesses follow that are not given: EI = Eπd⁴/64.
         pub solid_section: Option<SolidSection> => PLAIN.label("solid round section"),
-        /// Number of loose strands that share the section [-]; 1 where absent.
+        /// Number of loose strands that share the section [-]; by default 1.
         pub fibres: Option<usize> => within(1.0, 1e9).label("number of fibres"),
         /// Law by which the bending stiffness falls with the number of fibres.
         pub fibre_law: FibreLaw = FibreLaw::Linear => PLAIN.label("fibre law"),

@@ -18,15 +18,15 @@ table! {
         pub kind: PointKind,
         /// Vessel that carries a coupled point, whose position is then in the vessel's frame.
         pub on: Option<String>,
-        /// Axes along which a free point may move; all where absent.
+        /// Axes along which a free point may move; by default all.
         pub free: Option<Vec<Axis>>,
-        /// Own mass [kg]; not of fixed points. At points that are not free it adds to the force on the structure that holds them.
+        /// Own mass [kg]; not for fixed points. At points that are not free it adds to the force on the structure that holds them.
         pub mass: Option<f64> => not_negative(1e12).label("mass"),
-        /// Own displaced volume [m³]; not of fixed points.
+        /// Own displaced volume [m³]; not for fixed points.
         pub volume: Option<f64> => not_negative(1e9).label("volume").acts(Acts::InWater),
-        /// Drag coefficient times area CdA [m²]; not of fixed points.
+        /// Drag coefficient times area CdA [m²]; not for fixed points.
         pub drag_area: Option<f64> => not_negative(1e9).elsewhere(&["cda"]).label("drag area").acts(Acts::InFlow),
-        /// Added-mass coefficient Ca on the displaced volume [-]; not of fixed points.
+        /// Added-mass coefficient Ca on the displaced volume [-]; not for fixed points.
         pub added_mass: Option<f64> => not_negative(1e3).elsewhere(&["ca"]).usual([0.0, 5.0], "0 to 5 is usual")
             .label("added-mass coefficient").acts(Acts::InAccelerations),
         /// Point load in time.

@@ -18,16 +18,16 @@ table! {
             scene leaves them open; elements stay those of the packaged scene"),
         /// Quantity whose RMS error, over its standard deviation, the selected mesh and step keep within the tolerance.
         pub tolerance_of: ToleranceOf = ToleranceOf::Tension,
-        /// Elements of a line, of a network those of its longest line [-], where lines and sections leave their number open; chosen from the tolerance where absent.
+        /// Number of elements of lines and sections without a number of their own [-]; of a network, that of its longest line. Selected for the tolerance by default.
         pub elements: Option<usize> => within(1.0, ELEMENTS_MAX).elsewhere(&["segments"]),
         /// Time integrator; `dynamics` is another name of the key.
         pub integrator: Integrator = Integrator::Auto => PLAIN.or_called("dynamics"),
-        /// True if axial damping acts in compression too, so that tension may be negative, and the springs of lines that bend do not, as in other codes.
+        /// True if axial damping also acts in compression, so that tension may be negative, and the springs of lines that bend do not, as in other codes.
         pub negative_tension: bool = false,
         /// Upper limit of the internal time step [s].
         pub time_step_max: f64 = 0.05 => positive(1e4).elsewhere(&["dtm"]),
-        /// Spectral radius at infinite frequency [-] of `generalised_alpha` (0 to 1, default 0.2) or `axial_implicit` (½ to 1, default 0.9); where
-        /// `auto` chooses the latter, values below ½ count as ½.
+        /// Spectral radius at infinite frequency [-] of `generalised_alpha` (0 to 1, default 0.2) or `axial_implicit` (½ to 1, default 0.9); if
+        /// `auto` selects the latter, values below ½ count as ½.
         pub spectral_radius: Option<f64> => MIXED.in_units("-"),
         /// Parameters of the integrator `bossak`.
         pub bossak: Option<Bossak>,
@@ -116,12 +116,12 @@ table! {
         pub interval: f64 = 0.05 => positive(1e9).elsewhere(&["dtout", "dt"]),
         /// Node positions and tensions as variables too: `true` or `array` gives arrays in FMI 3.0, `scalar` one variable for each node in both versions.
         pub profile: Profile = Profile::None,
-        /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost about half as much
-        /// again.
+        /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost about 50 %
+        /// more.
         pub energy_balance: bool = false,
         /// Force `fx` … of a coupled point or a vessel in the variables.
         pub force: ForceOutput = ForceOutput::Total,
-        /// Additional variables for hosts that solve for a body together with its mooring; none where absent.
+        /// Additional variables for hosts that solve for a body together with its mooring; by default none.
         pub interface: Option<InterfaceOutput>,
         /// True if the quasi-static stiffness of the mooring on every vessel is a variable.
         pub stiffness: bool = false,
@@ -130,12 +130,12 @@ table! {
         pub derivatives: bool = false,
         /// Additional columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),
-        /// Format of the tables of `moorline run`; `csv` where absent.
+        /// Format of the tables of `moorline run`; by default `csv`.
         pub format: Option<Format>,
-        /// Significant digits of the results in the tables of `moorline run` [-]; all where absent. Times and counts keep theirs. In Parquet, 6 digits or
+        /// Significant digits of the results in the tables of `moorline run` [-]; by default all. Times and counts keep theirs. In Parquet, 6 digits or
         /// fewer are stored as 32-bit numbers.
         pub digits: Option<usize> => within(1.0, DIGITS_MAX),
-        /// Files that `moorline run` writes for ParaView; `overview` where absent.
+        /// Files that `moorline run` writes for ParaView; by default `overview`.
         pub frames: Option<Frames>,
     }
 }

@@ -26,7 +26,7 @@ pub enum TimeFunction {
 table! {
     /// The keys of a function of time, of which one is given.
     struct FunctionText, "a function of time" {
-        /// A constant value, as a plain number is.
+        /// Constant value, equivalent to a plain number.
         constant: Option<f64> => MIXED,
         /// `[t0, f0, t1, f1]`: a cubic step from f0 before t0 to f1 after t1, with zero slope at both.
         step: Option<[f64; 4]> => MIXED,
@@ -373,7 +373,7 @@ table! {
         pitch: Option<Vec<Vec<f64>>> => MIXED.in_units("rad, s, rad"),
         /// Sines of yaw: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
         yaw: Option<Vec<Vec<f64>>> => MIXED.in_units("rad, s, rad"),
-        /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) of the sines [s]; none where absent.
+        /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) of the sines [s]; by default none.
         ramp: Option<f64> => positive(1e9),
     }
 }

@@ -13,14 +13,14 @@ table! {
         /// Density of the water [kg/m³].
         pub density: f64 => positive(1e5).elsewhere(&["rho", "wtrdnsty", "rhow"])
             .usual([900.0, 1100.0], "1000 to 1030 kg/m³ is usual").parameter(),
-        /// Current; still water where absent.
+        /// Current; by default still water.
         pub current: Option<Current>,
         /// Waves: one sea, or an array of seas that add up.
         pub waves: Option<Waves>,
         /// Velocity and acceleration of the water at every node, from the host instead of from `waves`. A `current` is added to them. The surface
         /// stays at z = 0.
         pub flow: Option<FlowSource> => PLAIN.instead_of(&["waves"]),
-        /// True if lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float up to it.
+        /// True if lines lose buoyancy, drag and added mass above z = 0. By default, lines do that have an end above it, or that could float up to it.
         pub surface: Option<bool>,
     }
 }
@@ -65,7 +65,7 @@ table! {
         pub file: Option<String>,
         /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at the same height; linear between rows and constant outside.
         pub profile: Option<Vec<[f64; 3]>> => MIXED.in_units("m, m/s"),
-        /// Factor of the velocity in time [-]; 1 where absent.
+        /// Factor of the velocity in time [-]; by default 1.
         pub factor: Option<TimeFunction>,
     }
 }
@@ -100,15 +100,15 @@ table! {
         pub significant_height: Option<f64> => HEIGHT.elsewhere(&["hs", "wavehs"]),
         /// Period of a spectrum's peak [s].
         pub peak_period: Option<f64> => PERIOD.elsewhere(&["tp", "wavetp"]),
-        /// Peakedness γ of a JONSWAP spectrum [-]; 3.3 where absent.
+        /// Peakedness γ of a JONSWAP spectrum [-]; by default 3.3.
         pub peakedness: Option<f64> => within(1.0, 10.0).elsewhere(&["gamma"]),
-        /// Mean direction in which a spectrum's waves travel, from x towards y [rad]; 0 where absent.
+        /// Mean direction in which a spectrum's waves travel, from x towards y [rad]; by default 0.
         pub direction: Option<f64> => ANGLE,
-        /// Exponent s of the spread cos²ˢ(½(θ − direction)) of a spectrum's directions [-]; one direction where absent.
+        /// Exponent s of the spread cos²ˢ(½(θ − direction)) of a spectrum's directions [-]; by default one direction.
         pub spreading: Option<f64> => within(0.0, 1000.0),
-        /// Seed of the frequencies, phases and directions of a spectrum's components [-]; where absent, the place of the sea in the list, from 0.
+        /// Seed of the frequencies, phases and directions of a spectrum's components [-]; by default the index of the sea in the list, from 0.
         pub seed: Option<u64>,
-        /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) of all seas [s]; none where absent.
+        /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) of all seas [s]; by default none.
         pub ramp: Option<f64> => positive(1e9),
     }
 }

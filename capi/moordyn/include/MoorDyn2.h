@@ -26,19 +26,19 @@
 // The computation did not stay finite.
 #define MOORDYN_NAN_ERROR -4
 
-// Memory.
+// Memory cannot be allocated.
 #define MOORDYN_MEM_ERROR -5
 
-// An argument has a value that cannot be used; null is one.
+// An argument has a value that cannot be used, such as null.
 #define MOORDYN_INVALID_VALUE -6
 
-// moorline does not model it.
+// moorline does not model the requested feature.
 #define MOORDYN_NOT_IMPLEMENTED -7
 
-// Anything else.
+// Any other error.
 #define MOORDYN_UNHANDLED_ERROR -255
 
-// Level of messages from which on nothing is written.
+// Level that disables all messages.
 #define MOORDYN_NO_OUTPUT 4096
 
 // Level of errors.
@@ -99,7 +99,7 @@ typedef struct MoorDynSeafloorTarget *MoorDynSeafloor;
 extern "C" {
 #endif // __cplusplus
 
-// Creates and starts the one system of the first interface, in place of an earlier one.
+// Creates and starts the system of the first interface; it replaces an earlier one.
 int MoorDynInit(const double *x, const double *xd, const char *infilename);
 
 // Steps the system as `MoorDyn_Step`.
@@ -108,224 +108,224 @@ int MoorDynStep(const double *x, const double *xd, double *f, double *t, double 
 // Closes the system.
 int MoorDynClose(void);
 
-// Writes messages to the console unless `disable` is other than 0; holds for the next system too.
+// Turns messages in the console on, or off if `disable` is not 0; also applies to systems created later.
 void SetDisableConsole(int disable);
 
-// Returns the tension of the last segment of a line [N] by its number, from 1; NaN where there is none.
+// Returns the tension of the last segment [N] of a line by its number, from 1; NaN if there is none.
 double GetFairTen(int l);
 
-// Gives the tensions of the first `*numLines` lines as `MoorDyn_GetFASTtens`.
+// Gets the tensions of the first `*numLines` lines [N] as `MoorDyn_GetFASTtens` does.
 int GetFASTtens(const int *numLines, float *FairHTen, float *FairVTen, float *AnchHTen, float *AnchVTen);
 
-// Gives the position [m] of a point by its number, from 1.
+// Gets the position of a point [m] by its number, from 1.
 int GetPointPos(int l, double *pos);
 
-// Gives the force [N] on a point by its number, from 1.
+// Gets the force on a point [N] by its number, from 1.
 int GetPointForce(int l, double *force);
 
-// Gives the position [m] of a node, from 0, of a line, from 1.
+// Gets the position [m] of a node, counted from 0, of a line, counted from 1.
 int GetNodePos(int LineNum, int NodeNum, double *pos);
 
-// Is not modelled.
+// Not supported: moorline does not model water kinematics from the host.
 int externalWaveKinInit(void);
 
-// Is not modelled; the log says so.
+// Not supported, as `externalWaveKinInit`; writes an error to the log.
 void getWaveKinCoordinates(double *_r);
 
-// Is not modelled; the log says so.
+// Not supported, as `externalWaveKinInit`; writes an error to the log.
 void setWaveKin(const double *_U, const double *_Ud, double _t);
 
-// Does nothing: `MoorDynStep` writes the files of channels.
+// Does nothing: `MoorDynStep` writes the output channels to their files.
 void AllOutput(double _t, double _dt);
 
-// Gives the number of a line in the deck.
+// Gets the number of a line, as in the deck.
 int MoorDyn_GetLineID(MoorDynLine l, int *id);
 
-// Gives the number of segments of a line.
+// Gets the number of segments of a line.
 int MoorDyn_GetLineN(MoorDynLine l, unsigned int *n);
 
-// Gives the number of nodes of a line.
+// Gets the number of nodes of a line.
 int MoorDyn_GetLineNumberNodes(MoorDynLine l, unsigned int *n);
 
-// Gives the unstretched length of a line [m].
+// Gets the unstretched length of a line [m].
 int MoorDyn_GetLineUnstretchedLength(MoorDynLine l, double *ul);
 
-// Sets the unstretched length of a line [m], before the start only.
+// Sets the unstretched length of a line [m]; only before the start.
 int MoorDyn_SetLineUnstretchedLength(MoorDynLine l, double ul);
 
 // Refuses a rate of the unstretched length [m/s] other than 0.
 int MoorDyn_SetLineUnstretchedLengthVel(MoorDynLine l, double v);
 
-// Gives 1 where a line has one constant axial stiffness, else 0.
+// Gets 1 if a line has a constant axial stiffness, otherwise 0.
 int MoorDyn_IsLineConstantEA(MoorDynLine l, int *b);
 
-// Gives the axial stiffness of a line [N].
+// Gets the axial stiffness of a line [N].
 int MoorDyn_GetLineConstantEA(MoorDynLine l, double *EA);
 
-// Sets the axial stiffness of a line [N], before the start only.
+// Sets the axial stiffness of a line [N]; only before the start.
 int MoorDyn_SetLineConstantEA(MoorDynLine l, double EA);
 
-// Gives 0: bending by pressure is not modelled.
+// Gets 0: bending by internal pressure is not modelled.
 int MoorDyn_IsLinePressBend(MoorDynLine l, int *b);
 
-// Refuses bending by pressure.
+// Refuses to enable bending by internal pressure, which is not modelled.
 int MoorDyn_SetLinePressBend(MoorDynLine l, int b);
 
-// Is not modelled.
+// Not supported: bending by internal pressure is not modelled.
 int MoorDyn_SetLinePressInt(MoorDynLine l, const double *_p);
 
-// Gives the position [m] of a node of a line, from end A.
+// Gets the position [m] at node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodePos(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the velocity [m/s] of a node of a line, from end A.
+// Gets the velocity [m/s] at node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodeVel(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the sum of all forces but inertia [N] of a node of a line, from end A.
+// Gets the sum of all forces except inertia [N] on node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodeForce(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the tension, towards end B [N], of a node of a line, from end A.
+// Gets the tension [N] at node `i` of a line, counted from 0 at end A, as a vector towards end B.
 int MoorDyn_GetLineNodeTen(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the force of bending stiffness [N] of a node of a line, from end A.
+// Gets the bending force [N] on node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodeBendStiff(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the weight less buoyancy [N] of a node of a line, from end A.
+// Gets the weight less buoyancy [N] of node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodeWeight(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the drag [N] of a node of a line, from end A.
+// Gets the drag force [N] on node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodeDrag(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the force of accelerated water [N] of a node of a line, from end A.
+// Gets the force of the accelerated water [N] on node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodeFroudeKrilov(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the force of the seabed [N] of a node of a line, from end A.
+// Gets the seabed force [N] on node `i` of a line, counted from 0 at end A.
 int MoorDyn_GetLineNodeSeabedForce(MoorDynLine l, unsigned int i, double *out);
 
-// Gives the curvature of a line at a node [1/m]; 0 without bending stiffness.
+// Gets the curvature of a line at a node [1/m]; 0 without bending stiffness.
 int MoorDyn_GetLineNodeCurv(MoorDynLine l, unsigned int i, double *curv);
 
-// Gives the mass matrix of a node of a line, added mass included, by rows [kg].
+// Gets the mass matrix of a node of a line, added mass included, row by row [kg].
 int MoorDyn_GetLineNodeM(MoorDynLine l, unsigned int i, double (*m)[3]);
 
-// Gives the tension of the last segment of a line at end B [N].
+// Gets the tension of the last segment of a line at end B [N].
 int MoorDyn_GetLineFairTen(MoorDynLine l, double *t);
 
-// Gives the greatest tension of all nodes of a line [N].
+// Gets the greatest nodal tension of a line [N].
 int MoorDyn_GetLineMaxTen(MoorDynLine l, double *t);
 
 // Writes the shape of a line for ParaView.
 int MoorDyn_SaveLineVTK(MoorDynLine l, const char *filename);
 
-// Gives the number of a body in the deck.
+// Gets the number of a body, as in the deck.
 int MoorDyn_GetBodyID(MoorDynBody b, int *id);
 
-// Gives the kind of a body: -1 coupled, 0 free, 1 fixed.
+// Gets the kind of a body: -1 coupled, 0 free, 1 fixed.
 int MoorDyn_GetBodyType(MoorDynBody b, int *t);
 
-// Gives position [m] and angles [rad] of a body, and their rates [m/s, rad/s].
+// Gets the position [m] and angles [rad] of a body, and its velocity [m/s] and angular velocity [rad/s].
 int MoorDyn_GetBodyState(MoorDynBody b, double *r, double *rd);
 
-// Gives the position of a body [m].
+// Gets the position of a body [m].
 int MoorDyn_GetBodyPos(MoorDynBody b, double *out);
 
-// Gives the roll, pitch and yaw of a body by Rx Ry Rz [rad].
+// Gets roll, pitch and yaw of a body [rad], for the rotation Rx Ry Rz.
 int MoorDyn_GetBodyAngle(MoorDynBody b, double *out);
 
-// Gives the velocity of a body [m/s].
+// Gets the velocity of a body [m/s].
 int MoorDyn_GetBodyVel(MoorDynBody b, double *out);
 
-// Gives the angular velocity of a body [rad/s].
+// Gets the angular velocity of a body [rad/s].
 int MoorDyn_GetBodyAngVel(MoorDynBody b, double *out);
 
-// Gives force [N] and moment [N m] of the lines on a coupled body, about its reference point.
+// Gets the force [N] and moment [N m] of the lines on a coupled body, about its reference point.
 int MoorDyn_GetBodyForce(MoorDynBody b, double *f);
 
-// Gives the mass matrix of the end nodes on a coupled body, added mass included, by rows [kg, kg m, kg m²].
+// Gets the mass matrix of the end nodes on a coupled body, added mass included, row by row [kg, kg m, kg m²].
 int MoorDyn_GetBodyM(MoorDynBody b, double (*m)[6]);
 
-// Is not modelled: a body has no shape.
+// Not supported: a body has no geometry.
 int MoorDyn_SaveBodyVTK(MoorDynBody b, const char *_filename);
 
-// Gives the number of a point in the deck.
+// Gets the number of a point, as in the deck.
 int MoorDyn_GetPointID(MoorDynPoint point, int *id);
 
-// Gives the kind of a point: -1 coupled, 0 free, 1 fixed or carried by a body.
+// Gets the kind of a point: -1 coupled, 0 free, 1 fixed or on a body.
 int MoorDyn_GetPointType(MoorDynPoint point, int *t);
 
-// Gives the position of a point [m].
+// Gets the position of a point [m].
 int MoorDyn_GetPointPos(MoorDynPoint point, double *out);
 
-// Gives the velocity of a point [m/s].
+// Gets the velocity of a point [m/s].
 int MoorDyn_GetPointVel(MoorDynPoint point, double *out);
 
-// Gives the force of the lines on a point and of the point itself [N].
+// Gets the force on a point [N]: from its lines and from its own loads.
 int MoorDyn_GetPointForce(MoorDynPoint point, double *out);
 
-// Gives the mass matrix of a point and the end nodes on it, added mass included, by rows [kg].
+// Gets the mass matrix of a point and its end nodes, added mass included, row by row [kg].
 int MoorDyn_GetPointM(MoorDynPoint point, double (*m)[3]);
 
-// Gives the number of line ends at a point.
+// Gets the number of line ends attached to a point.
 int MoorDyn_GetPointNAttached(MoorDynPoint point, unsigned int *n);
 
-// Gives the handle of the line of attachment `i`, from 0, and its end there: 0 of A, 1 of B.
+// Gets the line of attachment `i`, counted from 0, and the end of the line at the point: 0 for A, 1 for B.
 int MoorDyn_GetPointAttached(MoorDynPoint point, unsigned int i, MoorDynLine *l, int *e);
 
-// Is not modelled: a point has no shape.
+// Not supported: a point has no geometry.
 int MoorDyn_SavePointVTK(MoorDynPoint point, const char *_filename);
 
-// Gives the number of a rod in the deck.
+// Gets the number of a rod, as in the deck.
 int MoorDyn_GetRodID(MoorDynRod rod, int *id);
 
-// Gives the kind of a rod: 1, fixed or carried by a body, as moorline models no others.
+// Gets the kind of a rod: always 1, fixed or on a body, since moorline models no other rods.
 int MoorDyn_GetRodType(MoorDynRod rod, int *t);
 
-// Is not modelled: a rod only holds the ends of lines.
+// Not supported: a rod only carries line ends.
 int MoorDyn_GetRodForce(MoorDynRod rod, double *_f);
 
-// Is not modelled: a rod only holds the ends of lines.
+// Not supported: a rod only carries line ends.
 int MoorDyn_GetRodM(MoorDynRod rod, double (*_m)[6]);
 
-// Gives the number of segments of a rod.
+// Gets the number of segments of a rod.
 int MoorDyn_GetRodN(MoorDynRod rod, unsigned int *n);
 
-// Gives the number of nodes of a rod.
+// Gets the number of nodes of a rod.
 int MoorDyn_GetRodNumberNodes(MoorDynRod rod, unsigned int *n);
 
-// Gives the position [m] of a node of a rod, from end A.
+// Gets the position [m] of node `i` of a rod, counted from 0 at end A.
 int MoorDyn_GetRodNodePos(MoorDynRod rod, unsigned int i, double *out);
 
-// Gives the velocity [m/s] of a node of a rod, from end A.
+// Gets the velocity [m/s] of node `i` of a rod, counted from 0 at end A.
 int MoorDyn_GetRodNodeVel(MoorDynRod rod, unsigned int i, double *out);
 
-// Is not modelled: a rod only holds the ends of lines.
+// Not supported: a rod only carries line ends.
 int MoorDyn_SaveRodVTK(MoorDynRod rod, const char *_filename);
 
-// Creates a system from a deck, by default `Mooring/lines.txt`; null where the deck cannot be used, with the reason in the console.
+// Creates a system from a deck, by default `Mooring/lines.txt`; returns null and writes the reason to the console if the deck cannot be used.
 MoorDyn MoorDyn_Create(const char *infilename);
 
-// Gives the number of coupled degrees of freedom.
+// Gets the number of coupled degrees of freedom.
 int MoorDyn_NCoupledDOF(MoorDyn system, unsigned int *n);
 
-// Sets the least level of messages in the console.
+// Sets the lowest level of messages written to the console.
 int MoorDyn_SetVerbosity(MoorDyn system, int verbosity);
 
-// Writes messages to a file too.
+// Writes messages to a file as well.
 int MoorDyn_SetLogFile(MoorDyn system, const char *log_path);
 
-// Sets the least level of messages in the file.
+// Sets the lowest level of messages written to the file.
 int MoorDyn_SetLogLevel(MoorDyn system, int verbosity);
 
-// Writes a message of the host.
+// Writes a message of the host to the log.
 int MoorDyn_Log(MoorDyn system, int level, const char *msg);
 
-// Starts in static equilibrium at coupled positions `x` [m, rad] that move by `xd` [m/s, rad/s].
+// Starts in static equilibrium at the coupled positions `x` [m, rad], which move at `xd` [m/s, rad/s].
 int MoorDyn_Init(MoorDyn system, const double *x, const double *xd);
 
-// Starts as `MoorDyn_Init`, but on catenaries in place of the equilibrium, for a state that is loaded next.
+// Starts as `MoorDyn_Init` does, but on catenaries instead of the equilibrium, for a state that is loaded next.
 int MoorDyn_Init_NoIC(MoorDyn system, const double *x, const double *xd);
 
-// Steps from `*t` by `*dt` [s] with coupled positions `x` [m, rad] at the start, which move by `xd` [m/s, rad/s]; gives the forces `f` [N, N m] on the
-// coupled objects at the end, and its time. A step of 0 s gives the present forces.
+// Steps from `*t` by `*dt` [s] with the coupled positions `x` [m, rad] at the start of the step, which move at `xd` [m/s, rad/s]; gets the forces `f`
+// [N, N m] on the coupled objects at the end of the step, and its time. A step of 0 s gets the current forces.
 int MoorDyn_Step(MoorDyn system,
                  const double *x,
                  const double *xd,
@@ -333,86 +333,86 @@ int MoorDyn_Step(MoorDyn system,
                  double *t,
                  double *dt);
 
-// Closes a system; its handles and those of its parts are refused from then on.
+// Closes a system; its handle and those of its parts become invalid.
 int MoorDyn_Close(MoorDyn system);
 
-// Gives the internal time step of the deck or the host [s]; moorline chooses its own.
+// Gets the internal time step set by the deck or the host [s]; moorline chooses its own steps.
 int MoorDyn_GetDt(MoorDyn system, double *dt);
 
-// Sets an upper limit of the internal time step [s], which holds from the next start on.
+// Sets an upper limit on the internal time step [s], which takes effect at the next start.
 int MoorDyn_SetDt(MoorDyn system, double dt);
 
-// Gives the Courant number of the deck or the host [-]; moorline chooses its steps by the tolerance.
+// Gets the Courant number set by the deck or the host [-]; moorline chooses its steps from the tolerance.
 int MoorDyn_GetCFL(MoorDyn system, double *cfl);
 
-// Keeps a Courant number [-], which has no effect.
+// Stores a Courant number [-]; it has no effect.
 int MoorDyn_SetCFL(MoorDyn system, double cfl);
 
-// Gives the name of the time scheme of the deck or the host. With a null name, only the room that it needs [bytes].
+// Gets the name of the time scheme set by the deck or the host. With a null name, gets only the size that the name needs [bytes].
 int MoorDyn_GetTimeScheme(MoorDyn system, char *name, size_t *name_len);
 
-// Keeps the name of a time scheme, which has no effect.
+// Stores the name of a time scheme; it has no effect.
 int MoorDyn_SetTimeScheme(MoorDyn system, const char *name);
 
 // Writes the state to a file.
 int MoorDyn_SaveState(MoorDyn system, const char *filepath);
 
-// Goes back to the state of a file; a system that was not started then is.
+// Restores the state from a file; starts the system if it has not been started.
 int MoorDyn_LoadState(MoorDyn system, const char *filepath);
 
 // Writes the state to a file.
 int MoorDyn_Save(MoorDyn system, const char *filepath);
 
-// Goes back to the state of a file; a system that was not started then is.
+// Restores the state from a file; starts the system if it has not been started.
 int MoorDyn_Load(MoorDyn system, const char *filepath);
 
-// Gives the number of bytes of the state and, unless `data` is null, the state in words of eight bytes.
+// Gets the size of the state [bytes] and, unless `data` is null, the state in words of eight bytes.
 int MoorDyn_Serialize(MoorDyn system, size_t *size, uint64_t *data);
 
-// Goes back to a state; a system that was not started then is.
+// Restores a state; starts the system if it has not been started.
 int MoorDyn_Deserialize(MoorDyn system, const uint64_t *data);
 
 // Writes the shape of all lines for ParaView.
 int MoorDyn_SaveVTK(MoorDyn system, const char *filename);
 
-// Breaks a line off a point, from the next step on.
+// Detaches a line from a point, from the next step on.
 int MoorDyn_BreakLine(MoorDyn system, MoorDynPoint point, MoorDynLine line);
 
-// Gives horizontal and vertical forces at the fairleads and anchors of the first `*numLines` lines [N].
+// Gets the horizontal and vertical forces at the fairleads and anchors of the first `*numLines` lines [N].
 int MoorDyn_GetFASTtens(MoorDyn system, const int *numLines, float *FairHTen, float *FairVTen, float *AnchHTen, float *AnchVTen);
 
-// Gives the number of bodies.
+// Gets the number of bodies.
 int MoorDyn_GetNumberBodies(MoorDyn system, unsigned int *n);
 
-// Gives the number of rods.
+// Gets the number of rods.
 int MoorDyn_GetNumberRods(MoorDyn system, unsigned int *n);
 
-// Gives the number of points.
+// Gets the number of points.
 int MoorDyn_GetNumberPoints(MoorDyn system, unsigned int *n);
 
-// Gives the number of lines.
+// Gets the number of lines.
 int MoorDyn_GetNumberLines(MoorDyn system, unsigned int *n);
 
-// Returns the handle of a body by its number, from 1; null where there is none.
+// Returns the handle of a body by its number, from 1; null if there is none.
 MoorDynBody MoorDyn_GetBody(MoorDyn system, unsigned int number);
 
-// Returns the handle of a rod by its number, from 1; null where there is none.
+// Returns the handle of a rod by its number, from 1; null if there is none.
 MoorDynRod MoorDyn_GetRod(MoorDyn system, unsigned int number);
 
-// Returns the handle of a point by its number, from 1; null where there is none.
+// Returns the handle of a point by its number, from 1; null if there is none.
 MoorDynPoint MoorDyn_GetPoint(MoorDyn system, unsigned int number);
 
-// Returns the handle of a line by its number, from 1; null where there is none.
+// Returns the handle of a line by its number, from 1; null if there is none.
 MoorDynLine MoorDyn_GetLine(MoorDyn system, unsigned int number);
 
 // Returns the handle of the water.
 MoorDynWaves MoorDyn_GetWaves(MoorDyn system);
 
-// Returns the handle of the seabed; null where there is none.
+// Returns the handle of the seabed; null if there is none.
 MoorDynSeafloor MoorDyn_GetSeafloor(MoorDyn system);
 
-// Gives velocity `U` [m/s], acceleration `Ud` [m/s²], elevation [m] and dynamic pressure [Pa] of the water at a place [m]. The pressure of waves is
-// not found: give null for it where there are waves.
+// Gets velocity `U` [m/s], acceleration `Ud` [m/s²], surface elevation [m] and dynamic pressure [Pa] of the water at a position [m]. The pressure of
+// waves is not computed: with waves, pass null for it.
 int MoorDyn_GetWavesKin(MoorDynWaves waves,
                         double x,
                         double y,
@@ -423,30 +423,30 @@ int MoorDyn_GetWavesKin(MoorDynWaves waves,
                         double *PDyn,
                         MoorDynSeafloor _seafloor);
 
-// Returns the wave number [1/m] of a circular frequency [rad/s] with gravity `g` [m/s²] over a depth `h` [m]; NaN where one of them is not positive.
+// Returns the wave number [1/m] for a circular frequency [rad/s], gravity `g` [m/s²] and depth `h` [m]; NaN if one of them is not positive.
 double WaveNumber(double Omega,
                   double g,
                   double h);
 
-// Gives the depth of the seabed at a place [m], positive down.
+// Gets the depth of the seabed at a horizontal position [m], positive down.
 int MoorDyn_GetDepthAt(MoorDynSeafloor seafloor, double x, double y, double *depth);
 
-// Gives the mean of the soundings [m].
+// Gets the mean depth of the soundings [m].
 int MoorDyn_GetAverageDepth(MoorDynSeafloor seafloor, double *avgDepth);
 
-// Gives the least of the soundings [m].
+// Gets the least depth of the soundings [m].
 int MoorDyn_GetMinDepth(MoorDynSeafloor seafloor, double *minDepth);
 
-// Is not modelled; gives 0 places.
+// Not supported: moorline does not model water kinematics from the host; sets `n` to 0.
 int MoorDyn_ExternalWaveKinInit(MoorDyn system, unsigned int *n);
 
-// Is not modelled; gives 0 places.
+// Not supported, as `MoorDyn_ExternalWaveKinInit`; sets `n` to 0.
 int MoorDyn_ExternalWaveKinGetN(MoorDyn system, unsigned int *n);
 
-// Is not modelled.
+// Not supported, as `MoorDyn_ExternalWaveKinInit`.
 int MoorDyn_ExternalWaveKinGetCoordinates(MoorDyn system, double *_r);
 
-// Is not modelled.
+// Not supported, as `MoorDyn_ExternalWaveKinInit`.
 int MoorDyn_ExternalWaveKinSet(MoorDyn system, const double *_U, const double *_Ud, double _t);
 
 #ifdef __cplusplus

@@ -132,7 +132,8 @@ fn a_communication_step_sets_the_rows_and_is_checked_as_their_interval() {
 
 #[test]
 fn the_winch_of_a_scene_pays_out_in_communication_steps_too() {
-    let winch = "name = \"line1\"\nwinch = { end = \"b\", length_max = 1.0, path = { ramp = [0.0, 0.0, 1.0, 0.2] } }";
+    let winch =
+        "name = \"line1\"\nwinch = { end = \"b\", length_max = 1.0, path = { ramp = [0.0, 0.0, 1.0, 0.2] } }";
     let scene = SCENE.replace("name = \"line1\"", winch);
     let (header, [exact, host]) = exact_and_host(&scene, 0.1);
     let [length, sag] = ["line1.length_change", "line1.sag"].map(|name| column(&header, name));
