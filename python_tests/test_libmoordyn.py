@@ -238,3 +238,5 @@ def test_channels_are_moordyns(hosts, tmp_path):
         late = values[:, 0] > 20
         scale = rms(peers[late, 1:]) / math.sqrt(peers.shape[1] - 1)
         assert rms(values[late, 1:] - peers[late, 1:]) / math.sqrt(peers.shape[1] - 1) < 0.01 * scale
+        for column in (slice(k, k + 1) for k, name in enumerate(head) if "Ten" in name):
+            assert rms(values[late, column] - peers[late, column]) < 0.005 * rms(peers[late, column]), head[column]

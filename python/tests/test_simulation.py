@@ -49,7 +49,8 @@ def test_a_step_that_fails_leaves_the_simulation_as_it_was(chain):
     before = simulation.save()
     with pytest.raises(moorline.StepError):
         simulation.advance({"fairlead.x": 1e6}, 0.05)
-    assert simulation.save() == before and simulation["fairlead.x"] == 2.0 * math.sin(0.5 * 0.45)
+    assert pickle.dumps(simulation.save()) == pickle.dumps(before)
+    assert simulation["fairlead.x"] == 2.0 * math.sin(0.5 * 0.05 * 9)
     simulation.advance({}, 0.05)
 
 

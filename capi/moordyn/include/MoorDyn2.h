@@ -276,7 +276,7 @@ int MoorDyn_SavePointVTK(MoorDynPoint point, const char *_filename);
 // Gets the number of a rod, as in the deck.
 int MoorDyn_GetRodID(MoorDynRod rod, int *id);
 
-// Gets the kind of a rod: always 1, fixed or on a body, since moorline models no other rods.
+// Gets the kind of a rod: always 2, fixed or on a body, since moorline models no other rods.
 int MoorDyn_GetRodType(MoorDynRod rod, int *t);
 
 // Not supported: a rod only carries line ends.
@@ -428,13 +428,13 @@ double WaveNumber(double Omega,
                   double g,
                   double h);
 
-// Gets the depth of the seabed at a horizontal position [m], positive down.
+// Gets the height z of the seabed at a horizontal position [m], negative below still water.
 int MoorDyn_GetDepthAt(MoorDynSeafloor seafloor, double x, double y, double *depth);
 
-// Gets the mean depth of the soundings [m].
+// Gets the mean height z of the soundings [m].
 int MoorDyn_GetAverageDepth(MoorDynSeafloor seafloor, double *avgDepth);
 
-// Gets the least depth of the soundings [m].
+// Gets the height z of the shallowest sounding [m].
 int MoorDyn_GetMinDepth(MoorDynSeafloor seafloor, double *minDepth);
 
 // Not supported: moorline does not model water kinematics from the host; sets `n` to 0.

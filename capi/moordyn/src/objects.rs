@@ -251,13 +251,13 @@ pub unsafe extern "C" fn MoorDyn_GetRodID(rod: MoorDynRod, id: *mut c_int) -> c_
     }
 }
 
-/// Gets the kind of a rod: always 1, fixed or on a body, since moorline models no other rods.
+/// Gets the kind of a rod: always 2, fixed or on a body, since moorline models no other rods.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetRodType(rod: MoorDynRod, t: *mut c_int) -> c_int {
     // SAFETY: the host's arguments.
     unsafe {
         edge::get(rod, "MoorDyn_GetRodType", t, |system, index| {
-            system.rod(index).map(|_| 1)
+            system.rod(index).map(|_| 2)
         })
     }
 }

@@ -37,7 +37,7 @@ pub unsafe extern "C" fn WaveNumber(Omega: f64, g: f64, h: f64) -> f64 {
     edge::wave_number(Omega, g, h)
 }
 
-/// Gets the depth of the seabed at a horizontal position [m], positive down.
+/// Gets the height z of the seabed at a horizontal position [m], negative below still water.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetDepthAt(
     seafloor: MoorDynSeafloor,
@@ -53,7 +53,7 @@ pub unsafe extern "C" fn MoorDyn_GetDepthAt(
     }
 }
 
-/// Gets the mean depth of the soundings [m].
+/// Gets the mean height z of the soundings [m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetAverageDepth(seafloor: MoorDynSeafloor, avgDepth: *mut f64) -> c_int {
     // SAFETY: the host's arguments.
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn MoorDyn_GetAverageDepth(seafloor: MoorDynSeafloor, avgD
     }
 }
 
-/// Gets the least depth of the soundings [m].
+/// Gets the height z of the shallowest sounding [m].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn MoorDyn_GetMinDepth(seafloor: MoorDynSeafloor, minDepth: *mut f64) -> c_int {
     // SAFETY: the host's arguments.

@@ -273,7 +273,8 @@ fn end_mass(simulation: &Simulation, point: usize) -> Matrix3<f64> {
     let data = &model.points[point];
     let height = state.points[point].position.z;
     let own = data.body().map_or(0.0, |own| own.at(height).mass);
-    let ends = data.attached.iter();
+    let attached = data.attached.iter();
+    let ends = attached.filter(|(line, end)| !state.lines[*line].released[*end as usize]);
     let of_ends = ends.map(|&(line, end)| {
         let node = model.lines[line].end_node(end);
         node_mass(model, simulation, (line, node))
@@ -288,8 +289,12 @@ pub(crate) fn node_mass(
     (line, node): (usize, usize),
 ) -> Matrix3<f64> {
     let (data, shape) = (&model.lines[line], &simulation.state().lines[line]);
-    let masses = [data.nodes.mass_normal[node], data.nodes.mass_tangent[node]];
-    Slender::new(masses).matrix(tangent(data, &shape.position, node))
+    let surface = data.surface.as_ref();
+    let water = || model.water_along(simulation.state(), line, simulation.state().time);
+    let dry = surface.map_or(0.0, |surface| {
+        surface.node_in(water(), node, &shape.position).part
+    });
+    Slender::new(data.nodes.masses(node, dry)).matrix(tangent(data, &shape.position, node))
 }
 
 /// Unit tangent of a line at a node [-]: the mean direction of the adjacent segments.

@@ -49,7 +49,7 @@ impl System {
         })
     }
 
-    /// Returns the depth of the seabed at a horizontal position [m], positive down [m].
+    /// Returns the height z of the seabed at a horizontal position [m], negative below still water, as MoorDyn does.
     ///
     /// # Errors
     /// The system was not started, the position is not finite, or there is no seabed.
@@ -59,13 +59,13 @@ impl System {
             return Err(Failure::value("a place is not finite"));
         }
         match (&model.seabed, model.seabed_level) {
-            (Some(seabed), _) if !seabed.level => Ok(-seabed.ground.height(x, y)),
-            (_, Some(seabed)) => Ok(-seabed),
+            (Some(seabed), _) if !seabed.level => Ok(seabed.ground.height(x, y)),
+            (_, Some(seabed)) => Ok(seabed),
             (_, None) => Err(Failure::value("the deck has no seabed")),
         }
     }
 
-    /// Returns the mean and least depth of the soundings [m], or the depth of a level seabed twice.
+    /// Returns the height z of the seabed at the mean and the least depth of the soundings [m], or that of a level seabed twice.
     ///
     /// # Errors
     /// The deck has no seabed.
@@ -73,13 +73,13 @@ impl System {
         let seabed = self.deck.scene.seabed.as_ref();
         let seabed = seabed.ok_or_else(|| Failure::value("the deck has no seabed"))?;
         let Some(grid) = &seabed.grid else {
-            return Ok([seabed.depth; 2]);
+            return Ok([-seabed.depth; 2]);
         };
         let depths = || grid.depth.iter().flatten().copied();
         let count = depths().count().max(1) as f64;
         Ok([
-            depths().sum::<f64>() / count,
-            depths().fold(f64::INFINITY, f64::min),
+            -depths().sum::<f64>() / count,
+            -depths().fold(f64::INFINITY, f64::min),
         ])
     }
 }

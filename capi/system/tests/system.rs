@@ -502,3 +502,10 @@ fn the_force_on_a_free_point_at_rest_is_zero_with_its_own_weight_and_the_seabed(
     let weight = (500.0 - 0.1 * 1025.0) * 9.81;
     assert!(force.iter().all(|part| part.abs() < 1e-4 * weight), "{force:?}");
 }
+
+#[test]
+fn the_seabed_has_heights_that_are_negative_below_still_water() {
+    let system = started().system;
+    assert_eq!(system.depth_at(1.0, 2.0).unwrap(), -60.0);
+    assert_eq!(system.depths().unwrap(), [-60.0; 2]);
+}

@@ -103,7 +103,8 @@ fn add_node(node: &Node, deck: &Deck, turn: Turn, draft: &mut Draft<'_>) {
     };
     let point = match node.kind {
         Kind::Fix => fixed,
-        Kind::Vessel => draft.aboard(free, draft.vessel_of_the_deck(), [0.0; 3], [0.0; 3]),
+        // the host's structure has the mass and the volume of a vessel node, as in MAP++
+        Kind::Vessel => draft.aboard(fixed, draft.vessel_of_the_deck(), [0.0; 3], [0.0; 3]),
         Kind::Connect => Point {
             force: constant_force(turned(node.force, turn.angle)),
             ..free

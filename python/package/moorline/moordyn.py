@@ -203,17 +203,17 @@ def GetSeafloor(instance: MoorDyn) -> MoorDyn:
 
 
 def GetDepthAt(instance: MoorDyn, x: float, y: float) -> float:
-    """Depth of the seabed at a place [m]."""
+    """Height z of the seabed at a place [m], negative below still water."""
     return instance.depth_at(x, y)
 
 
 def GetAverageDepth(instance: MoorDyn) -> float:
-    """Mean depth of the seabed [m]."""
+    """Mean height z of the seabed [m]."""
     return instance.depths()[0]
 
 
 def GetMinDepth(instance: MoorDyn) -> float:
-    """Least depth of the seabed [m]."""
+    """Height z of the seabed where it is shallowest [m]."""
     return instance.depths()[1]
 
 
