@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use cpu_time::ThreadTime;
 use moorline::model::{Body, Line};
-use moorline::scene::{Integrator, Reconstruction, Scene, TimeFunction};
+use moorline::scene::{Integrator, Reconstruction, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
@@ -32,8 +32,8 @@ pub(crate) struct Trial {
     pub(crate) inputs: Vec<Input>,
     /// Bodies that the host moves.
     pub(crate) bodies: Vec<Body>,
-    /// Lines on winches that the scene moves, with the lengths paid out before every step [m].
-    winches: Vec<(usize, Vec<f64>)>,
+    /// Lengths paid out before every step [m], with the indices of their lines; empty if the scene is followed exactly.
+    winches: Vec<Vec<(usize, f64)>>,
     /// Communication step [s].
     pub(crate) step: f64,
     count: usize,
@@ -103,16 +103,7 @@ impl Trial {
         let first: Vec<Input> = at(0.0).collect();
         let times = (0..count).map(|index| (index + usize::from(ahead)) as f64 * step);
         let inputs = times.clone().flat_map(at).collect();
-        let lines = start.model().lines.iter().enumerate();
-        let paths = lines.filter_map(|(line, data)| Some((line, data.winch.as_ref()?.path.as_ref()?)));
-        let of_path = |(line, path): (usize, &TimeFunction)| {
-            (
-                line,
-                path.at(0.0),
-                times.clone().map(|time| path.at(time)).collect(),
-            )
-        };
-        let paths: Vec<(usize, f64, Vec<f64>)> = paths.map(of_path).collect();
+        let winches = times.map(|time| start.model().paid_out(time)).collect();
         let bodies: Vec<Body> = start
             .model()
             .moving(0.0)
@@ -120,10 +111,8 @@ impl Trial {
             .map(|moving| moving.body)
             .collect();
         give(&mut start, &bodies, &first);
-        let mut winches = Vec::new();
-        for (line, change, changes) in paths {
+        for (line, change) in start.model().paid_out(0.0) {
             start.set_length_change(line, change);
-            winches.push((line, changes));
         }
         start.restart(0.0).map_err(|error| error.to_string())?;
         Ok(Trial {
@@ -211,8 +200,8 @@ impl Trial {
             let bodies = self.bodies.len();
             let inputs = &self.inputs[index * bodies..(index + 1) * bodies];
             give(&mut simulation, &self.bodies, inputs);
-            for (line, changes) in &self.winches {
-                simulation.set_length_change(*line, changes[index]);
+            for (line, change) in self.winches.get(index).into_iter().flatten() {
+                simulation.set_length_change(*line, *change);
             }
             simulation.advance(self.step).map_err(|error| error.to_string())?;
             each(&simulation);

@@ -395,10 +395,7 @@ fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
         let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
         simulation.set_body(moving.body, moving.pose, velocity);
     }
-    for line in 0..simulation.model().lines.len() {
-        let winch = simulation.model().lines[line].winch.as_ref();
-        if let Some(change) = winch.and_then(|winch| Some(winch.path.as_ref()?.at(time))) {
-            simulation.set_length_change(line, change);
-        }
+    for (line, change) in simulation.model().paid_out(time) {
+        simulation.set_length_change(line, change);
     }
 }

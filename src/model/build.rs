@@ -32,8 +32,8 @@ use crate::physics::viscoelastic::Viscoelastic;
 use crate::physics::weight::submerged_weight;
 use crate::scene::channel::LineEnd;
 use crate::scene::{
-    self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, Names, PointKind, RestShape, Scene,
-    SceneError, Strain,
+    self, Axis, ContactLaw, FibreLaw, InitialShape, Integrator, LineModel, LineType, Names, PointKind,
+    RestShape, Scene, SceneError, Strain,
 };
 
 /// Maximum number of segments that a winch pays out.
@@ -449,7 +449,10 @@ fn build_line(
         bending: None,
         surface: None,
         sections: catenary_sections(line, &laws),
-        initial: line.initial.clone(),
+        initial: match scene.solver.integrator {
+            Integrator::QuasiStatic => InitialShape::Static, // in equilibrium from the start
+            _ => line.initial.clone(),
+        },
         beam,
         release: releases(line),
         winch: None,

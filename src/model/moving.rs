@@ -1,6 +1,6 @@
 //! Motions in the scene, in the form of a host's input at a communication point.
 
-use super::{Body, Model, Role};
+use super::{Body, Line, Model, Role};
 
 /// A moving coupled point or vessel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +14,12 @@ pub struct Moving {
 }
 
 impl Model {
+    /// Lengths [m] that the winches with a path in the scene have paid out at `time` [s], each with the index of its line.
+    pub fn paid_out(&self, time: f64) -> Vec<(usize, f64)> {
+        let path = |(line, data): (usize, &Line)| Some((line, data.winch.as_ref()?.path.as_ref()?.at(time)));
+        self.lines.iter().enumerate().filter_map(path).collect()
+    }
+
     /// Every coupled point and vessel that the scene moves, at `time` [s].
     pub fn moving(&self, time: f64) -> Vec<Moving> {
         let points = self.points.iter().enumerate();

@@ -122,9 +122,11 @@ fn value(source: Source, simulation: &Simulation) -> f64 {
             match quantity {
                 Quantity::Position(axis) => shape.position[node][axis],
                 Quantity::Velocity(axis) => shape.velocity[node][axis],
-                Quantity::Tension | Quantity::Force(_) if node == 0 => at_end(End::A),
-                Quantity::Tension | Quantity::Force(_) if node == last => at_end(End::B),
-                Quantity::Tension | Quantity::Force(_) => simulation.segment_tension(line, node),
+                Quantity::Tension | Quantity::Force(_) => match node {
+                    0 => at_end(End::A),
+                    node if node == last => at_end(End::B),
+                    node => simulation.segment_tension(line, node),
+                },
             }
         }
         Source::Point { point, quantity } => {

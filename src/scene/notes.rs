@@ -238,20 +238,18 @@ fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
 }
 
 fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
-    let seeds: Vec<Option<u64>> = waves
-        .seas
-        .iter()
-        .zip(0..)
-        .map(|(sea, index)| sea.phases(index))
-        .collect();
-    for (i, seed) in seeds.iter().enumerate() {
-        let same = seeds[..i]
+    let seeds = || {
+        waves
+            .seas
             .iter()
-            .position(|other| seed.is_some() && other == seed);
+            .zip(0..)
+            .map(|(sea, place)| sea.spectrum_seed(place))
+    };
+    for (i, seed) in seeds().enumerate().filter(|(_, seed)| seed.is_some()) {
+        let same = seeds().take(i).position(|other| other == seed);
         rules! { notes, "water.waves";
-            "[{i}]" if same.is_some() =>
-                "the seed is that of sea {}: their waves have the same phases and add up; give each spectrum a seed of its own",
-                same.unwrap_or_default();
+            "[{i}]" given sea = same =>
+                "same seed as sea {sea}: both have the same phases, and their waves add up; give each spectrum a different seed";
         }
     }
     rules! { notes, "water.waves";

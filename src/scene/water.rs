@@ -163,7 +163,7 @@ impl Sea {
     }
 
     /// Seed of a spectrum [-], at a place in the list of seas; `None` for other seas.
-    pub fn phases(&self, place: u64) -> Option<u64> {
+    pub fn spectrum_seed(&self, place: u64) -> Option<u64> {
         self.spectrum.as_ref().map(|_| self.seed.unwrap_or(place))
     }
 

@@ -35,11 +35,6 @@ pub(super) fn begin(
     follows_scene: bool,
     shapes: Shapes,
 ) -> Result<(Snapshot, Integrators), Error> {
-    // quasi-static lines are in equilibrium from the start
-    let shapes = match model.solver.integrator {
-        Integrator::QuasiStatic => Shapes::Equilibrium,
-        _ => shapes,
-    };
     let paths = Paths::at_rest(model, time, &inputs, follows_scene);
     let at = MotionSource::new(model, &paths, follows_scene);
     let held = |point: usize, t: f64| at.point(point, t);

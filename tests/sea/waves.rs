@@ -529,7 +529,7 @@ fn spectra_without_a_seed_are_different_seas() {
     let alone = height(&waves(&one), 10.0);
     assert!((height(&waves(&both), 10.0) / alone - 2.0).abs() > 0.01);
     let same = waves(&format!("[{{ {sea} }}, {{ {sea}, direction = 1.57, seed = 0 }}]"));
-    let note = |note: &&Note| note.at == "water.waves[1]" && note.text.contains("the seed is that of sea 0");
+    let note = |note: &&Note| note.at == "water.waves[1]" && note.text.contains("same seed as sea 0");
     assert_eq!(same.notes().iter().filter(note).count(), 1);
     assert_eq!(waves(&both).notes().iter().filter(note).count(), 0);
 }

@@ -42,5 +42,8 @@ fn components(sea: &Sea, place: u64) -> Vec<Component> {
         direction: sea.direction.unwrap_or_default(),
         spreading: sea.spreading,
     };
-    spectrum.draw(sea.number() as usize, sea.phases(place).unwrap_or_default())
+    spectrum.draw(
+        sea.number() as usize,
+        sea.spectrum_seed(place).unwrap_or_default(),
+    )
 }
