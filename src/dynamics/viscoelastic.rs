@@ -112,7 +112,7 @@ struct Relaxing {
 /// Tension and dissipation of viscoelastic segments from t_{n−½} to t_{n+½}.
 #[derive(Debug, Clone, Copy)]
 pub struct Relaxed {
-    /// Tension from the discrete gradient of the energy of the springs [N].
+    /// Tension [N].
     pub tension: Lanes,
     /// Dissipation of the dampers per unstretched length [N].
     pub taken: Lanes,
@@ -236,8 +236,7 @@ impl ViscoelasticArrays {
         self.pass_half(at, [strains[0], half * (slow + after)], step.kick)
     }
 
-    /// Advances from t_{n−½} by `kick` [s] to the strain and slow strain `after` at t_{n+½}. The tension of the fast part is the
-    /// discrete gradient of its energy plus the force of its damper, as in [`Viscoelastic::step`].
+    /// Advances from t_{n−½} by `kick` [s] to the strain and slow strain `after` at t_{n+½}. The tension is that of [`Viscoelastic::step`].
     #[inline(always)]
     fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Relaxed {
         let load = |values: &Column| values.load(at);
@@ -248,8 +247,10 @@ impl ViscoelasticArrays {
         let [pulled, pulls] = fast.map(Lanes::positive);
         let (change, pull) = (fast[1] - fast[0], pulls - pulled);
         let mean = half * load(&self.fast_stiffness) * (pulled + pulls);
-        let gradient = mean * fast[0].positive_secant(fast[1]);
-        let tension = (gradient + load(&self.fast_damping) * pull * rate).positive();
+        let linear = half * load(&self.fast_stiffness) * (fast[0] + fast[1]);
+        let snapping = mean * fast[0].positive_secant(fast[1]);
+        let least = fast[0].choose(Lanes::splat(0.0), snapping);
+        let tension = (linear + load(&self.fast_damping) * change * rate).max(least);
         let of_slow = load(&self.slow_damping) * relaxed * relaxed * rate;
         for (column, value) in self.half.iter_mut().zip(after) {
             column.store(value, at);

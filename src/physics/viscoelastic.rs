@@ -16,12 +16,15 @@
 //!
 //!   ε₁' = e⁻ᶻ ε₁ + (r (1 − e⁻ᶻ) − p) ε + p ε'.
 //!
-//! A rope in compression carries no tension, and its slow part contracts freely, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear solid:
-//! storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
+//! A rope cannot push: where T would be negative it is zero, and the slow part contracts freely, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the
+//! standard linear solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
 //!
-//! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² with e = ε − ε₁ while it is stretched; the rest of the work is dissipated. A step within
-//! which the fast spring slackens or snaps creates no energy: its tension is then the discrete gradient of its energy, plus BA_d (e'₊ − e₊)/Δt of its
-//! damper.
+//! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² with e = ε − ε₁ while it is stretched; the rest of the work is dissipated. The tension of the
+//! fast part over a step is
+//!
+//!   T = max(½EA_d (e + e') + BA_d (e' − e)/Δt, T₀).
+//!
+//! T₀ is zero, but ½EA_d e'²/(e' − e) where the spring snaps from e < 0 to e' > 0, so that it stores no more than the work of T.
 //!
 //! Source: the law of MoorDyn's `EA_s|EA_d`, `BA_s|BA_d` line types, `source/Line.cpp` of MoorDyn-C, after Hall, Duong & Lozon (2023), IOWTC2023, on
 //! semi-taut moorings with polyester ropes; closed forms derived here. Valid for small strain and EA_d > EA_s > 0, BA_s > 0.
@@ -85,8 +88,8 @@ struct Pull {
 struct Series {
     /// Strains of the slow and of the fast part before the step [-].
     before: [f64; 2],
-    /// BA_s/Δt and BA_d/Δt [N].
-    dampers: [f64; 2],
+    /// BA_s/Δt [N].
+    slow_damper: f64,
     /// The slow part pulls with `offset` + `pull` ε₁' over the step [N].
     offset: f64,
     pull: f64,
@@ -97,54 +100,26 @@ impl Series {
         let slow_damper = law.slow_damping() / dt;
         Series {
             before: [slow, strain - slow],
-            dampers: [slow_damper, law.fast_damping / dt],
+            slow_damper,
             offset: (0.5 * law.slow - slow_damper) * slow,
             pull: 0.5 * law.slow + slow_damper,
         }
     }
 
-    /// Step at whose end the parts have the strains `after` [-], with the tension `fast` of the fast part.
-    fn step(&self, after: [f64; 2], fast: Pull) -> ViscoelasticStep {
+    /// Step at whose end the fast part has the strain `after` [-] and the tension `fast`.
+    fn step(&self, law: &Viscoelastic, after: f64, fast: Pull) -> ViscoelasticStep {
+        let slow = (fast.tension - self.offset) / self.pull;
         let slow_slope = fast.slope / (self.pull + fast.slope);
-        let moved = [0, 1].map(|part| after[part] - self.before[part]);
-        let pulled = after[1].max(0.0) - self.before[1].max(0.0);
+        let relaxed = slow - self.before[0];
+        let taken_by_fast = law.taken_by_fast([self.before[1], after], fast.tension);
         ViscoelasticStep {
-            slow: after[0],
+            slow,
             slow_slope,
             mean: Mean {
                 tension: fast.tension,
                 slope: self.pull * slow_slope,
-                taken: self.dampers[0] * moved[0] * moved[0] + self.dampers[1] * pulled * moved[1],
+                taken: self.slow_damper * relaxed * relaxed + taken_by_fast,
             },
-        }
-    }
-}
-
-/// Discrete gradient of ½EA max(e, 0)² and its slope with respect to the final strain [N].
-fn gradient(ea: f64, [before, after]: [f64; 2]) -> Mean {
-    let moved = after - before;
-    match (before > 0.0, after > 0.0) {
-        (false, false) => Mean::default(),
-        (true, true) => Mean {
-            tension: 0.5 * ea * (before + after),
-            slope: 0.5 * ea,
-            taken: 0.0,
-        },
-        (true, false) => {
-            let tension = -0.5 * ea * before * before / moved;
-            Mean {
-                tension,
-                slope: -tension / moved,
-                taken: 0.0,
-            }
-        }
-        (false, true) => {
-            let tension = 0.5 * ea * after * after / moved;
-            Mean {
-                tension,
-                slope: (ea * after - tension) / moved,
-                taken: 0.0,
-            }
         }
     }
 }
@@ -239,88 +214,100 @@ impl Viscoelastic {
 
     /// Step of `dt` [s] between two strains [-].
     pub fn step(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
-        if self.yielding == 0.0 {
-            return self.plain_step(strains, gradient(self.fast, strains), dt);
-        }
-        let half = 0.5 * dt * self.contraction;
-        let contracted = (slow * (1.0 - half) / (1.0 + half)).max(0.0);
         let series = Series::of(self, strains[0], slow, dt);
-        let ([_, before], [_, damper]) = (series.before, series.dampers);
-        let pulls = |after: f64| {
-            let spring = gradient(self.fast, [before, after]);
-            spring.tension + damper * (after.max(0.0) - before.max(0.0))
-        };
-        // the slow part carries no tension while it contracts freely, unless it would contract beyond zero strain
-        let resists = if contracted > 0.0 {
-            0.0
-        } else {
-            series.offset.max(0.0)
-        };
-        if pulls(strains[1] - contracted) <= resists {
-            return self.slack(strains, [slow, contracted]);
-        }
-        let held = self.held(strains, slow, dt);
-        if before >= 0.0 && held.slow <= strains[1] {
-            return held;
-        }
-        let reach = series.offset + series.pull * strains[1]; // R
-        let after = if before > 0.0 {
-            // ½EA_d e² = (R + D e − P e') (e − e')
-            let free = reach + damper * before;
-            let constant = before * (free - 0.5 * self.fast * before);
-            roots([series.pull, free + series.pull * before, constant])[0]
-        } else {
-            // ½EA_d e'² = (R − (P + D) e') (e' − e)
-            let both = series.pull + damper;
-            roots([0.5 * self.fast + both, reach + both * before, before * reach])[1]
-        };
-        let damps = if after > 0.0 { damper } else { 0.0 };
-        let slope = gradient(self.fast, [before, after]).slope + damps;
-        let tension = pulls(after);
-        let relaxed = (tension - series.offset) / series.pull;
-        series.step([relaxed, after], Pull { tension, slope })
-    }
-
-    /// Step as if the fast part could push at its end, which equals [`Viscoelastic::step`] where it pulls throughout.
-    pub fn held(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
-        let (damper, stiffness) = (self.fast_damping / dt, 0.5 * self.fast);
-        let slope = stiffness + damper;
-        let before = (strains[0] - slow).max(0.0);
-        let kept = (stiffness - damper) * before;
-        if self.yielding == 0.0 {
-            return ViscoelasticStep {
-                slow: 0.0,
-                slow_slope: 0.0,
-                mean: Mean {
-                    tension: kept + slope * strains[1],
-                    slope,
-                    taken: damper * (strains[1] - before) * (strains[1] - strains[0]),
-                },
+        let [_, before] = series.before;
+        let damper = self.fast_damping / dt;
+        let mut contracted = 0.0;
+        let mut resists = 0.0;
+        if self.yielding > 0.0 {
+            let half = 0.5 * dt * self.contraction;
+            contracted = (slow * (1.0 - half) / (1.0 + half)).max(0.0);
+            // the slow part carries no tension while it contracts freely, unless it would contract beyond zero strain
+            resists = if contracted > 0.0 {
+                0.0
+            } else {
+                series.offset.max(0.0)
             };
         }
-        let series = Series::of(self, strains[0], slow, dt);
-        let relaxed = (kept + slope * strains[1] - series.offset) / (series.pull + slope);
-        let after = strains[1] - relaxed;
-        let tension = kept + slope * after;
-        series.step([relaxed, after], Pull { tension, slope })
+        if self.pull([before, strains[1] - contracted], damper).tension <= resists {
+            return self.slack(strains, [slow, contracted]);
+        }
+        if self.yielding == 0.0 {
+            return self.without_memory(strains, self.pull(strains, damper));
+        }
+        let reach = series.offset + series.pull * strains[1]; // R
+        let mut after = self.linear_end(&series, reach, damper);
+        if before < 0.0 {
+            // ½EA_d e'² = (R − P e') (e' − e)
+            let squared = 0.5 * self.fast + series.pull;
+            let [_, snapped] = roots([squared, reach + series.pull * before, before * reach]);
+            after = after.min(snapped);
+        }
+        series.step(self, after, self.pull([before, after], damper))
     }
 
-    /// Step without memory, with the mean tension `spring` of the spring.
-    fn plain_step(&self, strains: [f64; 2], spring: Mean, dt: f64) -> ViscoelasticStep {
-        let pulled = strains.map(|strain| strain.max(0.0));
-        let (damper, change) = (self.fast_damping / dt, strains[1] - strains[0]);
-        let damped = damper * (pulled[1] - pulled[0]);
-        if spring.tension + damped <= 0.0 {
-            return self.slack(strains, [0.0; 2]);
+    /// Step as if the fast part could push, which equals [`Viscoelastic::step`] where it pulls throughout.
+    pub fn held(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
+        let damper = self.fast_damping / dt;
+        if self.yielding == 0.0 {
+            return self.without_memory(strains, self.linear_pull(strains, damper));
         }
-        let damps = if strains[1] > 0.0 { damper } else { 0.0 };
+        let series = Series::of(self, strains[0], slow, dt);
+        let after = self.linear_end(&series, series.offset + series.pull * strains[1], damper);
+        series.step(self, after, self.linear_pull([series.before[1], after], damper))
+    }
+
+    /// Strain [-] of the fast part at the end of a step in which it could push, from ½EA_d (e + e') + D (e' − e) = R − P e'.
+    fn linear_end(&self, series: &Series, reach: f64, damper: f64) -> f64 {
+        let (half, [_, before]) = (0.5 * self.fast, series.before);
+        (reach - (half - damper) * before) / (series.pull + half + damper)
+    }
+
+    /// Tension of the fast part between two of its strains [-], with its damper BA_d/Δt [N], as if it could push.
+    fn linear_pull(&self, [before, after]: [f64; 2], damper: f64) -> Pull {
+        let half = 0.5 * self.fast;
+        Pull {
+            tension: half * (before + after) + damper * (after - before),
+            slope: half + damper,
+        }
+    }
+
+    /// Tension of the fast part between two of its strains [-], with its damper BA_d/Δt [N].
+    fn pull(&self, strains: [f64; 2], damper: f64) -> Pull {
+        let [before, after] = strains;
+        let linear = self.linear_pull(strains, damper);
+        let mut least = Pull {
+            tension: 0.0,
+            slope: 0.0,
+        };
+        if before < 0.0 && after > 0.0 {
+            let moved = after - before;
+            least.tension = 0.5 * self.fast * after * after / moved;
+            least.slope = (self.fast * after - least.tension) / moved;
+        }
+        if linear.tension > least.tension {
+            linear
+        } else {
+            least
+        }
+    }
+
+    /// Dissipation per unstretched length [N] of the fast part under a tension [N] between two of its strains [-].
+    fn taken_by_fast(&self, strains: [f64; 2], tension: f64) -> f64 {
+        let [before, after] = strains.map(|strain| strain.max(0.0));
+        let stored = 0.5 * self.fast * (after + before) * (after - before);
+        tension * (strains[1] - strains[0]) - stored
+    }
+
+    /// Step without memory under a tension.
+    fn without_memory(&self, strains: [f64; 2], pull: Pull) -> ViscoelasticStep {
         ViscoelasticStep {
             slow: 0.0,
             slow_slope: 0.0,
             mean: Mean {
-                tension: spring.tension + damped,
-                slope: spring.slope + damps,
-                taken: damped * change,
+                tension: pull.tension,
+                slope: pull.slope,
+                taken: self.taken_by_fast(strains, pull.tension),
             },
         }
     }
@@ -470,6 +457,21 @@ mod tests {
             assert!((given - held - step.mean.taken).abs() <= 1e-9 * scale, "{case:?}");
             assert!(step.mean.tension >= 0.0, "{case:?}");
             assert!(step.mean.taken >= -1e-9 * scale, "{case:?}");
+        }
+    }
+
+    #[test]
+    fn the_tension_of_a_short_step_is_that_of_both_parts_with_their_dampers_where_it_is_positive() {
+        let dt = 1e-6;
+        for law in [rope(1.1e7), rope(4.0e8), Viscoelastic::plain(1.0e8, 1.0e7)] {
+            for (strain, slow) in [(0.01, 0.002), (0.01, 0.0), (1e-3, 2e-3), (-0.01, 0.0)] {
+                let slow = if law.yielding > 0.0 { slow } else { 0.0 };
+                for rate in [-10.0, -0.5, -0.05, 0.0, 0.05, 0.5, 10.0] {
+                    let exact = (law.elastic(strain, slow) + law.damping * rate).max(0.0);
+                    let step = law.step([strain, strain + rate * dt], slow, dt);
+                    assert_relative_eq!(step.mean.tension, exact, max_relative = 1e-3, epsilon = 1.0);
+                }
+            }
         }
     }
 
