@@ -49,6 +49,8 @@ pub struct Integrators {
     before: State,
     /// Paid-out lengths of the winches, by line; empty where there are none.
     winch_paths: Vec<AxisPath>,
+    /// Time by which steps stop before the end for which their internal steps and the samples of waves are laid out [s].
+    cut: f64,
     /// True if the leapfrogs' striped layout still holds the current state.
     holds: bool,
     threads: ThreadPool,
@@ -90,6 +92,7 @@ impl Integrators {
             sea: SeaWork::new(),
             before: State::default(),
             winch_paths: Vec::new(),
+            cut: 0.0,
             holds: false,
         }
     }
@@ -104,6 +107,12 @@ impl Integrators {
     pub fn set_winch_paths(&mut self, paths: impl Iterator<Item = AxisPath>) {
         self.winch_paths.clear();
         self.winch_paths.extend(paths);
+    }
+
+    /// Makes all further steps stop `cut` [s] before the end for which their internal steps and the samples of waves are laid out: they are the first
+    /// part of longer steps, with the same number of internal steps.
+    pub fn stop_early(&mut self, cut: f64) {
+        self.cut = cut;
     }
 
     /// Returns the integrators chosen, by network.
@@ -166,7 +175,7 @@ impl Integrators {
         held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         match &model.waves {
-            None => self.pass(model, state, length, held),
+            None => self.pass(model, state, [length, length + self.cut], held),
             Some(waves) => self.advance_in(waves, model, state, length, held),
         }
     }
@@ -181,22 +190,24 @@ impl Integrators {
         length: f64,
         held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
-        let mut part = self.sea.reach(model, waves, state, length);
-        if part == length {
-            let renewed = self.renew_waves(model, waves, state, length);
-            let done = self.pass(model, state, length, held);
+        let whole = length + self.cut;
+        let mut part = self.sea.reach(model, waves, state, whole);
+        if part == whole {
+            let renewed = self.renew_waves(model, waves, state, whole);
+            let done = self.pass(model, state, [length, whole], held);
             if done.is_err() && renewed {
                 self.sea.undo(model, state);
             }
             return done;
         }
-        self.check_length(model, state, [part, length], held)?;
+        self.check_length(model, state, [part, whole], held)?;
         let end = state.time + length;
         let mut total = Done::default();
         self.before.clone_from(state);
         loop {
             self.renew_waves(model, waves, state, part);
-            let passed = self.pass(model, state, part, held).and_then(|done| {
+            let taken = part.min(end - state.time);
+            let passed = self.pass(model, state, [taken, part], held).and_then(|done| {
                 total.add(done);
                 let passed = state.time - (end - length);
                 within_guard(model, state.time, [passed, length], total.counters.substeps)
@@ -213,7 +224,7 @@ impl Integrators {
                 state.time = end;
                 return Ok(total);
             }
-            part = self.sea.reach(model, waves, state, left);
+            part = self.sea.reach(model, waves, state, left + self.cut);
         }
     }
 
@@ -233,6 +244,7 @@ impl Integrators {
             state,
             start: state.time,
             length: whole,
+            laid_out: whole,
             held,
             winch_paths: &self.winch_paths,
             holds: false,
@@ -248,12 +260,12 @@ impl Integrators {
         self.sea.renew((model, waves), state, step, threads)
     }
 
-    /// Advances `state` by `length` [s], for which the wave kinematics have been sampled.
+    /// Advances `state` by `length` [s], for which the wave kinematics have been sampled, in internal steps for `laid_out` [s].
     fn pass(
         &mut self,
         model: &Model,
         state: &mut State,
-        length: f64,
+        [length, laid_out]: [f64; 2],
         held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         let threads = self.estimate.threads_for(length);
@@ -263,6 +275,7 @@ impl Integrators {
             state,
             start: state.time,
             length,
+            laid_out,
             held,
             winch_paths: &self.winch_paths,
             holds: std::mem::take(&mut self.holds),

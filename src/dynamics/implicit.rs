@@ -212,8 +212,8 @@ pub struct Span {
     pub start: f64,
     /// End of the span [s].
     pub end: f64,
-    /// Longest step [s].
-    pub step_max: f64,
+    /// Number of steps.
+    pub steps: usize,
 }
 
 /// Prescribed motion of a network, and the scheme that integrates it.
@@ -246,7 +246,6 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     let mut start = std::mem::take(&mut work.start);
     copy_network(model, network, state, &mut start);
     work.counters = Counters::default();
-    let steps = span.steps();
     let integrator = Integration {
         model,
         network,
@@ -255,8 +254,8 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
         scheme: held.scheme,
     };
     let mut result = Ok(());
-    for step in 0..steps {
-        let at = |step: usize| span.start + (span.end - span.start) * step as f64 / steps as f64;
+    for step in 0..span.steps {
+        let at = |step: usize| span.start + (span.end - span.start) * step as f64 / span.steps as f64;
         result = integrator.pass([at(step), at(step + 1)], state, work, &mut observe);
         if result.is_err() {
             copy_network(model, network, &start, state);
@@ -265,13 +264,6 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     }
     work.start = start;
     result.map(|()| work.take_counters())
-}
-
-impl Span {
-    /// Number of steps; rounding of the times adds none.
-    fn steps(&self) -> usize {
-        (((self.end - self.start) / self.step_max - 1e-9).ceil() as usize).max(1)
-    }
 }
 
 struct Integration<'a, K> {

@@ -228,6 +228,25 @@ fn the_rate_of_a_force_is_that_of_its_history() {
     assert!((rate - central).abs() < 0.01 * central.abs(), "{rate} {central}");
 }
 
+#[test]
+fn a_rate_does_not_depend_on_the_step_limit_where_the_motion_does_not() {
+    for integrator in ["leapfrog", "axial_implicit", "generalised_alpha"] {
+        let rate = |time_step_max: f64| {
+            let mut scene = chain(integrator, 31.0);
+            scene.solver.time_step_max = time_step_max;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            for k in 1..=20 {
+                give(&mut simulation, motion(f64::from(k) * 0.01));
+                simulation.advance(0.01).unwrap();
+            }
+            let force = simulation.end_force(1).to_vec();
+            (force, simulation.rates(|s| Ok(s.end_force(1).to_vec())).unwrap())
+        };
+        // a step shorter by a thousandth would need 10 internal steps instead of 11
+        assert_eq!(rate(0.9995e-3), rate(0.95e-3), "{integrator}");
+    }
+}
+
 /// A vessel with two chains, at a rotated attitude.
 fn barge() -> Scene {
     let mut scene = chain("leapfrog", 31.0);

@@ -229,11 +229,7 @@ fn fall(model: &Model, scheme: Scheme, steps: usize) -> Fall {
     assert!(freely, "it falls freely at first");
     let step = |number: usize| {
         let [start, end] = [number, number + 1].map(|n| 0.01 * n as f64);
-        let span = Span {
-            start,
-            end,
-            step_max: 0.01,
-        };
+        let span = Span { start, end, steps: 1 };
         let driving = Driving {
             kinematics: &held,
             scheme: &scheme,
@@ -368,7 +364,7 @@ fn a_step_that_fails_leaves_the_state_as_it_was_and_says_where() {
     let span = Span {
         start: 0.0,
         end: 1.0,
-        step_max: 0.1,
+        steps: 10,
     };
     let driving = Driving {
         kinematics: &broken,

@@ -101,6 +101,8 @@ pub(super) struct Communication<'a, H> {
     pub(super) start: f64,
     /// [s]
     pub(super) length: f64,
+    /// Length for which the number of internal steps is chosen; longer than `length` if the step stops early [s].
+    pub(super) laid_out: f64,
     pub(super) held: &'a H,
     /// Paid-out lengths of the winches, by line; empty where there are none.
     pub(super) winch_paths: &'a [AxisPath],
@@ -225,15 +227,13 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         work: &mut elements::Workspace,
         next: &mut State,
     ) -> Result<Done, StepError> {
-        self.substeps(self.model.networks[number].lines[0], step_max, 0)?;
-        copy_network(self.model, &self.model.networks[number], self.state, next);
-        let end = self.start + self.length;
+        let (model, network) = (self.model, &self.model.networks[number]);
         let span = implicit::Span {
             start: self.start,
-            end,
-            step_max,
+            end: self.start + self.length,
+            steps: self.substeps(network.lines[0], step_max, 0)?,
         };
-        let (model, network) = (self.model, &self.model.networks[number]);
+        copy_network(model, network, self.state, next);
         let mut flow = Flow::default();
         let mut released = energy_balance::released_ends(network, self.state);
         let count = |passed: &Passed| {
@@ -331,7 +331,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
 
     /// Number of equal steps no longer than `step_max` [s], halved `retry` times. An error names `line`.
     fn substeps(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
-        if self.length <= step_max {
+        if self.laid_out <= step_max {
             return Ok(1 << retry);
         }
         self.several(line, step_max, retry)
@@ -341,7 +341,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
     #[inline(never)]
     fn several(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
         // a step equal to the limit must not be split in two by rounding
-        let count = self.length / step_max * (1.0 - 1e-9);
+        let count = self.laid_out / step_max * (1.0 - 1e-9);
         if count <= SUBSTEPS_MAX {
             let whole = count as usize; // rounded down
             return Ok((whole + usize::from(count > whole as f64)) << retry);

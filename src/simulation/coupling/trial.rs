@@ -133,7 +133,7 @@ impl Trial {
         }
     }
 
-    /// Runs the first part of the step, of a given length [s].
+    /// Runs the first part of the step, of a given length [s], with as many internal steps as the whole.
     pub(super) fn run(&mut self, length: f64) -> Result<&Simulation, String> {
         self.step_with(length, None)
     }
@@ -149,6 +149,7 @@ impl Trial {
         simulation.paths = paths;
         simulation.take_paths(length);
         simulation.extend_flow(self.length, self.flow);
+        simulation.work.stop_early(self.length - length);
         simulation.integrate(length).map_err(|e| e.to_string())?;
         Ok(simulation)
     }
