@@ -281,6 +281,20 @@ fn the_work_of_an_end_moment_is_in_the_energy_balance() {
 }
 
 #[test]
+fn the_energy_error_of_explicit_steps_under_a_sudden_moment_on_a_heavy_end_falls_with_their_square() {
+    let errors = [4e-5, 2e-5, 1e-5, 5e-6].map(|step| {
+        let tip = "mass = 5.0, moment = { y = { ramp = [0.0, 0.0, 0.02, 2.0] } }";
+        let mut scene = cantilever(10, LEVEL, tip, "integrator = 'leapfrog'");
+        scene.solver.time_step_max = step;
+        let mut rod = start(&scene);
+        run(&mut rod, 0.02, 25);
+        (step, balance_error(&rod).abs())
+    });
+    println!("{errors:?}");
+    assert_orders(2.0, &errors);
+}
+
+#[test]
 fn the_part_of_a_moment_along_a_cable_does_nothing_and_check_says_so() {
     let rod = cantilever(10, LEVEL, "moment = { x = 2.0 }", "");
     assert_says(&in_words(&rod), &["no torsion"]);

@@ -237,6 +237,15 @@ impl Layout {
         }
     }
 
+    /// Sets the velocities of the ends, but those of released ends, to those of their points at t_{n+½}.
+    pub fn push_ends(&mut self, ends: [&EndMotion; 2]) {
+        for end in ENDS {
+            if !self.released[end as usize] {
+                self.velocity.set(self.end_slot(end), ends[end as usize].velocity);
+            }
+        }
+    }
+
     /// Position of a node `lag` [s] ago, extrapolated with its velocity [m].
     pub fn place_before(&self, at: Slot, lag: f64) -> Vector3<f64> {
         self.position.get(at) - lag * self.velocity.get(at)

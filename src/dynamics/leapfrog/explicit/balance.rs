@@ -22,7 +22,8 @@ impl NullaryFnOnce for BalanceNodes<'_> {
 }
 
 impl ExplicitLine {
-    /// Adds the work on the nodes from t_{n−½} to t_{n+½}; the positions must be those at t_n.
+    /// Adds the work on the nodes from t_{n−½} to t_{n+½}; the positions must be those at t_n, and the
+    /// velocities of the ends those of their points at t_{n+½}.
     pub(super) fn balance_nodes(&mut self, step: Step) {
         if self.balance.is_none() {
             return;
