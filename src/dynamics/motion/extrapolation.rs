@@ -22,7 +22,7 @@ const STEP_RATIO_MAX: f64 = 30.0;
 /// long one then soon has a complete record.
 const STEPS_PASSED_MAX: f64 = 4.0;
 /// Tolerance for rounding of a host's times, relative to its steps [-].
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Samples of four axes, newest first.
 pub(super) type Samples = [Lanes; SAMPLES_MAX];

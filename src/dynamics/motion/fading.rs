@@ -13,17 +13,21 @@
 //! velocity is that of the polynomial through five of them, as in `Smooth`.
 //!
 //! Source: Morrison (1969), Introduction to Sequential Smoothing and Prediction, chapter 13 (the filter); the choice of θ is derived here.
-//! Valid for steps of about equal length: z is scaled to a different step, but the gains are those of equal steps.
+//! Valid for steps of about equal length: z is scaled to a different step, but the gains are those of equal steps. Residuals after a far shorter step
+//! would change the derivatives by their scatter over that step: a sample less than half a step after the last one is not used.
 
 use serde::{Deserialize, Serialize};
 
-use super::extrapolation::evenness;
+use super::extrapolation::{ROUNDING, evenness};
 use crate::math::lanes::{LANES, Lanes};
 
 /// Memory factors θ of the filters [-].
 const MEMORIES: [f64; 8] = [0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92];
 /// Fraction of the mean square residual that is kept from sample to sample [-].
 const KEPT: f64 = 0.9;
+
+/// Least distance between two samples in use, relative to the one before [-].
+const APART_MIN: f64 = 0.5;
 
 /// Coefficient of the fourth difference in the velocity one step after the newest sample, times the step [-]: 1 + ½ + ⅓ + ¼.
 const NEXT: f64 = 25.0 / 12.0;
@@ -34,7 +38,7 @@ type Cubic = [Lanes; 4];
 /// Filters of four axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fading {
-    /// Time of the last sample [s].
+    /// Time of the last sample in use [s].
     time: f64,
     /// Step to which the cubics are scaled [s].
     step: f64,
@@ -63,12 +67,33 @@ impl Fading {
             *self = Fading::at_rest(time, sample);
             return [sample, Lanes::splat(0.0)];
         }
-        let to_sample = if self.step > 0.0 { passed / self.step } else { 1.0 };
-        let even = evenness(&[step, passed, if self.step > 0.0 { self.step } else { passed }]);
+        let missed = match passed < APART_MIN * (1.0 - ROUNDING) * self.step {
+            true => Lanes::splat(0.0),
+            false => self.add(time, sample, step),
+        };
+        let reach = time - self.time + step;
+        let ahead = self.cubics.map(|cubic| shifted(scaled(cubic, reach / self.step)));
+        let [mut position, mut change] = [ahead[0][0], ahead[0][1] + missed];
+        for axis in 0..LANES {
+            let squares = self.residuals.map(|square| square[axis]);
+            let best =
+                (1..squares.len()).fold(0, |best, i| if squares[i] < squares[best] { i } else { best });
+            if best > 0 {
+                (position[axis], change[axis]) = (ahead[best][0][axis], ahead[best][1][axis]);
+            }
+        }
+        [position, Lanes::splat(1.0 / reach) * change]
+    }
+
+    /// Adds a sample [m, rad] at a time [s]; returns the correction of the velocity one `step` [s] later by the fourth difference of the samples, times
+    /// the step [m, rad], for a filter without memory.
+    fn add(&mut self, time: f64, sample: Lanes, step: f64) -> Lanes {
+        let passed = time - self.time;
+        let last = if self.step > 0.0 { self.step } else { passed };
         let mut missed = Lanes::splat(0.0);
         let filters = MEMORIES.iter().zip(&mut self.cubics).zip(&mut self.residuals);
         for ((&memory, cubic), square) in filters {
-            let mut there = shifted(scaled(*cubic, to_sample));
+            let mut there = shifted(scaled(*cubic, passed / last));
             let residual = sample - there[0];
             if memory == 0.0 {
                 missed = residual;
@@ -80,18 +105,7 @@ impl Fading {
             *cubic = there;
         }
         (self.time, self.step) = (time, passed);
-        let ahead = self.cubics.map(|cubic| shifted(scaled(cubic, step / passed)));
-        let mut to = [ahead[0][0], ahead[0][1]];
-        for axis in 0..LANES {
-            let squares = self.residuals.map(|square| square[axis]);
-            let best =
-                (1..squares.len()).fold(0, |best, i| if squares[i] < squares[best] { i } else { best });
-            (to[0][axis], to[1][axis]) = (ahead[best][0][axis], ahead[best][1][axis]);
-            if best == 0 {
-                to[1][axis] += even * NEXT * missed[axis];
-            }
-        }
-        [to[0], Lanes::splat(1.0 / step) * to[1]]
+        Lanes::splat(evenness(&[step, passed, last]) * NEXT) * missed
     }
 }
 
@@ -161,6 +175,23 @@ mod tests {
         let found = [0.1, 0.05, 0.025].map(|step| errors(0.0, step)[1]);
         for pair in found.windows(2) {
             assert!(((pair[0] / pair[1]).log2() - 4.0).abs() < 0.1, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_far_shorter_step_leaves_the_prediction_as_accurate_as_before() {
+        let place = |time: f64| 2.0 * (std::f64::consts::TAU / 10.0 * time).sin();
+        for short in [1e-5, 1e-3, 0.02] {
+            let (mut fading, mut time, mut worst) = (Fading::at_rest(-STEP, Lanes::splat(0.0)), 0.0, 0.0_f64);
+            for k in 0..400 {
+                let step = if k % 20 == 19 { short } else { STEP };
+                let [position, _] = fading.predict(time, Lanes::splat(place(time)), step);
+                time += step;
+                if time > 10.0 {
+                    worst = worst.max((position[0] - place(time)).abs());
+                }
+            }
+            assert!(worst < 0.01, "{short} s: {worst} m");
         }
     }
 
