@@ -113,6 +113,7 @@ impl Simulation {
 
     /// Inputs, to be set.
     pub fn inputs_mut(&mut self) -> &mut Inputs {
+        self.reactions.forget_interface();
         &mut self.snapshot.inputs
     }
 
@@ -121,7 +122,7 @@ impl Simulation {
     /// # Panics
     /// If the inputs are those of another model.
     pub fn set_inputs(&mut self, inputs: &Inputs) {
-        let own = &mut self.snapshot.inputs;
+        let own = self.inputs_mut();
         own.bodies.copy_from_slice(&inputs.bodies);
         own.releases.copy_from_slice(&inputs.releases);
         own.length_changes.copy_from_slice(&inputs.length_changes);
@@ -153,7 +154,7 @@ impl Simulation {
 
     /// Sets the release command of a line, which detaches it from the point named in the scene. The release becomes permanent in the next step.
     pub fn set_release(&mut self, line: usize, release: bool) {
-        self.snapshot.inputs.releases[line] = release;
+        self.inputs_mut().releases[line] = release;
     }
 
     /// Returns whether ends A and B of a line are released from their points.

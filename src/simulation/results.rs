@@ -93,6 +93,11 @@ impl Reactions {
             line.tensions.take();
             line.bending.take();
         }
+        self.forget_interface();
+    }
+
+    /// Drops the values that depend on releases and water flow of the coming step.
+    pub(super) fn forget_interface(&mut self) {
         self.interface.take();
     }
 }

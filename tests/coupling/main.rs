@@ -6,7 +6,7 @@ mod host;
 
 use host::{Case, Master, run};
 use moorline::model::Body;
-use moorline::scene::{ForceOutput, Reconstruction, Scene};
+use moorline::scene::{ForceOutput, LineEnd, Reconstruction, Scene};
 use moorline::simulation::{EndMotion, Simulation};
 use nalgebra::{Vector3, Vector6};
 
@@ -245,6 +245,19 @@ fn a_rate_does_not_depend_on_the_step_limit_where_the_motion_does_not() {
         // a step shorter by a thousandth would need 10 internal steps instead of 11
         assert_eq!(rate(0.9995e-3), rate(0.95e-3), "{integrator}");
     }
+}
+
+#[test]
+fn the_force_of_the_coming_step_is_that_after_a_release_even_if_it_was_read_before() {
+    let mut scene = chain("leapfrog", 31.0);
+    scene.lines[0].release = Some(LineEnd::B);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    give(&mut simulation, motion(0.02));
+    simulation.advance(0.02).unwrap();
+    let coming = |simulation: &Simulation| simulation.impedance(Body::Point(1)).unwrap().free.norm();
+    assert!(coming(&simulation) > 0.1);
+    simulation.set_release(0, true);
+    assert_eq!(coming(&simulation), 0.0);
 }
 
 /// A vessel with two chains, at a rotated attitude.
