@@ -82,7 +82,8 @@ fn turns(deck: &Deck, draft: &mut Draft<'_>) -> Vec<Turn> {
         draft.findings.wrong("repeat", last, problem);
         return Vec::new();
     }
-    let angles = deck.repeat.iter().map(|angle| angle.value.to_radians());
+    // MAP++ turns from y to x, clockwise as seen from above
+    let angles = deck.repeat.iter().map(|angle| -angle.value.to_radians());
     let turns = std::iter::once(0.0).chain(angles).enumerate();
     turns.map(|(number, angle)| Turn { number, angle }).collect()
 }

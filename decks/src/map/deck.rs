@@ -15,7 +15,7 @@ pub(super) struct Deck {
     pub line_types: Vec<LineType>,
     pub nodes: Vec<Node>,
     pub lines: Vec<Line>,
-    /// Angles about z at which the whole system is repeated [deg].
+    /// Angles by which the repetitions of the whole system are turned about z, from y to x [deg].
     pub repeat: Vec<Placed<f64>>,
     /// Options that have no effect here.
     pub unneeded: Vec<Placed<String>>,

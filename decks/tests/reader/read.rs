@@ -156,6 +156,16 @@ fn a_map_deck_repeats_its_lines_and_has_the_published_tension_of_oc3() {
     }
 }
 
+/// Source: `expand_node_position_z` in mapinit.c of MAP++: x' = x cos + y sin.
+#[test]
+fn a_map_deck_is_repeated_from_y_to_x() {
+    let scene = load_deep(&with(MAP, "repeat 120 240", "repeat 90"))
+        .unwrap()
+        .scene;
+    let [x, y, _] = point(&scene, "point4").position;
+    assert!(x.abs() < 1e-12 && y == -5.2, "{x} {y}");
+}
+
 #[test]
 fn a_map_deck_that_is_repeated_by_an_angle_twice_is_noted() {
     for (angles, twins) in [
