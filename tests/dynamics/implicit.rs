@@ -35,12 +35,12 @@ fn swing(model: &Model, amplitude: Vector3<f64>, period: f64) -> impl Fn(usize, 
     }
 }
 
-/// Starts at rest in `state` and runs to `end` [s].
+/// Starts at rest in `state` and runs to `end` in steps of `step` [s].
 fn run(
     model: &Model,
     mut state: State,
     held: &impl Fn(usize, f64) -> Kinematics,
-    [end, step_max]: [f64; 2],
+    [end, step]: [f64; 2],
     scheme: Scheme,
 ) -> (State, Counters) {
     let mut work = Workspace::new(model);
@@ -48,7 +48,7 @@ fn run(
     let span = Span {
         start: 0.0,
         end,
-        step_max,
+        steps: (end / step - 1e-9).ceil() as usize,
     };
     for number in 0..model.networks.len() {
         implicit::start(model, number, &mut state, held, 0.0, &mut work);
