@@ -60,9 +60,9 @@ use extrapolation::{DEGREE_MAX, Order, SAMPLES_MAX, Samples};
 pub use fading::Fading;
 
 /// Acceleration that is always allowed for the removal of a prediction error [m/s²]: a fiftieth of g.
-const EASE: f64 = 0.2;
+pub const EASE: f64 = 0.2;
 /// The same for angles [rad/s²], with lever arms of some ten metres.
-const EASE_OF_ANGLES: f64 = 0.02;
+pub const EASE_OF_ANGLES: f64 = 0.02;
 /// Fraction of the motion's mean acceleration that is allowed in addition [-].
 const SHARE: f64 = 0.5;
 
@@ -259,27 +259,18 @@ impl AxesPath {
         before: &AxesPath,
         extrapolation: &Extrapolation,
         sample: &InputSample,
-        to: Prediction,
+        [position, velocity, velocity_before]: Prediction,
     ) {
-        let ([position, velocity, velocity_before], [_, length, _]) = (to, extrapolation.span);
-        let mut from = before.end;
-        self.end = [position, velocity];
         if extrapolation.reconstruction == Reconstruction::Jump {
-            from = [sample.position, sample.velocity];
+            let [_, length, _] = extrapolation.span;
             let reached = sample.position + Lanes::splat(length) * sample.velocity;
             self.end = [reached, sample.velocity];
-        } else if let Some(late) = extrapolation.late {
-            let missed = [from[0] - sample.position, from[1] - velocity_before];
-            for axis in 0..LANES {
-                let change = (velocity[axis] - velocity_before[axis]).abs();
-                let acceleration = sample.ease + SHARE * change / length;
-                let missed = missed.map(|lanes| lanes[axis]);
-                let left = left(missed, length, late, acceleration);
-                self.end[0][axis] += left[0];
-                self.end[1][axis] += left[1];
-            }
+            let from = [sample.position, sample.velocity];
+            self.curve = Hermites::bridge(extrapolation.span, from, self.end);
+            return;
         }
-        self.curve = Hermites::bridge(extrapolation.span, from, self.end);
+        let motion = [[sample.position, velocity_before], [position, velocity]];
+        self.lead(before, extrapolation, motion, sample.ease);
     }
 
     /// Continues the path over a span of time [s] to given positions [m, rad] and velocities [m/s, rad/s].
@@ -289,11 +280,30 @@ impl AxesPath {
         self.end = to;
     }
 
-    /// Sets the path to `before`, continued over a time span [s] to given positions [m, rad] and velocities [m/s, rad/s] instead
-    /// of its prediction.
-    pub fn lead(&mut self, before: &AxesPath, [start, length]: [f64; 2], to: [Lanes; 2]) {
-        self.curve = Hermites::bridge([start, length, 1.0 / length], before.end, to);
+    /// Sets the path to `before`, continued over a step towards a motion: positions [m, rad] and velocities [m/s, rad/s] at the start and at the end of the
+    /// step. A difference at the start is removed over more than one step where the extrapolation requires it, with an acceleration of at least `ease`
+    /// [m/s², rad/s²].
+    pub fn lead(
+        &mut self,
+        before: &AxesPath,
+        extrapolation: &Extrapolation,
+        [now, to]: [[Lanes; 2]; 2],
+        ease: f64,
+    ) {
         self.end = to;
+        if let Some(late) = extrapolation.late {
+            let [_, length, _] = extrapolation.span;
+            let missed = [before.end[0] - now[0], before.end[1] - now[1]];
+            for axis in 0..LANES {
+                let change = (to[1][axis] - now[1][axis]).abs();
+                let acceleration = ease + SHARE * change / length;
+                let missed = missed.map(|lanes| lanes[axis]);
+                let left = left(missed, length, late, acceleration);
+                self.end[0][axis] += left[0];
+                self.end[1][axis] += left[1];
+            }
+        }
+        self.curve = Hermites::bridge(extrapolation.span, before.end, self.end);
     }
 
     /// Newest position sample from the host [m, rad]; `None` if the sample has a velocity along any axis.

@@ -7,7 +7,9 @@ use super::inputs::{BodyInput, Inputs};
 use super::prescribed::HostEnds;
 use super::winches::{self, WinchPath};
 use super::{Simulation, Snapshot};
-use crate::dynamics::motion::{AxesPath, Clock, Extrapolation, Fading, HostPath, InputSample, VesselPath};
+use crate::dynamics::motion::{
+    AxesPath, Clock, EASE, EASE_OF_ANGLES, Extrapolation, Fading, HostPath, InputSample, VesselPath,
+};
 use crate::dynamics::{StepError, StepFailure};
 use crate::math::unit::VectorUnit;
 use crate::model::{Model, Point, Role};
@@ -93,15 +95,18 @@ impl Paths {
         self.axes().any(|path| path.unrated().is_some())
     }
 
-    /// Leads the paths of motions given without velocities from the paths `before` to the predictions of their filters; `span` is the start and the
-    /// length of the step [s].
-    fn filter(&mut self, before: &Paths, span @ [time, length]: [f64; 2]) {
+    /// Leads the paths of motions given without velocities from the paths `before` to the predictions of their filters, over a step from a time [s] of a
+    /// length [s].
+    fn filter(&mut self, before: &Paths, extrapolation: &Extrapolation, [time, length]: [f64; 2]) {
         let mut filters = std::mem::take(&mut self.filters);
         filters.clone_from(&before.filters);
-        for ((path, before), filter) in self.axes_mut().zip(before.axes()).zip(&mut filters) {
+        let of_points = before.points.iter().map(|_| EASE);
+        let eases = of_points.chain(before.vessels.iter().flat_map(|_| [EASE, EASE_OF_ANGLES]));
+        let paths = self.axes_mut().zip(before.axes()).zip(&mut filters);
+        for (((path, before), filter), ease) in paths.zip(eases) {
             if let Some(sample) = path.unrated() {
-                let to = filter.predict(time, sample, length);
-                path.lead(before, span, to);
+                let motion = filter.predict(time, sample, length);
+                path.lead(before, extrapolation, motion, ease);
             }
         }
         self.filters = filters;
@@ -204,7 +209,7 @@ impl Simulation {
                 ends: self.prescribed.hosted(),
             });
             if model.solver.input_reconstruction == Reconstruction::Filtered {
-                paths.filter(before, [time, step]);
+                paths.filter(before, extrapolation, [time, step]);
                 for (ends, path) in self.prescribed.hosted().iter_mut().zip(&paths.points) {
                     *ends = path.0.ends();
                 }

@@ -16,6 +16,8 @@
 //! Valid for steps of about equal length: z is scaled to a different step, but the gains are those of equal steps. Residuals after a far shorter step
 //! would change the derivatives by their scatter over that step: a sample less than half a step after the last one is not used.
 
+use std::array::from_fn;
+
 use serde::{Deserialize, Serialize};
 
 use super::extrapolation::{ROUNDING, evenness};
@@ -29,7 +31,9 @@ const KEPT: f64 = 0.9;
 /// Least distance between two samples in use, relative to the one before [-].
 const APART_MIN: f64 = 0.5;
 
-/// Coefficient of the fourth difference in the velocity one step after the newest sample, times the step [-]: 1 + ½ + ⅓ + ¼.
+/// Coefficient of the fourth difference in the velocity at the newest sample, times the step [-].
+const NOW: f64 = 0.25;
+/// The same one step later [-]: 1 + ½ + ⅓ + ¼.
 const NEXT: f64 = 25.0 / 12.0;
 
 /// Scaled derivatives of one filter along four axes [m, rad].
@@ -59,34 +63,36 @@ impl Fading {
         }
     }
 
-    /// Adds a sample [m, rad] at a time [s]; returns the predicted positions [m, rad] and velocities [m/s, rad/s] one step [s] later. A sample that is not
-    /// later than the last one restarts the filters at rest.
-    pub fn predict(&mut self, time: f64, sample: Lanes, step: f64) -> [Lanes; 2] {
+    /// Adds a sample [m, rad] at a time [s]; returns the filtered positions [m, rad] and velocities [m/s, rad/s] at that time, and those predicted one step
+    /// [s] later. A sample that is not later than the last one restarts the filters at rest.
+    pub fn predict(&mut self, time: f64, sample: Lanes, step: f64) -> [[Lanes; 2]; 2] {
         let passed = time - self.time;
         if passed <= 0.0 {
             *self = Fading::at_rest(time, sample);
-            return [sample, Lanes::splat(0.0)];
+            return [[sample, Lanes::splat(0.0)]; 2];
         }
         let missed = match passed < APART_MIN * (1.0 - ROUNDING) * self.step {
             true => Lanes::splat(0.0),
             false => self.add(time, sample, step),
         };
-        let reach = time - self.time + step;
-        let ahead = self.cubics.map(|cubic| shifted(scaled(cubic, reach / self.step)));
-        let [mut position, mut change] = [ahead[0][0], ahead[0][1] + missed];
-        for axis in 0..LANES {
+        let best: [usize; LANES] = from_fn(|axis| {
             let squares = self.residuals.map(|square| square[axis]);
-            let best =
-                (1..squares.len()).fold(0, |best, i| if squares[i] < squares[best] { i } else { best });
-            if best > 0 {
-                (position[axis], change[axis]) = (ahead[best][0][axis], ahead[best][1][axis]);
+            (1..squares.len()).fold(0, |best, i| if squares[i] < squares[best] { i } else { best })
+        });
+        [(0.0, NOW), (step, NEXT)].map(|(later, part)| {
+            let steps = Lanes::splat((time - self.time + later) / self.step);
+            let [mut position, mut change] = at(self.cubics[0], steps);
+            change = change + Lanes::splat(part) * missed;
+            for axis in (0..LANES).filter(|&axis| best[axis] > 0) {
+                let of_best = at(self.cubics[best[axis]], steps);
+                (position[axis], change[axis]) = (of_best[0][axis], of_best[1][axis]);
             }
-        }
-        [position, Lanes::splat(1.0 / reach) * change]
+            [position, Lanes::splat(1.0 / self.step) * change]
+        })
     }
 
-    /// Adds a sample [m, rad] at a time [s]; returns the correction of the velocity one `step` [s] later by the fourth difference of the samples, times
-    /// the step [m, rad], for a filter without memory.
+    /// Adds a sample [m, rad] at a time [s] to the cubics; returns the fourth difference of the samples [m, rad], faded out as the steps and the coming
+    /// `step` [s] become uneven.
     fn add(&mut self, time: f64, sample: Lanes, step: f64) -> Lanes {
         let passed = time - self.time;
         let last = if self.step > 0.0 { self.step } else { passed };
@@ -105,7 +111,7 @@ impl Fading {
             *cubic = there;
         }
         (self.time, self.step) = (time, passed);
-        Lanes::splat(evenness(&[step, passed, last]) * NEXT) * missed
+        Lanes::splat(evenness(&[step, passed, last])) * missed
     }
 }
 
@@ -124,6 +130,15 @@ fn gains(memory: f64) -> [f64; 4] {
 fn scaled([x, v, a, j]: Cubic, by: f64) -> Cubic {
     let by = Lanes::splat(by);
     [x, by * v, by * by * a, by * by * by * j]
+}
+
+/// Position [m, rad], and velocity times the step to which a cubic is scaled [m, rad], after a number of such steps.
+fn at([x, v, a, j]: Cubic, steps: Lanes) -> [Lanes; 2] {
+    let (two, three) = (Lanes::splat(2.0), Lanes::splat(3.0));
+    [
+        x + steps * (v + steps * (a + steps * j)),
+        v + steps * (two * a + three * steps * j),
+    ]
 }
 
 /// Shifts a cubic by one step.
@@ -151,7 +166,7 @@ mod tests {
             let scatter = (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
             let time = k as f64 * step;
             let sample = 2.0 * (rate * time).sin() + noise * 12.0_f64.sqrt() * scatter;
-            let [position, velocity] = fading.predict(time, Lanes::splat(sample), step);
+            let [_, [position, velocity]] = fading.predict(time, Lanes::splat(sample), step);
             if time > 20.0 {
                 let (sin, cos) = (rate * (time + step)).sin_cos();
                 sums[0] += (position[0] - 2.0 * sin).powi(2);
@@ -185,7 +200,7 @@ mod tests {
             let (mut fading, mut time, mut worst) = (Fading::at_rest(-STEP, Lanes::splat(0.0)), 0.0, 0.0_f64);
             for k in 0..400 {
                 let step = if k % 20 == 19 { short } else { STEP };
-                let [position, _] = fading.predict(time, Lanes::splat(place(time)), step);
+                let [_, [position, _]] = fading.predict(time, Lanes::splat(place(time)), step);
                 time += step;
                 if time > 10.0 {
                     worst = worst.max((position[0] - place(time)).abs());
