@@ -33,6 +33,7 @@ fn new_study() -> Study {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn a_study_of_a_rope_says_what_each_error_costs() {
     let study = studied();
     let rms = |run: &moorline_accuracy::Run| run.errors.of(Metric::Rms);

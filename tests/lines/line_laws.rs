@@ -137,6 +137,7 @@ fn a_rope_that_snaps_taut_is_held_by_the_stiffness_that_it_comes_to() {
 
 /// Dampers of slack segments pull when these are about to become taut: the averaging transmits the tension of spring and damper.
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn a_rope_that_dampers_draw_before_it_is_taut_converges_to_the_motion_of_explicit_steps() {
     for (damping, bounds) in [
         (4.0e5, [0.09, 0.013]),

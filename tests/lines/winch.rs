@@ -110,6 +110,7 @@ fn a_line_between_two_numbers_of_segments_is_a_line_with_a_segment_of_that_lengt
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn a_line_that_is_paid_out_and_hauled_in_again_comes_to_rest_where_it_was() {
     let mut scene = wound(5e-3);
     let kind = scene.line_types.get_mut("chain").unwrap();

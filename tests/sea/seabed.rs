@@ -136,6 +136,7 @@ fn statics_with_friction_tends_to_the_closed_form_with_order_2() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn a_line_with_friction_starts_at_rest_and_stays_there_for_600_s() {
     let seabeds = [
         "friction = 0.5",

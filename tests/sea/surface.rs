@@ -123,6 +123,7 @@ fn dipping(elements: usize, integrator: Integrator, step: f64) -> Scene {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn a_line_that_dips_in_and_out_is_followed_to_second_order_in_time() {
     let dipped = |integrator: Integrator, step: f64| {
         let mut simulation = following(&balanced(dipping(8, integrator, step)));

@@ -134,6 +134,7 @@ const SAMPLED: [(&str, f64); 3] = [
 const LIGHT: [(&str, f64); 3] = [("power_cable", 9.0), ("lazy_wave", 9.0), ("hanging_riser", 9.0)];
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn the_estimated_error_of_inputs_is_a_bound_of_that_of_tension() {
     for (name, period) in SAMPLED.into_iter().chain(LIGHT) {
         let model = by_rules(name);
@@ -212,6 +213,7 @@ fn a_host_that_samples_finely_or_gives_velocities_is_not_warned() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn the_estimated_error_of_interpolated_displacements_is_a_bound_of_that_of_tension() {
     for (name, period) in SAMPLED.into_iter().chain(LIGHT) {
         let mut scene = shipped(name);

@@ -19,6 +19,7 @@ fn snapping(elements: usize, integrator: Integrator, damping: f64) -> Run {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn snaps_after_slack_peak_as_in_a_converged_run() {
     let converged = snapping(160, Integrator::Leapfrog, 1.0);
     for integrator in INTEGRATORS {
