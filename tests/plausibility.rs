@@ -173,6 +173,31 @@ fn a_run_of_hours_is_noted_with_its_elements_and_steps_and_what_to_change() {
 }
 
 #[test]
+fn an_end_that_a_host_lifts_out_of_the_water_is_noted_once_unless_the_scene_decides() {
+    for (surface, notes) in [("", 1), (", surface = true", 0), (", surface = false", 0)] {
+        let scene = draft(format!(
+            "water = {{ density = 1025.0{surface} }}
+            line_types.rope = {{ mass = 20.0, diameter = 0.1, axial_stiffness = 1e6, axial_damping = 1e4 }}"
+        ))
+        .fixed("anchor", [0.0, 0.0, -20.0])
+        .coupled("hand", [8.0, 0.0, -0.5])
+        .line("rope", ["anchor", "hand"], "rope", 25.0, 6)
+        .scene();
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let mut watch = Watch::new(&scene, &simulation);
+        let hand = simulation.model().point_index("hand").unwrap();
+        let mut noted = Vec::new();
+        for step in 0..30 {
+            simulation.set_displacement(hand, [0.0, 0.0, 0.1 * f64::from(step)]);
+            simulation.advance(0.1).unwrap();
+            noted.extend(watch.look(&simulation));
+        }
+        let risen = noted.iter().filter(|note| note.at == "water.surface");
+        assert_eq!(risen.count(), notes, "{surface}: {noted:?}");
+    }
+}
+
+#[test]
 fn a_fairlead_that_jumps_a_line_that_is_strained_and_a_motion_of_few_samples_are_each_noted_once_in_a_run() {
     let scene = rope(6, "");
     let mut simulation = Simulation::new(&scene).unwrap();

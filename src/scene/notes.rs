@@ -179,7 +179,7 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
     let alone = joined.peek().is_none();
     let place = reference_position(scene, point);
     let height = place.map_or(0.0, |place| place[2]);
-    let lifted = height + scene.rise(point);
+    let lifted = scene.highest(point);
     let water = scene
         .water
         .as_ref()

@@ -45,8 +45,24 @@ impl Scene {
         highest > trough
     }
 
+    /// Returns whether a line is modelled as submerged at any height although neither the scene nor a note on its own motion, which the run may follow,
+    /// says so.
+    pub(crate) fn submerges_silently(&self, line: &Line, follows_scene: bool) -> bool {
+        let open = self.water.as_ref().is_some_and(|water| water.surface.is_none());
+        let mut ends = [&line.from, &line.to]
+            .into_iter()
+            .filter_map(|name| self.point(name));
+        let noted = |point: &Point| follows_scene && self.highest(point) > 0.0;
+        open && !self.meets_surface(line) && !ends.any(noted)
+    }
+
+    /// Greatest height to which the scene's own motion lifts a point [m].
+    pub(super) fn highest(&self, point: &Point) -> f64 {
+        reference_position(self, point).map_or(0.0, |place| place[2]) + self.rise(point)
+    }
+
     /// Maximum height by which the scene's own motion lifts a point [m].
-    pub(super) fn rise(&self, point: &Point) -> f64 {
+    fn rise(&self, point: &Point) -> f64 {
         let body = point.on.as_ref().unwrap_or(&point.name);
         let path = point.motion.as_ref().or_else(|| self.motion.get(body));
         let Some([_, _, z, roll, pitch, _]) = path.map(MotionPath::greatest) else {

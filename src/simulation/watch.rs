@@ -1,4 +1,4 @@
-//! Notes on likely mistakes in a run: ends that jump, too few inputs, unrealistic strains, tables whose range is left.
+//! Notes on likely mistakes in a run: ends that jump or leave the water, too few inputs, unrealistic strains, tables whose range is left.
 
 mod left_tables;
 
@@ -17,6 +17,7 @@ const JUMP: f64 = 0.1;
 pub struct Watch {
     lines: Vec<Watched>,
     has_jumped: bool,
+    has_risen: bool,
     has_noted_inputs: bool,
     tables: LeftTables,
     /// Notes on keys that have no effect with the chosen integrators.
@@ -31,6 +32,8 @@ struct Watched {
     strain_max: f64,
     /// End and tension [N] at which the line breaks; `None` if there is none, or after the comparison with the first state.
     breaks_at: Option<(End, f64)>,
+    /// True if the line is modelled as submerged at any height, and nothing says so.
+    is_submerged: bool,
 }
 
 impl Watch {
@@ -41,10 +44,12 @@ impl Watch {
             ends: ends(simulation, index),
             strain_max: scene.usual_strain(line),
             breaks_at: simulation.model.lines[index].release.and_then(breaking_tension),
+            is_submerged: scene.submerges_silently(line, simulation.snapshot.follows_scene),
         });
         Watch {
             lines: watched.collect(),
             has_jumped: false,
+            has_risen: false,
             has_noted_inputs: false,
             tables: LeftTables::new(scene),
             idle: scene.idle_with(simulation.choices().map(|choice| choice.integrator)),
@@ -67,6 +72,11 @@ impl Watch {
             if let Some(note) = jump(simulation, index, before, now).filter(|_| !self.has_jumped) {
                 self.has_jumped = true;
                 notes.push(note);
+            }
+            if watched.is_submerged && !self.has_risen {
+                let note = risen(simulation, index, now);
+                self.has_risen = note.is_some();
+                notes.extend(note);
             }
             if let Some((end, tension)) = watched.breaks_at.take() {
                 notes.extend(breaks_at_once(simulation, index, end, tension));
@@ -119,6 +129,21 @@ fn jump(
         metres(length)
     );
     Some(Note::new(format!("lines[{line}]"), text))
+}
+
+/// Note on an end that is above the water.
+fn risen(simulation: &Simulation, line: usize, now: [Vector3<f64>; 2]) -> Option<Note> {
+    let (model, data) = (&simulation.model, &simulation.model.lines[line]);
+    let end = (0..2).find(|end| now[*end].z > 0.0)?;
+    let text = format!(
+        "at t = {} s, {} is at z = {:.3} m, but {} is modelled as submerged there too: `surface = true` in [water] models the free surface, except \
+         for beams; reported once",
+        simulation.time(),
+        model.points[data.ends[end]].name,
+        now[end].z,
+        data.name
+    );
+    Some(Note::new("water.surface", text))
 }
 
 /// End that breaks off its point, and the tension at which it breaks [N]; `None` if no tension breaks an end.
