@@ -124,16 +124,13 @@ impl Series {
     }
 }
 
-/// Negative and positive root of a x² − b x + c for a > 0; c is not positive except for rounding.
-fn roots([a, b, c]: [f64; 3]) -> [f64; 2] {
+/// Positive root of a x² − b x + c for a > 0, or 0 if there is none; c is not positive except for rounding.
+fn positive_root([a, b, c]: [f64; 3]) -> f64 {
     let c = c.min(0.0);
     let greater = 0.5 * (b.abs() + (b * b - 4.0 * a * c).sqrt());
-    if greater == 0.0 {
-        return [0.0; 2];
-    }
     match b < 0.0 {
-        true => [-greater / a, -c / greater],
-        false => [c / greater, greater / a],
+        true => -c / greater,
+        false => greater / a,
     }
 }
 
@@ -217,18 +214,13 @@ impl Viscoelastic {
         let series = Series::of(self, strains[0], slow, dt);
         let [_, before] = series.before;
         let damper = self.fast_damping / dt;
-        let mut contracted = 0.0;
-        let mut resists = 0.0;
-        if self.yielding > 0.0 {
-            let half = 0.5 * dt * self.contraction;
-            contracted = (slow * (1.0 - half) / (1.0 + half)).max(0.0);
-            // the slow part carries no tension while it contracts freely, unless it would contract beyond zero strain
-            resists = if contracted > 0.0 {
-                0.0
-            } else {
-                series.offset.max(0.0)
-            };
-        }
+        let half = 0.5 * dt * self.contraction;
+        let contracted = (slow * (1.0 - half) / (1.0 + half)).max(0.0);
+        // the slow part carries no tension while it contracts freely, unless it would contract beyond zero strain
+        let resists = match contracted > 0.0 {
+            true => 0.0,
+            false => series.offset.max(0.0),
+        };
         if self.pull([before, strains[1] - contracted], damper).tension <= resists {
             return self.slack(strains, [slow, contracted]);
         }
@@ -240,7 +232,7 @@ impl Viscoelastic {
         if before < 0.0 {
             // ½EA_d e'² = (R − P e') (e' − e)
             let squared = 0.5 * self.fast + series.pull;
-            let [_, snapped] = roots([squared, reach + series.pull * before, before * reach]);
+            let snapped = positive_root([squared, reach + series.pull * before, before * reach]);
             after = after.min(snapped);
         }
         series.step(self, after, self.pull([before, after], damper))
