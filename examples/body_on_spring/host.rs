@@ -140,7 +140,7 @@ impl Host {
                 let next = self.solve(time, held, [zero; 3]);
                 self.give(self.motion);
                 self.simulation.advance(self.case.step).ok()?;
-                self.accept(time, next, force(&self.simulation, self.point), zero);
+                self.accept(time, next, force(&self.simulation, self.point));
             }
             Master::BodyFirst | Master::Mass => {
                 let mass = match self.master {
@@ -150,7 +150,7 @@ impl Host {
                 let next = self.solve(time, held, [mass, zero, zero]);
                 self.give(next);
                 self.simulation.advance(self.case.step).ok()?;
-                self.accept(time, next, force(&self.simulation, self.point), mass);
+                self.accept(time, next, force(&self.simulation, self.point));
             }
             Master::Impedance => {
                 let mass = top(&self.simulation.end_mass(body));
@@ -160,7 +160,7 @@ impl Host {
                 let next = self.solve(time, free, matrices);
                 self.give(next);
                 self.simulation.advance(self.case.step).ok()?;
-                self.accept(time, next, force(&self.simulation, self.point), mass);
+                self.accept(time, next, force(&self.simulation, self.point));
             }
             Master::FixedPoint | Master::Newton => return self.iterate(time, held),
         }
@@ -196,7 +196,7 @@ impl Host {
     }
 
     /// Ends a step with a motion and the force of the line there [N].
-    fn accept(&mut self, time: f64, next: [Vector3<f64>; 3], force: Vector3<f64>, _: Matrix3<f64>) {
+    fn accept(&mut self, time: f64, next: [Vector3<f64>; 3], force: Vector3<f64>) {
         self.motion = next;
         self.before = force + self.case.spring * (foot(time) - next[0]) - self.carried;
     }
@@ -217,7 +217,7 @@ impl Host {
             self.simulation.advance(self.case.step).ok()?;
             force_now = force(&self.simulation, self.point);
             if iteration > 1 && change < 1e-6 {
-                self.accept(time, next, force_now, zero);
+                self.accept(time, next, force_now);
                 return Some(iteration - 1);
             }
             free = force_now;

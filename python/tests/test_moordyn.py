@@ -99,7 +99,8 @@ def test_a_state_is_saved_and_loaded_to_the_last_bit(deck):
 
 def test_objects_are_counted_from_one(deck):
     system = moordyn.Create(deck)
-    moordyn.Init(system, [5.0, 0.0, -10.0], [0.0] * 3)
+    start = moordyn.GetPointPos(moordyn.GetPoint(system, 2))  # of the deck, from which a host may start
+    moordyn.Init(system, start, [0.0] * 3)
     counts = [getattr(moordyn, f"GetNumber{kind}")(system) for kind in ("Bodies", "Rods", "Points", "Lines")]
     assert counts == [0, 0, 2, 1]
     point, line = moordyn.GetPoint(system, 2), moordyn.GetLine(system, 1)

@@ -32,8 +32,8 @@ use crate::physics::viscoelastic::Viscoelastic;
 use crate::physics::weight::submerged_weight;
 use crate::scene::channel::LineEnd;
 use crate::scene::{
-    self, Axis, ContactLaw, FibreLaw, InitialShape, Integrator, LineModel, LineType, Names, PointKind,
-    RestShape, Scene, SceneError, Strain,
+    self, Axis, ContactLaw, FibreLaw, InitialShape, Integrator, LineType, Names, PointKind, RestShape, Scene,
+    SceneError, Strain,
 };
 
 /// Maximum number of segments that a winch pays out.
@@ -304,19 +304,15 @@ fn damping_ratio(scene: &Scene, line_type: &LineType) -> f64 {
 
 /// Minimum ζ of every segment: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
 fn numerical_ratio(scene: &Scene, line_type: &LineType) -> f64 {
-    let beam = line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam;
-    if line_type.leaves_damping_open() && !beam {
+    if line_type.leaves_damping_open() && !scene.makes_beams(line_type) {
         scene::NUMERICAL_DAMPING_RATIO
     } else {
         0.0
     }
 }
 
-/// EI of a cable's section [N m²]: as given or of its solid section, divided among its strands; 0 for beams, which have their own.
+/// EI of a cable's section [N m²]: as given or of its solid section, divided among its strands.
 fn bending_stiffness(line_type: &LineType) -> f64 {
-    if line_type.model == LineModel::Beam {
-        return 0.0;
-    }
     let of_section =
         |section: scene::SolidSection| bending::solid_round(section.diameter, section.youngs_modulus);
     let solid = line_type
@@ -400,7 +396,10 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
         diameter: line_type.diameter,
         displaced_weight: displaced * scene.gravity,
         mass_damping: rayleigh.map_or(0.0, |r| r.mass),
-        bending_stiffness: bending_stiffness(line_type),
+        bending_stiffness: match scene.makes_beams(line_type) {
+            true => 0.0, // beams have their own
+            false => bending_stiffness(line_type),
+        },
         bending_damping: rayleigh.map_or(0.0, |r| r.stiffness),
         drag,
         contact,

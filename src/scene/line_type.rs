@@ -114,12 +114,11 @@ impl Scene {
 
     /// Returns whether a line is a beam.
     pub(super) fn is_beam(&self, line: &Line) -> bool {
-        let mut types = self.types_of(line);
-        self.solver.integrator == Integrator::Beam || types.any(|kind| kind.model == LineModel::Beam)
+        self.types_of(line).any(|line_type| self.makes_beams(line_type))
     }
 
     /// Returns whether lines of a line type are beams: by its model, or because the integrator treats every line as a beam.
-    pub(super) fn makes_beams(&self, line_type: &LineType) -> bool {
+    pub(crate) fn makes_beams(&self, line_type: &LineType) -> bool {
         self.solver.integrator == Integrator::Beam || line_type.model == LineModel::Beam
     }
 

@@ -86,6 +86,8 @@ mod words;
 
 use std::collections::BTreeMap;
 
+use nalgebra::Vector3;
+
 pub use crate::math::attitude::Order as AngleOrder;
 pub use check::name_problem;
 pub use drive::{Drive, RegularMotion};
@@ -159,6 +161,16 @@ impl Scene {
     /// Returns whether the host gives the flow of the water.
     fn has_host_flow(&self) -> bool {
         self.water.as_ref().is_some_and(|water| water.flow.is_some())
+    }
+
+    /// Position of a point in the reference configuration, global axes [m]; `None` if its vessel is missing.
+    pub fn reference_position(&self, point: &Point) -> Option<[f64; 3]> {
+        let Some(carrier) = &point.on else {
+            return Some(point.position);
+        };
+        let vessel = self.vessel(carrier)?;
+        let turn = AngleOrder::Zyx.rotation(vessel.attitude.into());
+        Some((Vector3::from(vessel.position) + turn * Vector3::from(point.position)).into())
     }
 
     /// Waves, if the scene has any.

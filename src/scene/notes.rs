@@ -4,14 +4,11 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fmt;
 
-use nalgebra::Vector3;
-
 use super::check::{number, quantity, rules};
 use super::names::Names;
 use super::path::quoted;
 use super::table_ends;
-use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
-use crate::math::attitude::Order;
+use super::{Integrator, Line, LineType, Point, PointKind, Scene, Waves};
 
 /// A remark on a scene that can be used as it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,7 +99,7 @@ impl Scene {
     }
 
     fn advice_on_damping(&self, line_type: &LineType, longest: f64) -> String {
-        if line_type.model == LineModel::Beam {
+        if self.makes_beams(line_type) {
             return "no structural damping: waves along the line are not damped".to_string();
         }
         let open = "no `axial_damping`: the default decreases on finer meshes, so that axial waves decay slowly and results converge slowly";
@@ -145,16 +142,6 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
     }
 }
 
-/// Position of a point in the reference configuration, global axes [m]; `None` if its vessel is missing.
-pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3]> {
-    let Some(carrier) = &point.on else {
-        return Some(point.position);
-    };
-    let vessel = scene.vessel(carrier)?;
-    let turn = Order::Zyx.rotation(vessel.attitude.into());
-    Some((Vector3::from(vessel.position) + turn * Vector3::from(point.position)).into())
-}
-
 /// Distance between the ends of a line [m], if both are known.
 pub(super) fn chord(scene: &Scene, line: &Line) -> Option<f64> {
     chord_between(scene, [&line.from, &line.to].map(|name| scene.point(name)))
@@ -162,13 +149,10 @@ pub(super) fn chord(scene: &Scene, line: &Line) -> Option<f64> {
 
 /// Distance between two points [m], if both are known.
 pub(super) fn chord_between(scene: &Scene, ends: [Option<&Point>; 2]) -> Option<f64> {
-    let [a, b] = ends.map(|end| reference_position(scene, end?));
+    let [a, b] = ends.map(|end| scene.reference_position(end?));
     let (a, b) = (a?, b?);
     Some((0..3).map(|i| (b[i] - a[i]).powi(2)).sum::<f64>().sqrt())
 }
-
-/// Depth below a seabed that is not level from which on a point is noted [m].
-const BURIED: f64 = 0.01;
 
 fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: &mut Vec<Note>) {
     let mut joined = scene
@@ -177,7 +161,7 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
         .filter(|line| line.joins(&point.name))
         .peekable();
     let alone = joined.peek().is_none();
-    let place = reference_position(scene, point);
+    let place = scene.reference_position(point);
     let height = place.map_or(0.0, |place| place[2]);
     let lifted = scene.highest(point);
     let water = scene
@@ -190,17 +174,11 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
         true => "",
         false => "; `surface = true` in [water] models the free surface at z = 0",
     };
-    let seabed = scene.seabed.as_ref().filter(|seabed| !seabed.is_level());
-    let buried = seabed
-        .zip(place)
-        .map_or(0.0, |(seabed, [x, y, z])| seabed.lowest_at([x, y]) - z);
     rules! { notes, at;
         "" if alone => "no line ends at this point";
         "position" if water.is_some() && height > 0.0 => "above z = 0, {everywhere}";
         "" if open && height <= 0.0 && lifted > 0.0 =>
             "the scene's motion takes it to z = {lifted:.3} m, {everywhere}{end}";
-        "position" if buried > BURIED =>
-            "{} m below the seabed: nodes next to it are pushed up", number(buried);
         "force" if point.force.is_some() && point.kind != PointKind::Free =>
             "a force on a point that is not free changes only the reaction of its support";
     }
@@ -213,7 +191,7 @@ const ENDS_APART: f64 = 1e-6;
 fn note_twins(scene: &Scene, names: &Names, notes: &mut Vec<Note>) {
     let mut known: BTreeMap<[[i64; 3]; 2], &Line> = BTreeMap::new();
     for (i, line) in scene.lines.iter().enumerate() {
-        let ends = names.ends(line).map(|end| reference_position(scene, end?));
+        let ends = names.ends(line).map(|end| scene.reference_position(end?));
         let [Some(a), Some(b)] = ends else { continue };
         let micrometres = |x: f64| (1e6 * x).round() as i64;
         let first = known
@@ -273,7 +251,7 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
     let steps = scene.output.duration / scene.output.interval;
     rules! { notes, "";
         "gravity" if scene.gravity == 0.0 => "0: lines and points are weightless";
-        "seabed.friction" if slides && types.any(|kind| kind.model == LineModel::Beam) =>
+        "seabed.friction" if slides && types.any(|line_type| scene.makes_beams(line_type)) =>
             "beams have no friction on the seabed: for them `friction` changes nothing";
         "output.interval" if (steps - steps.round()).abs() > 1e-6 * steps =>
             "the duration of {} s is not a whole number of intervals: the last interval is shorter",

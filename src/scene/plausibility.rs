@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::check::{Findings, number, quantity, rounded, rules};
 use super::motion_file::AXES;
 use super::names::Names;
-use super::notes::{Note, chord_between, reference_position};
+use super::notes::{Note, chord_between};
 use super::path::quoted;
 use super::table::check_table;
 use super::table_ends::motions;
@@ -392,7 +392,7 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
         let [Some(a), Some(b)] = names.ends(line) else {
             continue;
         };
-        let (Some(from), Some(to)) = (reference_position(scene, a), reference_position(scene, b)) else {
+        let (Some(from), Some(to)) = (scene.reference_position(a), scene.reference_position(b)) else {
             continue;
         };
         let [height_a, height_b] = [from, to].map(|[x, y, z]| z - seabed.lowest_at([x, y]));

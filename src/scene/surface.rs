@@ -1,6 +1,5 @@
 //! Lines that may come out of the water.
 
-use super::notes::reference_position;
 use super::{Line, MotionPath, Point, PointKind, Scene};
 
 /// Depth of a wave trough in standard deviations of the elevation [-].
@@ -26,7 +25,7 @@ impl Scene {
     }
 
     fn comes_up(&self, line: &Line, ends: [Option<&Point>; 2]) -> bool {
-        let end = |point: Option<&Point>| Some((reference_position(self, point?)?[2], self.floats(point?)));
+        let end = |point: Option<&Point>| Some((self.reference_position(point?)?[2], self.floats(point?)));
         let [Some((a, a_floats)), Some((b, b_floats))] = ends.map(end) else {
             return false;
         };
@@ -58,7 +57,7 @@ impl Scene {
 
     /// Greatest height to which the scene's own motion lifts a point [m].
     pub(super) fn highest(&self, point: &Point) -> f64 {
-        reference_position(self, point).map_or(0.0, |place| place[2]) + self.rise(point)
+        self.reference_position(point).map_or(0.0, |place| place[2]) + self.rise(point)
     }
 
     /// Maximum height by which the scene's own motion lifts a point [m].

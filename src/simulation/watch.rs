@@ -12,6 +12,9 @@ use crate::scene::{Note, Scene, metres};
 /// Fraction of the unstretched length of a line by which its end may move in one communication step [-].
 const JUMP: f64 = 0.1;
 
+/// Depth below a seabed that is not level from which on a point is noted [m].
+const BURIED: f64 = 0.01;
+
 /// Observes a simulation at its communication points; each note is given once.
 #[derive(Debug, Clone)]
 pub struct Watch {
@@ -20,8 +23,8 @@ pub struct Watch {
     has_risen: bool,
     has_noted_inputs: bool,
     tables: LeftTables,
-    /// Notes on keys that have no effect with the chosen integrators.
-    idle: Vec<Note>,
+    /// Notes on keys that have no effect with the chosen integrators, and on points under the seabed.
+    at_start: Vec<Note>,
 }
 
 #[derive(Debug, Clone)]
@@ -52,7 +55,11 @@ impl Watch {
             has_risen: false,
             has_noted_inputs: false,
             tables: LeftTables::new(scene),
-            idle: scene.idle_with(simulation.choices().map(|choice| choice.integrator)),
+            at_start: [
+                scene.idle_with(simulation.choices().map(|choice| choice.integrator)),
+                buried(simulation),
+            ]
+            .concat(),
         }
     }
 
@@ -65,7 +72,7 @@ impl Watch {
 
     /// Returns the notes on the present state that were not given before; nothing is allocated if there are none.
     pub fn look(&mut self, simulation: &Simulation) -> Vec<Note> {
-        let mut notes = std::mem::take(&mut self.idle);
+        let mut notes = std::mem::take(&mut self.at_start);
         for (index, watched) in self.lines.iter_mut().enumerate() {
             let now = ends(simulation, index);
             let before = std::mem::replace(&mut watched.ends, now);
@@ -96,6 +103,25 @@ impl Watch {
         self.tables.look(simulation, &mut notes);
         notes
     }
+}
+
+/// Notes on points that are not free and lie below a seabed that is not level.
+fn buried(simulation: &Simulation) -> Vec<Note> {
+    let (model, points) = (&simulation.model, &simulation.snapshot.state.points);
+    let Some(seabed) = model.seabed.as_ref().filter(|seabed| !seabed.level) else {
+        return Vec::new();
+    };
+    let held = (0..points.len()).filter(|&point| model.points[point].free().is_none());
+    let note = |point: usize| {
+        let place = points[point].position;
+        let height = seabed.ground.height(place.x, place.y);
+        let text = format!(
+            "{:.3} m below the seabed, which is at z = {height:.3} m there: nodes next to it are pushed up",
+            height - place.z
+        );
+        (height - place.z > BURIED).then(|| Note::new(format!("points[{point}].position"), text))
+    };
+    held.filter_map(note).collect()
 }
 
 /// Positions of the points at the ends of a line [m].

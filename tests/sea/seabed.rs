@@ -4,7 +4,7 @@ use crate::common::*;
 use approx::assert_relative_eq;
 use moorline::model::{End, Model};
 use moorline::scene::{Friction, Integrator, Scene};
-use moorline::simulation::Simulation;
+use moorline::simulation::{Simulation, Watch};
 use nalgebra::Vector3;
 
 /// Integrators of single lines.
@@ -454,7 +454,9 @@ fn a_point_under_a_seabed_that_is_not_level_is_noted() {
     for seabed in [grid, "slope = [0.01, 0.0]"] {
         let mut scene = chain(seabed, 560.0, 20);
         scene.points[0].position = [10.0, 0.0, -100.0];
-        let notes: Vec<String> = scene.notes().iter().map(ToString::to_string).collect();
+        let simulation = start(&scene);
+        let notes = Watch::new(&scene, &simulation).look(&simulation);
+        let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
         assert!(
             notes.iter().any(|note| note.contains("below the seabed")),
             "{notes:?}"

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use moorline::model::Body;
-use moorline::scene::{LoadError, PointKind, Scene};
+use moorline::scene::{self, LoadError, PointKind, Scene};
 use moorline_decks::{BodyRow, Carrier, Lists, load, moordyn_lists};
 
 use crate::failure::{Code, Failure, Outcome};
@@ -157,7 +157,17 @@ fn other_laws(scene: &Scene) -> Vec<&'static str> {
         .line_types
         .values()
         .any(|kind| kind.dynamic_stiffness.is_some());
+    let displaces = |point: &scene::Point| point.volume.is_some_and(|volume| volume > 0.0);
     let laws = [
+        (
+            scene.water.as_ref().is_some_and(|water| water.waves.is_some())
+                && scene.points.iter().any(displaces),
+            "waves push a point that has a volume by the acceleration of the water; in MoorDyn they do not",
+        ),
+        (
+            seabed.is_some_and(|seabed| !seabed.is_level()),
+            "a sloping seabed pushes along its normal; MoorDyn-C's pushes vertically",
+        ),
         (
             seabed.is_some_and(|seabed| seabed.friction.acts()),
             "friction during a run holds a node up to its limit; in MoorDyn it grows with the velocity up to the limit, and lines drift slowly",

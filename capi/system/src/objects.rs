@@ -90,14 +90,17 @@ impl System {
         })
     }
 
-    /// Returns the pose and motion of a body as set by the host, extrapolated to the end of the last step.
+    /// Returns the pose and motion of a body as set by the host, extrapolated to the end of the last step; before the start, at rest as in the deck.
     ///
     /// # Errors
-    /// No such body, or the system was not started.
+    /// No such body.
     pub fn body_state(&self, index: usize) -> Outcome<BodyState> {
         let body = self.body(index)?;
-        self.simulation()?;
-        let Some(coupled) = self.deck.coupled_body(index) else {
+        let coupled = self
+            .deck
+            .coupled_body(index)
+            .filter(|_| self.simulation.is_some());
+        let Some(coupled) = coupled else {
             let ([x, y, z], [a, b, c]) = (body.position, body.angles);
             return Ok(BodyState {
                 place: [x, y, z, a, b, c],
@@ -176,20 +179,25 @@ impl System {
         })
     }
 
-    /// Returns the state of a point.
+    /// Returns the state of a point; before the start, at rest as in the deck.
     ///
     /// # Errors
-    /// No such point, or the system was not started.
+    /// No such point.
     pub fn point_state(&self, index: usize) -> Outcome<PointState> {
         let point = self.scene_point(index)?;
-        Ok(self.simulation()?.state().points[point])
+        if let Some(simulation) = &self.simulation {
+            return Ok(simulation.state().points[point]);
+        }
+        let scene = &self.deck.scene;
+        let place = scene.reference_position(&scene.points[point]).unwrap_or_default();
+        Ok(PointState::at_rest(place.into()))
     }
 
     /// Returns the force on a point from its lines and its own loads [N]. It excludes the inertia of nodes and point, unless the settings select
     /// reactions and the point is not free.
     ///
     /// # Errors
-    /// As [`System::point_state`].
+    /// No such point, or the system was not started.
     pub fn point_force(&self, index: usize) -> Outcome<[f64; 3]> {
         let (point, simulation) = (self.scene_point(index)?, self.simulation()?);
         Ok(match self.settings.force {
@@ -201,7 +209,7 @@ impl System {
     /// Returns the mass matrix of a point and the end nodes of its lines, added mass included, row by row [kg].
     ///
     /// # Errors
-    /// As [`System::point_state`].
+    /// As [`System::point_force`].
     pub fn point_mass(&self, index: usize) -> Outcome<[[f64; 3]; 3]> {
         let point = self.scene_point(index)?;
         Ok(rows(&end_mass(self.simulation()?, point)))

@@ -126,6 +126,20 @@ fn bodies_come_before_points_in_the_order_of_degrees_of_freedom() {
 }
 
 #[test]
+fn before_the_start_points_and_bodies_are_where_the_deck_has_them_and_forces_are_refused() {
+    let mut case = case(DECK);
+    let places = |system: &System| [1, 2, 5].map(|point| system.point_state(point).unwrap());
+    let (points, body) = (places(&case.system), case.system.body_state(1).unwrap());
+    assert!(case.system.point_force(1).is_err());
+    case.system.start(&PLACE, &[0.0; 9], false).unwrap();
+    assert_eq!(
+        points.map(|point| point.position),
+        places(&case.system).map(|point| point.position)
+    );
+    assert_eq!(body, case.system.body_state(1).unwrap());
+}
+
+#[test]
 fn the_force_on_a_body_has_the_inertia_of_the_nodes_that_it_carries() {
     let mut case = case(DECK);
     let step = 0.02;

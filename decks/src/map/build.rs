@@ -8,6 +8,9 @@ use super::deck::{Coordinate, Deck, Kind, Line, Node};
 use crate::draft::{Draft, SEA_WATER, constant_force, coordinates, nonzero};
 use crate::table::ROWS_MAX;
 
+/// Height above the seabed up to which a node lies on it, relative to the depth [-].
+const ON_SEABED: f64 = 1e-6;
+
 /// Repetition of the deck.
 #[derive(Clone, Copy)]
 struct Turn {
@@ -157,6 +160,28 @@ fn seabed(deck: &Deck, draft: &mut Draft<'_>) {
                 friction,
                 ..Seabed::level(depth)
             });
+            if let Some(depth) = depth {
+                anchors_above(deck, depth, draft);
+            }
+        }
+    }
+}
+
+/// Notes lines whose fixed node is above the seabed: in MAP++ every line has a level seabed of its own, at its NodeAnch.
+fn anchors_above(deck: &Deck, depth: f64, draft: &mut Draft<'_>) {
+    for line in &deck.lines {
+        let [anchor, _] = &line.ends;
+        let mut nodes = deck.nodes.iter();
+        let node = nodes.find(|node| node.id.value == anchor.value && node.kind == Kind::Fix);
+        let Some(Coordinate::Given(z)) = node.map(|node| node.position[2].value) else {
+            continue;
+        };
+        if z + depth > ON_SEABED * depth {
+            let text = format!(
+                "NodeAnch is at z = {z} m, and the seabed at z = {} m: in MAP++ the line would lie on a seabed at its own NodeAnch",
+                -depth
+            );
+            draft.findings.remark(anchor, text);
         }
     }
 }

@@ -204,9 +204,12 @@ fn add_rod(rod: &Rod, deck: &Deck, draft: &mut Draft<'_>) {
         let point = attached(name, &rod.attachment, position, deck, draft);
         draft.add_point(point, &rod.id.span, &words, &coordinates(place));
     }
-    let text = match used {
-        true => "only holds the end of a line, in its own direction where the line has EI",
-        false => "holds no line and is left out",
+    let text = match (used, rod.segments.value) {
+        (true, 0) => {
+            "only holds the end of a line, in its own direction where the line has EI; in MoorDyn 2.7.2 a rod without segments turns freely"
+        }
+        (true, _) => "only holds the end of a line, in its own direction where the line has EI",
+        (false, _) => "holds no line and is left out",
     };
     draft.findings.remark(&rod.id, format!("{words} {text}"));
 }

@@ -11,7 +11,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         check_name(findings, &at, name);
         check_mass(findings, &at, line_type, scene);
         check_diameter(findings, &at, name, line_type, scene);
-        check_axial(findings, &at, line_type);
+        check_axial(findings, &at, line_type, scene);
         if let Some(rayleigh) = &line_type.rayleigh {
             check_rayleigh(findings, &format!("{at}.rayleigh"), rayleigh);
         }
@@ -76,11 +76,11 @@ const VISCOELASTIC: [&str; 4] = [
 const ROPE: &str = "a viscoelastic rope stretches by `static_stiffness`, `dynamic_stiffness` and the damping of each: leave this out";
 
 /// The axial force follows from a stiffness, a table, or two stiffnesses with dampers.
-fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
+fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
     let is_given = |key: &&str| line_type.get(key).is_some_and(|value| !value.is_absent());
     let viscoelastic = VISCOELASTIC.iter().any(is_given);
     let table = line_type.tension_strain.is_some();
-    let beam = line_type.model == LineModel::Beam;
+    let beam = scene.makes_beams(line_type);
     let measured = line_type.strain != Strain::Engineering;
     if !viscoelastic {
         rules! { findings, at;

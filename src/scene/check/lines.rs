@@ -142,9 +142,7 @@ fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
 
 /// Returns whether a line may fly freely: a beam whose shape at the start is given.
 fn flies(line: &Line, scene: &Scene) -> bool {
-    let all_beams = scene.solver.integrator == Integrator::Beam;
-    let beams = all_beams || scene.types_of(line).all(|kind| kind.model == LineModel::Beam);
-    line.initial != InitialShape::Static && beams
+    line.initial != InitialShape::Static && scene.is_beam(line)
 }
 
 /// Refuses lines that are not connected, directly or through other lines, to a point that is not free, except beams in free flight.

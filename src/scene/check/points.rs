@@ -2,7 +2,6 @@
 
 use super::{Findings, below, check_names, quantity, rules, unknown};
 use crate::scene::names::Names;
-use crate::scene::notes::reference_position;
 use crate::scene::path::quoted;
 use crate::scene::table::{Choice, Table};
 use crate::scene::{LineType, Point, PointKind, Scene, Section};
@@ -23,7 +22,7 @@ pub(super) fn check(scene: &Scene, names: &Names, findings: &mut Findings) {
 
 fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
     let Some(seabed) = &scene.seabed else { return };
-    let Some([_, _, z]) = reference_position(scene, point) else {
+    let Some([_, _, z]) = scene.reference_position(point) else {
         return;
     };
     // Positions typed with few digits may miss the seabed by a rounding.

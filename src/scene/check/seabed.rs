@@ -1,7 +1,7 @@
 //! Shape of the seabed: soundings, and a level seabed under beams.
 
 use super::{Findings, quantity, rules};
-use crate::scene::{DepthGrid, LineModel, Scene, Seabed};
+use crate::scene::{DepthGrid, Scene, Seabed};
 
 /// Maximum number of soundings.
 const SOUNDINGS_MAX: usize = 4_000_000;
@@ -14,7 +14,7 @@ pub(super) fn check_seabed(scene: &Scene, seabed: &Seabed, findings: &mut Findin
     if let Some(grid) = &seabed.grid {
         check_grid(grid, findings);
     }
-    let beam = scene.type_of_beams(|kind| kind.model == LineModel::Beam);
+    let beam = scene.type_of_beams(|_| true);
     rules! { findings, "seabed";
         "" given name = beam.filter(|_| !seabed.is_level()) =>
             "line type {name:?} is a beam, and beams are modelled over a level seabed only: use the cable model, whose lines may bend \

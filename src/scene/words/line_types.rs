@@ -57,12 +57,12 @@ impl Scene {
             ));
         }
         let open = line_type.leaves_damping_open();
-        match line_type.model {
-            LineModel::Cable if open => Some(format!(
+        match self.makes_beams(line_type) {
+            false if open => Some(format!(
                 "axial damping {} of critical in each segment, at least that with {elements} elements (default)",
                 number(NUMERICAL_DAMPING_RATIO)
             )),
-            LineModel::Beam if open => Some("no structural damping".to_string()),
+            true if open => Some("no structural damping".to_string()),
             _ => None,
         }
     }

@@ -13,7 +13,10 @@ impl Scene {
             gravity => format!("gravity {} along -z", quantity(gravity, "m/s²")),
         };
         let water = self.water.as_ref().map(|water| self.water_in_words(water));
-        let seabed = self.seabed.as_ref().map(seabed_in_words);
+        let seabed = self
+            .seabed
+            .as_ref()
+            .map(|seabed| seabed_in_words(seabed, self.all_beams()));
         let water = water.unwrap_or_else(|| "no water".to_string());
         vec![gravity, water, seabed.unwrap_or_else(|| "no seabed".to_string())]
     }
@@ -209,7 +212,7 @@ fn profile_in_words(rows: &[[f64; 3]]) -> String {
     }
 }
 
-fn seabed_in_words(seabed: &Seabed) -> String {
+fn seabed_in_words(seabed: &Seabed, under_beams: bool) -> String {
     let law = match seabed.contact {
         ContactLaw::Regularised => {
             "both reduced on coarse meshes, where up to 0.2 of critical damping is kept; lines at rest lie on the seabed"
@@ -226,7 +229,11 @@ fn seabed_in_words(seabed: &Seabed) -> String {
         quantity(seabed.stiffness, "Pa/m"),
         quantity(seabed.damping, "Pa s/m"),
     );
-    let (shape, friction) = (shape_in_words(seabed), friction_in_words(seabed));
+    let friction = match seabed.friction.acts() && !under_beams {
+        true => friction_in_words(seabed),
+        false => "no friction".to_string(),
+    };
+    let shape = shape_in_words(seabed);
     let statics = match seabed.is_level() {
         true => "",
         false => "; statics use elements, since there is no closed-form catenary on such a seabed",
@@ -269,9 +276,6 @@ fn shape_in_words(seabed: &Seabed) -> String {
 
 fn friction_in_words(seabed: &Seabed) -> String {
     let friction = seabed.friction;
-    if !friction.acts() {
-        return "no friction".to_string();
-    }
     let [axial, transverse] = [friction.axial, friction.transverse].map(number);
     let coefficients = match friction.axial == friction.transverse {
         true => format!("Coulomb friction with a coefficient of {axial}"),
