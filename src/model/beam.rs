@@ -72,6 +72,12 @@ impl Course {
         rate + apart * (first + 0.5 * (apart + 1.0) * second)
     }
 
+    /// Rates of node `i` at the end of the last step, on the same parabola; `None` before the first step.
+    pub fn reached(&self, i: usize) -> Option<Sextuple> {
+        let [rate, first, second] = self.rates[i];
+        (self.length > 0.0).then(|| rate + 0.5 * first + 0.375 * second)
+    }
+
     /// Records the mean rates of node `i` over a step of a length [s].
     pub fn follow(&mut self, i: usize, rate: Sextuple, length: f64) {
         let ([last, first, _], apart) = self.scaled(i, length);
@@ -308,5 +314,7 @@ mod tests {
             course.end_step(step);
         }
         assert_relative_eq!(course.predict(0, step), rate(3), epsilon = 1e-14);
+        let half_way = Sextuple::repeat(2.0 - 0.9 + 0.63); // at t = 0.3 s
+        assert_relative_eq!(course.reached(0).unwrap(), half_way, epsilon = 1e-14);
     }
 }

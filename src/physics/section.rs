@@ -260,6 +260,13 @@ impl<V: RealVector> Correction<V> {
         x.scaled(self.plain) + self.curvature.scaled(self.turning * self.curvature.inner(x))
     }
 
+    /// D E.
+    #[inline(always)]
+    fn times(&self, [stretch, curvature]: Pair<V>) -> Pair<V> {
+        let shortened = along_axis(self.shortening.inner(curvature));
+        [stretch + shortened, self.turned(curvature)]
+    }
+
     /// Dᵀ S.
     #[inline(always)]
     fn tr_times(&self, [n, m]: Pair<V>) -> Pair<V> {
@@ -312,6 +319,14 @@ impl<V: RealVector> StepStrain<V> {
     pub fn stress(&self) -> Pair<V> {
         let [before, now] = self.strains;
         Correction::new(before, now, self.length).tr_times(self.starred())
+    }
+
+    /// [`StepStrain::stress`] plus that of the dampers at a rate of the plain strains [1/s], [1/(m s)].
+    pub fn stress_at_rate(&self, rate: Pair<V>) -> Pair<V> {
+        let [before, now] = self.strains;
+        let correction = Correction::new(before, now, self.length);
+        let (starred, rate) = (self.starred(), correction.times(rate));
+        correction.tr_times(each!(k in [0, 1] => starred[k] + componentwise(self.laws[1][k], rate[k])))
     }
 
     /// Slope of the stress with respect to the plain strains at the end of the step.
@@ -551,6 +566,43 @@ mod tests {
 
     fn means(before: &[Section; 2], now: &[Section; 2]) -> [Section; 2] {
         [before[0].mean(&now[0]), before[1].mean(&now[1])]
+    }
+
+    #[test]
+    fn the_stress_at_a_rate_of_the_strains_is_that_of_a_short_step() {
+        let [law, damping] =
+            [[7.0, 9.0, 5.0, 3.0], [0.4, 0.9, 0.3, 0.7]].map(|[shear, axial, bending, torsion]| {
+                let law = SectionLaw {
+                    shear,
+                    axial,
+                    bending,
+                    torsion,
+                };
+                let pair: Pair<Vector3<f64>> = split(&law.diagonal()).into();
+                pair
+            });
+        let strain: Pair<Vector3<f64>> = [Vector3::new(0.02, -0.01, 1.03), Vector3::new(0.4, -0.3, 0.2)];
+        let rate = [Vector3::new(0.3, 0.1, -0.2), Vector3::new(-0.5, 0.7, 0.4)];
+        let stress = |dt: f64| {
+            let moved = |by: f64| [0, 1].map(|k| strain[k] + by * rate[k]);
+            let step = StepStrain {
+                laws: [law, damping],
+                length: LENGTH,
+                strains: [moved(-0.5 * dt), moved(0.5 * dt)],
+                rest: split(&straight()).into(),
+                mixture: Mixture {
+                    share: 0.5,
+                    rate: if dt > 0.0 { 1.0 / dt } else { 0.0 },
+                },
+            };
+            match dt > 0.0 {
+                true => step.stress(),
+                false => step.stress_at_rate(rate),
+            }
+        };
+        for (found, exact) in stress(0.0).iter().zip(stress(1e-5)) {
+            assert_relative_eq!(*found, exact, max_relative = 1e-8);
+        }
     }
 
     /// Sections with one of the twelve unknowns moved: position, then spin, of section a, then of b.

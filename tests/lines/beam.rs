@@ -564,6 +564,37 @@ fn any_beam(seed: &mut u64) -> Scene {
 }
 
 #[test]
+fn axial_damping_hardly_changes_the_end_force_of_a_beam_that_swings_without_stretching() {
+    let forces = |damping: f64| {
+        let mut simulation = start(
+            &draft(format!(
+                "line_types.rod = {{ model = 'beam', mass = 60.0, diameter = 0.2, axial_stiffness = 1e8, axial_damping = {damping},
+                  bending_stiffness = 5e4, shear_stiffness = 4e7, torsional_stiffness = 4e4, rotary_inertia = 0.3 }}
+                solver.time_step_max = 0.005
+                motion.hand = {{ x = [[1.5, 3.0]], ramp = 3.0 }}"
+            ))
+            .free("tip", [2.0, 0.0, -9.0])
+            .coupled("hand", [0.0; 3])
+            .line("rod", ["tip", "hand"], "rod", 10.0, 10)
+            .with("clamped_b = [-1.0, 0.0, 0.0]")
+            .scene(),
+        );
+        simulation.follow_scene().unwrap();
+        let mut force = |_| {
+            simulation.advance(0.01).unwrap();
+            Vector3::from(simulation.end_force(1))
+        };
+        (0..600).map(&mut force).collect::<Vec<_>>()
+    };
+    let [free, damped] = [0.0, 1e6].map(forces);
+    let off = free.iter().zip(&damped).map(|(a, b)| (a - b).norm_squared());
+    let mean = Vector3::z() * 60.0 * 9.80665 * 10.0; // N, weight
+    let swing = free.iter().map(|a| (a - mean).norm_squared()).sum::<f64>();
+    let ratio = (off.sum::<f64>() / swing).sqrt();
+    assert!(ratio < 0.02, "{ratio}");
+}
+
+#[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn any_beam_runs_or_says_why_not() {
     let mut seed = 1;

@@ -103,15 +103,26 @@ impl<'a> BeamView<'a> {
             share: 1.0,
             rate: 0.0,
         };
-        let elastic = element.over_step([&now, &now], &state.rest[i], still).stress();
+        let strained = element.over_step([&now, &now], &state.rest[i], still);
         if !damped {
-            return elastic;
+            return strained.stress();
         }
-        let moving =
-            [i, i + 1].map(|node| [self.shape.velocity[node], state.frames[node] * state.spins[node]]);
+        let moving = [i, i + 1].map(|node| {
+            let [velocity, spin] = self.rates(node);
+            [velocity, state.frames[node] * spin]
+        });
         let rate = StrainGradient::new(&(&a).into(), &(&b).into()).times(moving);
-        let damping: Pair<Vector3<f64>> = split(&element.damping.diagonal()).into();
-        [0, 1].map(|k| elastic[k] + damping[k].component_mul(&rate[k]) / element.length)
+        strained.stress_at_rate(rate.map(|rate| rate / element.length))
+    }
+
+    /// Velocity [m/s] and angular velocity along the directors [rad/s] of a node, without the motion that alternates from step to step, which dampers
+    /// would amplify.
+    fn rates(&self, node: usize) -> [Vector3<f64>; 2] {
+        let state = beam_state(self.shape);
+        let reached = state.course.reached(node);
+        reached.map_or([self.shape.velocity[node], state.spins[node]], |rates| {
+            split(&rates).into()
+        })
     }
 
     /// Effective tension of an element [N]: the component along its chord of the force at its upper end.
