@@ -55,8 +55,13 @@ impl Scene {
         for (i, line) in self.lines.iter().enumerate() {
             let is_loop = chord_between(self, names.ends(line))
                 .is_some_and(|chord| chord <= ENDS_APART * line.length());
+            let is_free =
+                |end: usize| names.ends(line)[end].is_some_and(|point| point.kind == PointKind::Free);
+            let in_space = "the point is free and does not turn: the clamp holds a direction in space, and its moment acts on no body";
             rules! { &mut notes, &format!("lines[{i}]");
                 "" if is_loop => "both ends are at the same place: the line hangs in a loop";
+                "clamped_a" if line.clamped_a.is_some() && is_free(0) => "{in_space}";
+                "clamped_b" if line.clamped_b.is_some() && is_free(1) => "{in_space}";
             }
         }
         note_names(self, &mut notes);

@@ -236,7 +236,7 @@ choice_of_values! {
         Overview = "overview",
         /// None.
         None = "none";
-        /// `{ every = interval }`: one every `interval` [s], rounded to whole rows, and the last one.
+        /// `{ every = interval }`: one every `interval` [s], a multiple of the output interval, and the last one.
         Every(f64) = "every" => positive(1e9).in_units("s"),
     }
 }

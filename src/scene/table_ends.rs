@@ -104,18 +104,27 @@ fn note_motion(at: String, motion: &MotionPath, duration: f64) -> Option<Note> {
     Some(Note::new(at, text))
 }
 
-/// Remark on a function that ends before the run; one that is constant at its end, or ends with a jump, is taken as intended.
+/// Remark on a function that begins after the start of the run or ends before the run; one that is constant there, begins at zero or with a jump, or ends with
+/// a jump is taken as intended.
 fn note_function(at: String, function: &TimeFunction, duration: f64) -> Option<Note> {
     let TimeFunction::Table(rows) = function else {
         return None;
     };
-    let [.., before, last] = rows.as_slice() else {
+    let ([first, second, ..], [.., before, last]) = (rows.as_slice(), rows.as_slice()) else {
         return None;
     };
-    let is_meant = last[0] >= duration || before[0] == last[0] || before[1] == last[1];
-    let [end, run] = [last[0], duration].map(|time| quantity(time, "s"));
-    let text = format!("the table ends at {end}, the run at {run}: in between its last value holds");
-    (!is_meant).then(|| Note::new(at, text))
+    let changes = |a: &[f64; 2], b: &[f64; 2]| a[0] != b[0] && a[1] != b[1];
+    let [begin, end, run] = [first[0], last[0], duration].map(|time| quantity(time, "s"));
+    let late = format!("the table begins at {begin}: until then its first value holds");
+    let early = format!("the table ends at {end}, the run at {run}: in between its last value holds");
+    let is_late = first[0] > 0.0 && first[1] != 0.0 && changes(first, second);
+    let text = match (is_late, last[0] < duration && changes(before, last)) {
+        (true, true) => format!("{late}; {early}"),
+        (true, false) => late,
+        (false, true) => early,
+        (false, false) => return None,
+    };
+    Some(Note::new(at, text))
 }
 
 #[cfg(test)]
@@ -188,6 +197,8 @@ mod tests {
         let said = |rows: &[[f64; 2]]| {
             note_function("f".into(), &TimeFunction::Table(rows.to_vec()), 60.0).is_some()
         };
+        assert!(said(&[[3.0, 0.5], [60.0, 1.0]]));
+        assert!(!said(&[[3.0, 0.0], [60.0, 1.0]]));
         assert!(said(&[[0.0, 0.0], [30.0, 5.0]]));
         assert!(!said(&[[0.0, 0.0], [30.0, 5.0], [31.0, 5.0]]));
         assert!(!said(&[[2.5, 8.0], [2.5, 0.0]]));
