@@ -83,6 +83,7 @@ fn told(study: &Study) {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "takes long")]
 fn slower_motion_brings_the_quasi_static_mode_nearer() {
     let slow = &studied().slow;
     assert!(slow.len() >= 2 && slow[0].factor == 1.0 && slow[0].period == 2.0);
