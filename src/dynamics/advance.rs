@@ -49,7 +49,7 @@ pub struct Integrators {
     before: State,
     /// Paid-out lengths of the winches, by line; empty where there are none.
     winch_paths: Vec<AxisPath>,
-    /// Time by which steps stop before the end for which their internal steps and the samples of waves are laid out [s].
+    /// Time by which every step is cut short [s]; internal steps and wave samples are laid out for the uncut step.
     cut: f64,
     /// True if the leapfrogs' striped layout still holds the current state.
     holds: bool,
@@ -109,9 +109,8 @@ impl Integrators {
         self.winch_paths.extend(paths);
     }
 
-    /// Makes all further steps stop `cut` [s] before the end for which their internal steps and the samples of waves are laid out: they are the first
-    /// part of longer steps, with the same number of internal steps.
-    pub fn stop_early(&mut self, cut: f64) {
+    /// Cuts all further steps short by `cut` [s]. A cut step keeps the number of internal steps and the wave samples of the uncut one.
+    pub fn cut_short(&mut self, cut: f64) {
         self.cut = cut;
     }
 

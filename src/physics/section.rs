@@ -321,7 +321,7 @@ impl<V: RealVector> StepStrain<V> {
         Correction::new(before, now, self.length).tr_times(self.starred())
     }
 
-    /// [`StepStrain::stress`] plus that of the dampers at a rate of the plain strains [1/s], [1/(m s)].
+    /// Sum of [`StepStrain::stress`] and the stress of the dampers at a rate of the plain strains [1/s], [1/(m s)].
     pub fn stress_at_rate(&self, rate: Pair<V>) -> Pair<V> {
         let [before, now] = self.strains;
         let correction = Correction::new(before, now, self.length);

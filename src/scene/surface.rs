@@ -44,8 +44,8 @@ impl Scene {
         highest > trough
     }
 
-    /// Returns whether a line is modelled as submerged at any height although neither the scene nor a note on its own motion, which the run may follow,
-    /// says so.
+    /// Returns whether a line is modelled as submerged at any height without the user having been told: the scene leaves `water.surface` open, and no
+    /// note on the scene's own motion, if the run follows it, names an end of the line.
     pub(crate) fn submerges_silently(&self, line: &Line, follows_scene: bool) -> bool {
         let open = self.water.as_ref().is_some_and(|water| water.surface.is_none());
         let mut ends = [&line.from, &line.to]

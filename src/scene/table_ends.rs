@@ -104,8 +104,8 @@ fn note_motion(at: String, motion: &MotionPath, duration: f64) -> Option<Note> {
     Some(Note::new(at, text))
 }
 
-/// Remark on a function that begins after the start of the run or ends before the run; one that is constant there, begins at zero or with a jump, or ends with
-/// a jump is taken as intended.
+/// Remark on a function that begins after the start of the run or ends before its end. A function that is constant there, jumps there, or begins at zero is
+/// taken as intended.
 fn note_function(at: String, function: &TimeFunction, duration: f64) -> Option<Note> {
     let TimeFunction::Table(rows) = function else {
         return None;

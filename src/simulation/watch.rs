@@ -35,7 +35,7 @@ struct Watched {
     strain_max: f64,
     /// End and tension [N] at which the line breaks; `None` if there is none, or after the comparison with the first state.
     breaks_at: Option<(End, f64)>,
-    /// True if the line is modelled as submerged at any height, and nothing says so.
+    /// True if the line is modelled as submerged at any height and the user has not been told.
     is_submerged: bool,
 }
 

@@ -167,7 +167,7 @@ fn seabed(deck: &Deck, draft: &mut Draft<'_>) {
     }
 }
 
-/// Notes lines whose fixed node is above the seabed: in MAP++ every line has a level seabed of its own, at its NodeAnch.
+/// Adds a note for each line whose fixed node lies above the seabed. In MAP++ every line has a level seabed of its own, at its NodeAnch.
 fn anchors_above(deck: &Deck, depth: f64, draft: &mut Draft<'_>) {
     for line in &deck.lines {
         let [anchor, _] = &line.ends;
@@ -178,7 +178,7 @@ fn anchors_above(deck: &Deck, depth: f64, draft: &mut Draft<'_>) {
         };
         if z + depth > ON_SEABED * depth {
             let text = format!(
-                "NodeAnch is at z = {z} m, and the seabed at z = {} m: in MAP++ the line would lie on a seabed at its own NodeAnch",
+                "NodeAnch is at z = {z} m, and the seabed at z = {} m: in MAP++ the seabed of a line is at the level of its NodeAnch",
                 -depth
             );
             draft.findings.remark(anchor, text);

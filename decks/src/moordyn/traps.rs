@@ -135,8 +135,8 @@ fn start(deck: &Deck, findings: &mut Findings) {
     let start = match at_once {
         Some(_) => {
             "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, or \
-             straight where it has none, as in MoorDyn, where a line longer than the horizontal and vertical distance of its ends is \
-             straight too; leave it out to start from equilibrium"
+             straight where it has none, as in MoorDyn, which also starts a line straight if it is longer than the sum of the horizontal \
+             and vertical distances between its ends; leave it out to start from equilibrium"
         }
         None => "the run starts from equilibrium",
     };

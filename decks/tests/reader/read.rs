@@ -167,6 +167,23 @@ fn a_map_deck_is_repeated_from_y_to_x() {
 }
 
 #[test]
+fn a_map_line_whose_anchor_is_above_the_seabed_is_noted() {
+    let named = |deck: &str| {
+        let loaded = load_deep(deck).unwrap_or_else(|error| panic!("{}", error.list()));
+        let level = |note: &&moorline::scene::Note| note.text.contains("the level of its NodeAnch");
+        loaded.notes.iter().filter(level).count()
+    };
+    let anchor = MAP.lines().find(|row| row.contains("depth")).unwrap();
+    assert_eq!(
+        [
+            named(MAP),
+            named(&with(MAP, anchor, &anchor.replace("depth", "-250")))
+        ],
+        [0, 1]
+    );
+}
+
+#[test]
 fn a_map_deck_that_is_repeated_by_an_angle_twice_is_noted() {
     for (angles, twins) in [
         ("repeat 120 240", 0),

@@ -101,7 +101,7 @@ pub(super) struct Communication<'a, H> {
     pub(super) start: f64,
     /// [s]
     pub(super) length: f64,
-    /// Length for which the number of internal steps is chosen; longer than `length` if the step stops early [s].
+    /// Length for which the number of internal steps is chosen; longer than `length` if the step is cut short [s].
     pub(super) laid_out: f64,
     pub(super) held: &'a H,
     /// Paid-out lengths of the winches, by line; empty where there are none.

@@ -115,8 +115,8 @@ impl<'a> BeamView<'a> {
         strained.stress_at_rate(rate.map(|rate| rate / element.length))
     }
 
-    /// Velocity [m/s] and angular velocity along the directors [rad/s] of a node, without the motion that alternates from step to step, which dampers
-    /// would amplify.
+    /// Velocity [m/s] and angular velocity along the directors [rad/s] of a node, without the oscillation from step to step that dampers would
+    /// amplify.
     fn rates(&self, node: usize) -> [Vector3<f64>; 2] {
         let state = beam_state(self.shape);
         let reached = state.course.reached(node);

@@ -264,7 +264,7 @@ impl ExplicitLine {
             ends,
         });
         if !drifts {
-            self.layout.push_ends(ends);
+            self.layout.set_end_velocities(ends);
             self.balance_nodes(step);
             unit.dispatch(Drift {
                 work: self,

@@ -237,8 +237,8 @@ impl Layout {
         }
     }
 
-    /// Sets the velocities of the ends, but those of released ends, to those of their points at t_{n+½}.
-    pub fn push_ends(&mut self, ends: [&EndMotion; 2]) {
+    /// Gives the ends that are not released the velocities of their points at t_{n+½}.
+    pub fn set_end_velocities(&mut self, ends: [&EndMotion; 2]) {
         for end in ENDS {
             if !self.released[end as usize] {
                 self.velocity.set(self.end_slot(end), ends[end as usize].velocity);

@@ -13,8 +13,8 @@
 //! velocity is that of the polynomial through five of them, as in `Smooth`.
 //!
 //! Source: Morrison (1969), Introduction to Sequential Smoothing and Prediction, chapter 13 (the filter); the choice of θ is derived here.
-//! Valid for steps of about equal length: z is scaled to a different step, but the gains are those of equal steps. Residuals after a far shorter step
-//! would change the derivatives by their scatter over that step: a sample less than half a step after the last one is not used.
+//! Valid for steps of about equal length: z is scaled to a different step, but the gains are those of equal steps. After a far shorter
+//! step, the derivatives would change by the scatter of the samples divided by that step: a sample less than half a step after the last one is not used.
 
 use std::array::from_fn;
 
@@ -28,7 +28,7 @@ const MEMORIES: [f64; 8] = [0.0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.87, 0.92];
 /// Fraction of the mean square residual that is kept from sample to sample [-].
 const KEPT: f64 = 0.9;
 
-/// Least distance between two samples in use, relative to the one before [-].
+/// Minimum time between two samples in use, relative to the time between the two before [-].
 const APART_MIN: f64 = 0.5;
 
 /// Coefficient of the fourth difference in the velocity at the newest sample, times the step [-].

@@ -149,7 +149,7 @@ impl Trial {
         simulation.paths = paths;
         simulation.take_paths(length);
         simulation.extend_flow(self.length, self.flow);
-        simulation.work.stop_early(self.length - length);
+        simulation.work.cut_short(self.length - length);
         simulation.integrate(length).map_err(|e| e.to_string())?;
         Ok(simulation)
     }
