@@ -41,7 +41,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::beam::BeamView;
-use super::leapfrog::segment_tension;
+use super::leapfrog::{segment_tension, step::Step};
 use super::viscoelastic::{Stretching, ViscoelasticSegment};
 use crate::elements::shear;
 use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong, WinchState};
@@ -59,18 +59,27 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     if let Some(closed_form) = &state.closed_form {
         return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
     }
-    let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+    let ends = [state.position[i], state.position[i + 1]];
+    let velocities = [i, i + 1].map(|node| velocity_of_stretching(line, state, node));
     if let Some(viscoelastic) = ViscoelasticSegment::of(line, state, i) {
-        let strain = Stretching::of(line, i, pair(&state.position), pair(&state.velocity));
+        let strain = Stretching::of(line, i, ends, velocities);
         return viscoelastic.tension(strain, line.compression_max(i), negative_tension);
     }
-    segment_tension(
-        line,
-        i,
-        pair(&state.position),
-        pair(&state.velocity),
-        negative_tension,
-    )
+    segment_tension(line, i, ends, velocities, negative_tension)
+}
+
+/// Velocity of a node [m/s] that gives the rate of strain of its segments.
+///
+/// With a leapfrog, the velocity of an end is extrapolated from half steps like those of the nodes. The velocity of its point differs from that by
+/// O(Δt²), which a stiff damper on a short segment would turn into a false tension.
+fn velocity_of_stretching(line: &Line, state: &LineState, node: usize) -> Vector3<f64> {
+    let memory = &state.half_step;
+    let is_end = node == 0 || node == line.segment_count();
+    if !is_end || memory.is_unset() || line.winch.is_some() {
+        return state.velocity[node];
+    }
+    let [last, before] = [memory.velocity[node], memory.velocity_before[node]];
+    last + Step::after(memory.steps, memory.steps[0]).extrapolation * (last - before)
 }
 
 /// Inertia force of the material transport at a winch, divided by −λq [N]: m ℓ̇² + M ℓ̈.
