@@ -226,3 +226,23 @@ fn a_fairlead_that_jumps_a_line_that_is_strained_and_a_motion_of_few_samples_are
         assert!(text.contains(words), "{texts:?}");
     }
 }
+
+#[test]
+fn a_given_element_that_is_far_shorter_than_its_neighbour_is_noted() {
+    let notes = |length: f64| {
+        let rope = draft("line_types.rope = { mass = 0.2, axial_stiffness = 2505.0 }")
+            .fixed("wall", [0.0; 3])
+            .coupled("hook", [100.0, 0.0, 0.0]);
+        let sections = [("rope", 100.0, Some(10)), ("rope", length, Some(1))];
+        rope.sections("rope", ["wall", "hook"], &sections)
+            .scene()
+            .plausibility()
+    };
+    assert_eq!(notes(1.0), []);
+    let [note] = &notes(0.1)[..] else {
+        panic!("{:?}", notes(0.1));
+    };
+    assert_eq!(note.at, "lines[0].sections[1].elements");
+    let said = "elements of 0.1 m beside elements of 10 m: ";
+    assert!(note.text.starts_with(said), "{note}");
+}

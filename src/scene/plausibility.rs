@@ -11,7 +11,9 @@ use super::path::quoted;
 use super::table::check_table;
 use super::table_ends::motions;
 use super::water::SPEED_USUAL;
-use super::{Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents};
+use super::{
+    Integrator, Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Section, Strain, WaveComponents,
+};
 use crate::math::circle;
 
 /// Speed of axial waves √(EA/m) [m/s]: 350 in a chain of a 1:50 model, 5200 in solid steel, 5700 in carbon fibre with its coat.
@@ -43,6 +45,8 @@ const FAIRLEAD_DISTANCE: f64 = 300.0;
 const LENGTH: f64 = 20e3;
 /// Ratio of the unstretched length of a line to the distance between its ends [-].
 const LENGTH_OVER_CHORD: f64 = 20.0;
+/// Ratio of the lengths of neighbouring elements [-]: the node between them has the mass of the longer one, and swings on the shorter one.
+const ELEMENT_RATIO: f64 = 20.0;
 /// Period of a motion [s]; in models at 1:100, waves have periods of a few tenths of a second.
 const PERIOD: f64 = 0.1;
 /// Height above z = 0 of the highest row of a current [m].
@@ -56,7 +60,7 @@ const BREAKING_SHALLOW: f64 = 0.78;
 type Rule = fn(&Scene, &mut Vec<Note>);
 
 /// The rules, in the order of a scene.
-const RULES: [Rule; 12] = [
+const RULES: [Rule; 13] = [
     current,
     wave_steepness,
     sea_angles,
@@ -66,6 +70,7 @@ const RULES: [Rule; 12] = [
     line_length,
     line_strain,
     weight_strain,
+    element_lengths,
     swapped_ends,
     turns,
     sines,
@@ -378,6 +383,28 @@ fn weight_strain(scene: &Scene, notes: &mut Vec<Note>) {
             "[{i}]" if weight > WEIGHT_STRAIN * softest =>
                 "its weight of {weight:.3e} N strains it by up to {:.0} %, with EA {softest:.3e} N: less than 20 % is usual, with EA in N",
                 100.0 * weight / softest;
+        }
+    }
+}
+
+/// Notes sections whose elements, of given numbers, are far shorter than those beside them.
+fn element_lengths(scene: &Scene, notes: &mut Vec<Note>) {
+    if scene.solver.integrator == Integrator::QuasiStatic {
+        return;
+    }
+    for (i, line) in scene.lines.iter().enumerate() {
+        let length = |section: &Section| Some(section.length / section.elements? as f64);
+        let lengths: Vec<_> = line.sections.iter().map(length).collect();
+        let uneven = (1..lengths.len()).find_map(|next| {
+            let [before, after] = [lengths[next - 1]?, lengths[next]?];
+            let shorter = if before < after { next - 1 } else { next };
+            let [short, long] = [before.min(after), before.max(after)];
+            (long > ELEMENT_RATIO * short).then_some((shorter, short, long))
+        });
+        rules! { notes, "lines";
+            "[{i}].sections[{section}].elements" given (section, short, long) = uneven =>
+                "elements of {} beside elements of {}: with long time steps, the tension of such short elements is inaccurate; similar lengths \
+                 are usual", quantity(significant(short), "m"), quantity(significant(long), "m");
         }
     }
 }

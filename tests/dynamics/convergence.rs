@@ -88,6 +88,32 @@ fn halving_the_axial_implicit_step_of_a_line_that_lands_quarters_the_error_at_le
     }
 }
 
+/// A weight that swings on a line, whose short element at the fairlead has a stiff damper, below a fairlead that moves to and fro.
+fn swinging(step: f64) -> Scene {
+    draft("line_types.rope = { mass = 10.0, axial_stiffness = 5e6, axial_damping = 2e5 }")
+        .and("motion.fairlead = { x = [[1.0, 3.0]], ramp = 1.5 }")
+        .free("weight", [0.0, 0.0, -5.0])
+        .with("mass = 100.0")
+        .coupled("fairlead", [0.0; 3])
+        .sections(
+            "line",
+            ["weight", "fairlead"],
+            &[("rope", 4.5, Some(5)), ("rope", 0.5, Some(1))],
+        )
+        .and(&format!(
+            "[solver]\nintegrator = 'axial_implicit'\ntime_step_max = {step}"
+        ))
+        .scene()
+}
+
+#[test]
+fn halving_the_axial_implicit_step_of_a_damped_element_that_turns_quarters_the_error_of_its_tension() {
+    let steps = [0.01, 0.005, 0.0025, 0.00125];
+    let reference = recorded(&swinging(SAMPLE / 512.0), 6.0);
+    let errors = steps.map(|step| recorded(&swinging(step), 6.0).tension_error(&reference, samples(5.0)));
+    assert_order(2.0, &steps, &errors);
+}
+
 #[test]
 fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
     // first order in the step, in addition to the second order of all other terms

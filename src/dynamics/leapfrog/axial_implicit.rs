@@ -11,7 +11,7 @@
 //! if springs may stiffen or are viscoelastic, or if an end is released. The new strain is linear in the new velocity,
 //! ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
-//! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)],  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
+//! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)] + θ BA κ/Δt,  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
 //!
 //! with S the tension of the springs as if they also pushed, C that of the dampers over the step, b₁ = σ/N the weight of T^{n+1}, and h_i those of
 //! the earlier tensions. Dampers pull before segments are taut, and max(0, S + C) is averaged: a spring in compression is included if the damper

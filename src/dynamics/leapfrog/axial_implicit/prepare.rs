@@ -34,6 +34,7 @@ impl AxialLine {
             drift: Lanes::splat(step.drift),
             damping: [0.5 * (1.0 + shift), 0.5 * (1.0 - shift)].map(Lanes::splat),
             push: Lanes::splat(push),
+            turning: Lanes::splat(0.5 * shift * step.kick),
             weights: self.kernel.weights.0.map(Lanes::splat),
         }
     }
@@ -131,6 +132,7 @@ impl AxialLine {
             row.stiffness = found.slope * sizes.drift;
             let bend = (relative.dot(relative) - along * along) * row.inverse;
             row.curvature = half * row.stiffness * sizes.drift * bend;
+            row.earlier_rate = sizes.damping[1] * along + sizes.turning * bend;
             // linearised at the strain reached with the current stretching velocity
             if SPRINGS == springs::CURVED {
                 let inverse = self.layout.inverse_length.load(at);

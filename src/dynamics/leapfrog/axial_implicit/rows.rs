@@ -36,6 +36,8 @@ pub(super) struct Sizes {
     pub drift: Lanes,
     /// ½(1+θ) and ½(1−θ), the weights of the new and the old strain rate in the damping [-].
     pub damping: [Lanes; 2],
+    /// ½θΔt, the weight of the centripetal acceleration of segments in their stretching velocity [s].
+    pub turning: Lanes,
     /// 1 where dampers act in slack segments, else 0 [-].
     pub push: Lanes,
     /// Weights of T^{n+1}, T^n, T^{n−1} and T^{n−2} in T̄ [-].
@@ -67,6 +69,8 @@ pub(super) struct SegmentRow {
     pub inverse: Lanes,
     /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].
     pub along: Lanes,
+    /// Part of the weighted stretching velocity that does not depend on the new velocities [m/s].
+    pub earlier_rate: Lanes,
     /// dT̄/d(q·(v_{i+1} − v_i)) of the springs [N s/m].
     pub stiffness: Lanes,
     /// Part of T̄ from the linearised springs, at zero stretching velocity [N].
@@ -104,6 +108,7 @@ impl SegmentRow {
             length: zero,
             inverse: zero,
             along: zero,
+            earlier_rate: zero,
             stiffness: zero,
             elastic: zero,
             memory: zero,
@@ -128,7 +133,7 @@ impl SegmentRow {
         sizes: &Sizes,
     ) {
         let (zero, one, push) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.push);
-        let damped = self.damping * sizes.damping[1] * self.along;
+        let damped = self.damping * self.earlier_rate;
         let springs = self.elastic + self.curvature;
         let resistance = self.rate_slope(sizes);
         let known = self.taut.choose(springs + damped, push * damped);
@@ -181,7 +186,7 @@ impl SegmentRow {
     /// Weighted stretching velocity of the damper in a step that ends with the stretching velocity `along` [m/s].
     #[inline(always)]
     pub(super) fn rate(&self, along: Lanes, sizes: &Sizes) -> Lanes {
-        sizes.damping[0] * along + sizes.damping[1] * self.along
+        sizes.damping[0] * along + self.earlier_rate
     }
 
     /// Part of T̄ from the earlier tensions, up to t_n [N], and the share of the damper in T̄ [-], if the damper pulls with `pull` [N]. A
