@@ -140,7 +140,9 @@ impl BeamState {
         let rest = |(i, element): (usize, &BeamElement)| match beam.rests_as_it_starts {
             true => {
                 let plain = section::strain(&section(i), &section(i + 1), element.length);
-                section::corrected(&plain, element.length)
+                let mut rest = section::corrected(&plain, element.length);
+                rest[2] = section::straight()[2]; // unstretched at the length of the element
+                rest
             }
             false => section::straight(),
         };
@@ -277,18 +279,23 @@ mod tests {
     }
 
     #[test]
-    fn a_beam_that_rests_as_it_starts_has_no_strain_there() {
+    fn a_beam_that_rests_as_it_starts_is_not_bent_there_and_is_stretched_by_its_length() {
         let n = 5;
-        let beam = beam(n, 1.5, [None, None], true);
         let arc = quarter(n);
-        let state = BeamState::at_rest(&beam, &arc, [Matrix3::identity(); 2]);
-        for i in 0..n {
-            let section = |i: usize| Section {
-                position: arc[i],
-                frame: state.frames[i],
-            };
-            let strain = beam.elements[i].strain(&section(i), &section(i + 1), &state.rest[i]);
-            assert_relative_eq!(strain, Sextuple::zeros(), epsilon = 1e-15);
+        for length in [1.5, std::f64::consts::FRAC_PI_2] {
+            let beam = beam(n, length, [None, None], true);
+            let state = BeamState::at_rest(&beam, &arc, [Matrix3::identity(); 2]);
+            for i in 0..n {
+                let section = |i: usize| Section {
+                    position: arc[i],
+                    frame: state.frames[i],
+                };
+                let mut strain = beam.elements[i].strain(&section(i), &section(i + 1), &state.rest[i]);
+                let stretch = std::mem::take(&mut strain[2]);
+                let expected = std::f64::consts::FRAC_PI_2 / length - 1.0;
+                assert_relative_eq!(stretch, expected, epsilon = 3e-5 + 0.02 * expected); // elements of 0.3 rad
+                assert_relative_eq!(strain, Sextuple::zeros(), epsilon = 1e-15);
+            }
         }
     }
 

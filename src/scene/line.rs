@@ -21,7 +21,7 @@ table! {
         pub elements: Option<usize> => elements(),
         /// Shape at the start, at rest.
         pub initial: InitialShape = InitialShape::Static,
-        /// Shape without bending and torsion.
+        /// Shape without bending and torsion; the line is unstretched at the lengths of its sections.
         pub rest_shape: RestShape = RestShape::Straight,
         /// Direction of the line from A to B at end A [-], if that end is clamped; pinned by default.
         pub clamped_a: Option<[f64; 3]> => magnitude(1e6),

@@ -31,6 +31,7 @@ pub(super) fn build(deck: &Deck, draft: &mut Draft<'_>) {
     draft.check_given(std::iter::empty());
     needs_depth(deck, draft);
     line_types(deck, draft);
+    numbers_out_of_order(deck, draft);
     for turn in turns(deck, draft) {
         for node in &deck.nodes {
             add_node(node, deck, turn, draft);
@@ -164,6 +165,18 @@ fn seabed(deck: &Deck, draft: &mut Draft<'_>) {
                 anchors_above(deck, depth, draft);
             }
         }
+    }
+}
+
+/// Adds a note on the first node whose number is not that of its row, by which MAP++ finds the ends of lines.
+fn numbers_out_of_order(deck: &Deck, draft: &mut Draft<'_>) {
+    let mut rows = (1..).zip(&deck.nodes);
+    if let Some((row, node)) = rows.find(|(row, node)| node.id.value != *row) {
+        let text = format!(
+            "node {} is in row {row}: in MAP++ the ends of lines are numbers of rows, and here they are the numbers of nodes",
+            node.id.value
+        );
+        draft.findings.remark(&node.id, text);
     }
 }
 

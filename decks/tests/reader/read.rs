@@ -184,6 +184,13 @@ fn a_map_line_whose_anchor_is_above_the_seabed_is_noted() {
 }
 
 #[test]
+fn a_map_node_whose_number_is_not_that_of_its_row_is_noted() {
+    let noted = |deck: &str| notes(&load_deep(deck).unwrap()).contains("numbers of rows");
+    let swapped = with(MAP, "1     Fix", "2     Fix").replace("2     Vessel", "1     Vessel");
+    assert_eq!([noted(MAP), noted(&swapped)], [false, true]);
+}
+
+#[test]
 fn a_map_deck_that_is_repeated_by_an_angle_twice_is_noted() {
     for (angles, twins) in [
         ("repeat 120 240", 0),

@@ -66,8 +66,8 @@ fn ends_in_words(line: &Line) -> String {
         None => format!("pinned at end {name}"),
     };
     let rest = match line.rest_shape {
-        RestShape::Straight => "unstressed when straight",
-        RestShape::Initial => "unstressed in its initial shape",
+        RestShape::Straight => "unbent when straight",
+        RestShape::Initial => "unbent in its initial shape",
     };
     let [a, b] = [("A", line.clamped_a), ("B", line.clamped_b)].map(|(name, clamp)| end(name, clamp));
     format!("{a}, {b}; {rest}")
