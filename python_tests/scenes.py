@@ -34,6 +34,10 @@ CHAIN = scene(
 
 CLUMPED = CHAIN.replace('kind = "coupled"', 'kind = "coupled"\nmass = 500.0\nvolume = 0.2')
 
+# Given by its weight, at a fairlead with a mass of its own, with mass and impedance as outputs.
+MATCHED = CLUMPED.replace("mass = 113.35", "weight = 975.0\nmass = 113.35").replace(
+    "interval = 0.05", 'interval = 0.05\ninterface = "impedance"')
+
 SHORT_PROFILE = CHAIN.replace("density = 1025.0",
                               "density = 1025.0\ncurrent = { profile = [[0.0, 0.5, 0.0], [-10.0, 0.2, 0.0]] }")
 

@@ -11,7 +11,7 @@ import pytest
 import scenes
 from fmu_calls import OK
 
-SCENES = ["CHAIN", "CHAIN_PROFILE", "TWO_ROPES", "CURRENT", "CURRENT_ALONE", "WAVES", "HOSTED"]
+SCENES = ["CHAIN", "CHAIN_PROFILE", "TWO_ROPES", "CURRENT", "CURRENT_ALONE", "WAVES", "HOSTED", "MATCHED"]
 
 
 @pytest.mark.parametrize("scene", SCENES)

@@ -74,6 +74,15 @@ def test_updates_within_a_step_give_what_shorter_steps_give(opened):
         assert short.times == coarse.times == [] and len(set(long.forces)) == 30
 
 
+def test_a_step_whose_velocities_are_given_at_its_ends_alone_has_one_part(opened):
+    description, _ = opened
+    speed = next(v.valueReference for v in description.modelVariables if v.name == "fairlead.vx")
+    with Host(opened) as host:
+        host.fmu.setFloat64([speed], [1.35])
+        host.step(0.0, STEP)
+        assert host.times == []
+
+
 def test_a_step_that_the_host_ends_goes_on_from_there(opened):
     with Host(opened) as ended, Host(opened) as whole:
         whole.step(0.0, STEP)

@@ -138,7 +138,7 @@ int moorline_read(uint32_t abi_version, const char *toml, moorline_simulation *s
 int moorline_close(moorline_simulation simulation);
 
 // Selects by convergence trials the values that the scene leaves open: elements, integrator and time step. Takes up to seconds; otherwise, rules choose
-// them. Only before start. Set the flow of the water after it, for the nodes of the selected mesh.
+// them. Only before start. Find the variables of profiles and flow after it, and set the flow for the nodes of the selected mesh.
 int moorline_select(moorline_simulation simulation);
 
 // Starts at a time [s], in the scene's initial shapes (static equilibrium by default) with the current inputs.

@@ -69,7 +69,7 @@ pub unsafe extern "C" fn moorline_close(simulation: moorline_simulation) -> c_in
 }
 
 /// Selects by convergence trials the values that the scene leaves open: elements, integrator and time step. Takes up to seconds; otherwise, rules choose
-/// them. Only before start. Set the flow of the water after it, for the nodes of the selected mesh.
+/// them. Only before start. Find the variables of profiles and flow after it, and set the flow for the nodes of the selected mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn moorline_select(simulation: moorline_simulation) -> c_int {
     edge::call(simulation, "moorline_select", |session| session.select())

@@ -493,7 +493,9 @@ impl Session {
                 .collect()
         };
         if names(&other) != names(self) {
-            return Err(Failure::argument("the state is that of another scene"));
+            return Err(Failure::argument(
+                "the state is that of another scene, or of another mesh: moorline_select gives this simulation the mesh of the trials",
+            ));
         }
         other.inputs = HostInputs::new(&saved.origin);
         if saved.snapshot.is_some() {

@@ -16,7 +16,7 @@ use moorline_decks::load_with;
 
 use crate::arguments::Input;
 use crate::failure::Failure;
-use crate::folder::{Folder, Listener};
+use crate::folder::{Folder, Listener, check_apart};
 use crate::summary::run_summary;
 use crate::terminal::{Progress, discretise, print, remark, remark_all, simulate};
 
@@ -70,6 +70,7 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
         loaded.scene = packaged;
     }
     let before = loaded.scene.clone();
+    check_inputs_stay(input, &before, drive, folder)?;
     let mut scene = before.clone();
     let motion = match drive.is_empty() {
         true => None,
@@ -120,6 +121,26 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
         run_summary(&record),
         folder.display()
     ))
+}
+
+/// Refuses to write the tables of a run over the motion files from which it reads.
+fn check_inputs_stay(input: &Input, scene: &Scene, drive: &Drive, folder: &Path) -> Result<(), Failure> {
+    let beside = input.scene.parent().unwrap_or(Path::new(""));
+    let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
+    let files = scene
+        .motion
+        .values()
+        .chain(own)
+        .filter_map(|motion| match motion {
+            MotionPath::File(motion) => Some(beside.join(&motion.file)),
+            _ => None,
+        });
+    for read in files.chain(drive.file.clone()) {
+        for table in ["results.csv", "profile.csv"] {
+            check_apart(&read, &folder.join(table))?;
+        }
+    }
+    Ok(())
 }
 
 /// Checks a communication step [s] as the interval of the output.

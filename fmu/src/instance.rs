@@ -68,8 +68,8 @@ pub(crate) struct Instance {
     /// Produces notes on the steps; present if warnings are logged.
     watch: Option<Watch>,
     step_status: Status,
-    /// True if the host sets all displacements during intermediate updates.
-    is_updated: bool,
+    /// References of the variables that the host accesses in intermediate updates.
+    announced: Vec<u32>,
 }
 
 impl Instance {
@@ -109,7 +109,7 @@ impl Instance {
             noted: Vec::new(),
             watch: None,
             step_status: Status::Ok,
-            is_updated: false,
+            announced: Vec::new(),
         };
         instance.log_plausibility();
         Ok(instance)
@@ -121,10 +121,15 @@ impl Instance {
             return;
         }
         for note in self.scene.plausibility() {
-            if !self.noted.contains(&note) {
-                self.log.push(Topic::Warning, || note.to_string());
-                self.noted.push(note);
-            }
+            self.warn_once(note);
+        }
+    }
+
+    /// Logs a note, unless it has been logged before.
+    fn warn_once(&mut self, note: Note) {
+        if !self.noted.contains(&note) {
+            self.log.push(Topic::Warning, || note.to_string());
+            self.noted.push(note);
         }
     }
 

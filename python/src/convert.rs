@@ -26,7 +26,16 @@ pub(crate) fn table(dict: &Bound<'_, PyDict>, at: &str) -> Result<toml::Table, F
     Ok(table)
 }
 
+/// Maximum depth of tables and arrays in a scene [-]; its own tables take ten.
+const DEPTH_MAX: usize = 100;
+
 fn value_of(value: &Bound<'_, PyAny>, at: &str) -> Result<Toml, Failure> {
+    if at.matches(['.', '[']).count() > DEPTH_MAX {
+        return Err(Failure::of_key(
+            at,
+            "too many tables or arrays within each other".into(),
+        ));
+    }
     if let Ok(truth) = value.cast::<PyBool>() {
         return Ok(Toml::Boolean(truth.is_true()));
     }

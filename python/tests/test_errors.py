@@ -30,6 +30,13 @@ def test_all_mistakes_are_listed():
     assert str(caught.value).count("\n") == 1
 
 
+def test_a_dict_that_contains_itself_is_refused():
+    scene = {}
+    scene["points"] = [scene]
+    with pytest.raises(moorline.SceneError, match="within each other"):
+        moorline.Scene.from_dict(scene)
+
+
 def test_a_mistake_in_a_dict_has_its_key_path():
     scene = tomllib.loads(CHAIN)
     scene["points"][0]["position"] = [405.0, 0.0]
@@ -129,6 +136,8 @@ def test_unknown_names_are_refused_with_a_suggestion(chain):
     ({"time": [0.0, 1.0], "fairlead.x": [0.0, math.nan]}, "row 1: NaN is not a finite number"),
     ({"time": [0.0, 1.0], "fairlead.vx": [0.0, 1.0]}, "velocities follow"),
     ({"time": [0.0, 1.0], "fairlead.x": ["a", "b"]}, "a row of numbers"),
+    ({"time": np.array([0, 3000], "timedelta64[ms]"), "fairlead.x": [0.0, 1.0]}, "durations are no numbers"),
+    ({"time": [0.0, 1.0], "fairlead.x": np.ma.array([0.0, 9.0], mask=[False, True])}, "masked numbers"),
     ([1.0, 2.0], "has no columns"),
 ])
 def test_a_wrong_motion_is_refused_with_its_column(chain, motion, words):

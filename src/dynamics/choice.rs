@@ -51,10 +51,10 @@ impl Choice {
         let (step, explicit) = (seconds(self.step_max), seconds(self.explicit.step));
         match self.integrator {
             Integrator::Leapfrog if self.step_max < self.explicit.step => {
-                format!("explicit, steps up to {step} (axial waves would allow {explicit})")
+                format!("explicit, steps up to {step} (axial waves and dampers would allow {explicit})")
             }
             Integrator::Leapfrog => {
-                format!("explicit, steps up to {step}, limited by axial waves")
+                format!("explicit, steps up to {step}, limited by axial waves and dampers")
             }
             Integrator::AxialImplicit => {
                 let steps = match self.longest > self.step_max {

@@ -244,11 +244,29 @@ impl<'a> HalfNode<'a> {
         pull + shear(line, nodes, segment, at, self.at.moments)
     }
 
+    /// Velocity of the material at the end [m/s]: on a winch, it differs from that of the point by the line that is paid out.
+    fn velocity(&self) -> Vector3<f64> {
+        let LineEnd {
+            line,
+            state,
+            end,
+            point,
+            ..
+        } = self.at;
+        match (state.winch_state, end) {
+            (Some(winch_state), End::B) => {
+                let (inward, _, _) = self.pull();
+                point.velocity + winch_state.rate / line.segments.length[self.node - 1] * inward
+            }
+            _ => point.velocity,
+        }
+    }
+
     /// Load without weight and seabed [N] of a half node of which a fraction `dry` [-] is out of the water: inertia, water and mass damping. The
     /// second vector is the drag alone.
     fn load(&self, inward: Vector3<f64>, dry: f64) -> [Vector3<f64>; 2] {
         let (nodes, node) = (&self.at.line.nodes, self.node);
-        let (velocity, acceleration) = (self.at.point.velocity, self.at.point.acceleration);
+        let (velocity, acceleration) = (self.velocity(), self.at.point.acceleration);
         let mut load = -Slender::new(nodes.masses(node, dry)).times(acceleration, inward);
         let drag = self.drag(velocity - self.flow, inward, dry);
         load += drag;

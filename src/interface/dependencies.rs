@@ -3,7 +3,8 @@
 //! Lines that share free points are one network. A network depends on the displacements of the coupled points at its ends and on the parameters of its
 //! equilibrium. Velocities, rotary inertia and damping have no effect at rest. Drag has an effect in flowing water, and added mass in waves, whose load on
 //! the last half segment is part of the end force from the start. The flow given by a host acts at that node. The closed-form catenary is that of
-//! the reference configuration in still water, and so depends on no displacement.
+//! the reference configuration in still water, and so depends on no displacement. Mass and impedance of the mooring are those of the coming step, on
+//! which every property has an effect.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,7 +19,7 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     let known = |(index, variable): (usize, &Variable)| {
         let moves = match variable.binding {
             Binding::Displacement { body, .. } => attached_to(body),
-            Binding::LengthChange { .. } | Binding::Parameter(_) => Vec::new(),
+            Binding::LengthChange { .. } | Binding::Release { .. } | Binding::Parameter(_) => Vec::new(),
             _ => return None,
         };
         let (reference, binding) = (Interface::reference(index), variable.binding.clone());
@@ -29,26 +30,28 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
         })
     };
     let knowns: Vec<Known> = variables.iter().enumerate().filter_map(known).collect();
-    let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
+    let mut known_scopes: BTreeMap<(BTreeSet<usize>, Of), Vec<u32>> = BTreeMap::new();
     for variable in &mut *variables {
-        let (lines, closed_form) = match &variable.binding {
-            Binding::EndForce { body, .. } | Binding::Interface { body, .. } => {
-                (networks_of(model, attached_to(*body)), false)
+        let (lines, of) = match &variable.binding {
+            Binding::EndForce { body, .. } => (networks_of(model, attached_to(*body)), Of::ForceOn(*body)),
+            Binding::Interface { body, .. } => (networks_of(model, attached_to(*body)), Of::Step),
+            Binding::Line { line, result } if result.is_catenary() => {
+                (BTreeSet::from([*line]), Of::ClosedForm)
             }
-            Binding::Line { line, result } if result.is_catenary() => (BTreeSet::from([*line]), true),
             Binding::Line { line, .. } | Binding::Profile { line, .. } | Binding::FlowPlace { line, .. } => {
-                (networks_of(model, [*line]), false)
+                (networks_of(model, [*line]), Of::Lines)
             }
             _ => continue,
         };
         variable.initial_dependencies = known_scopes
-            .entry((lines, closed_form))
-            .or_insert_with_key(|(lines, closed_form)| {
+            .entry((lines, of))
+            .or_insert_with_key(|(lines, of)| {
                 let scope = Scope {
                     scene,
                     model,
                     lines,
-                    closed_form: *closed_form,
+                    of: *of,
+                    closed_form: *of == Of::ClosedForm,
                 };
                 let of_scope = knowns.iter().filter(|known| scope.depends_on(known));
                 of_scope.map(|known| known.reference).collect()
@@ -161,11 +164,25 @@ struct Known {
     moves: Vec<usize>,
 }
 
-/// Lines on whose equilibrium a variable depends.
+/// What a variable describes.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Of {
+    /// The equilibrium of lines.
+    Lines,
+    /// The force on a body, with that of its own points.
+    ForceOn(Body),
+    /// The mass or the impedance of lines.
+    Step,
+    /// The closed form of a line.
+    ClosedForm,
+}
+
+/// Lines on whose equilibrium or step a variable depends.
 struct Scope<'a> {
     scene: &'a Scene,
     model: &'a Model,
     lines: &'a BTreeSet<usize>,
+    of: Of,
     closed_form: bool,
 }
 
@@ -176,6 +193,7 @@ impl Scope<'_> {
                 !self.closed_form && known.moves.iter().any(|line| self.lines.contains(line))
             }
             Binding::LengthChange { line } => !self.closed_form && self.lines.contains(line),
+            Binding::Release { line } => self.of == Of::Step && self.lines.contains(line),
             Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
             _ => false,
         }
@@ -188,11 +206,12 @@ impl Scope<'_> {
                 self.types().any(|used| used == name) && self.depends_on_property(name, key)
             }
             (Place::Section { line, .. }, _) => self.lines.contains(line),
+            (Place::Water | Place::Scene, _) if self.of == Of::Step => true,
             (Place::Water, _) => {
                 self.types()
                     .any(|name| self.is_buoyant(name) || self.is_pushed(name))
                     || self
-                        .free_points()
+                        .points()
                         .any(|point| point.volume.is_some() || (self.flows() && point.drag_area.is_some()))
             }
             (Place::Seabed, _) => true,
@@ -201,7 +220,7 @@ impl Scope<'_> {
                     || self.emerges()
                     || self.is_in_waves()
                     || self
-                        .free_points()
+                        .points()
                         .any(|point| point.mass.is_some() || point.volume.is_some())
             }
             (Place::Solver, "tolerance") => {
@@ -215,6 +234,7 @@ impl Scope<'_> {
 
     fn depends_on_property(&self, name: &str, key: &str) -> bool {
         match (LineType::SCHEMA.key(key).map(|key| key.rule.acts), key) {
+            _ if self.of == Of::Step => true,
             (Some(Acts::InMotion), _) => false,
             (Some(Acts::InFlow), _) => self.flows(),
             (Some(Acts::InAccelerations), _) => self.is_in_waves(),
@@ -267,13 +287,17 @@ impl Scope<'_> {
             .map(|section| section.line_type.as_str())
     }
 
-    /// Free points that the lines share.
-    fn free_points(&self) -> impl Iterator<Item = &crate::scene::Point> {
+    /// Free points that the lines share, and the points of the body whose force is described.
+    fn points(&self) -> impl Iterator<Item = &crate::scene::Point> {
         let networks = self.model.networks.iter().filter(|network| {
             let mut lines = network.lines.iter();
             !self.closed_form && lines.any(|line| self.lines.contains(line))
         });
-        let points = networks.flat_map(|network| &network.free_points);
-        points.map(|&point| &self.scene.points[point])
+        let free = networks.flat_map(|network| &network.free_points).copied();
+        let own = (0..self.model.points.len()).filter(|&point| match self.of {
+            Of::ForceOn(body) => self.model.moves_with(point, body),
+            _ => false,
+        });
+        free.chain(own).map(|point| &self.scene.points[point])
     }
 }

@@ -9,7 +9,8 @@ use crate::simulation::{BodyInput, Inputs, WaterFlow};
 /// Inputs of a simulation, with the velocities as a host has written them, one variable at a time.
 ///
 /// Hosts that write all inputs at every communication point write the start value 0 to unconnected inputs. A velocity of 0 therefore does not count
-/// as given if it is written before the first step, or if the body has moved and no velocity other than 0 has ever been written.
+/// as given if it is written before the first step, or if the body has moved along its axis and no velocity other than 0 has ever been written for it. The
+/// three angular velocities count together, since roll, pitch and yaw turn about other axes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct HostInputs {
     given: Inputs,
@@ -24,17 +25,19 @@ struct WrittenVelocity {
     value: [f64; 6],
     /// True if the host gives the velocity.
     is_given: [bool; 6],
-    /// True if the body has moved since the start, in translation and in rotation.
-    has_moved: [bool; 2],
-    /// True if a velocity has ever been non-zero, in translation and in rotation.
-    has_speed: [bool; 2],
+    /// True if the body has moved along or about an axis since the start.
+    has_moved: [bool; 6],
+    /// True if a velocity has ever been non-zero.
+    has_speed: [bool; 6],
 }
 
 impl WrittenVelocity {
-    /// Sets the velocities of an input: translational (`kind` 0) or angular (`kind` 1).
-    fn pass_on(&self, kind: usize, input: &mut BodyInput) {
-        let gives = self.has_speed[kind] || !self.has_moved[kind];
-        for axis in 3 * kind..3 * kind + 3 {
+    /// Sets the velocity of an input along an axis; about an axis, all angular velocities.
+    fn pass_on(&self, axis: usize, input: &mut BodyInput) {
+        let axes = if axis < 3 { axis..axis + 1 } else { 3..6 };
+        let any = |flags: &[bool; 6]| flags[axes.clone()].contains(&true);
+        let gives = any(&self.has_speed) || !any(&self.has_moved);
+        for axis in axes {
             input.velocity[axis] = (gives && self.is_given[axis]).then_some(self.value[axis]);
         }
     }
@@ -61,10 +64,14 @@ impl HostInputs {
 
     /// Sets the displacement and the velocity of a body exactly as given; an absent velocity is derived from the displacements.
     pub fn set_body(&mut self, body: Body, input: BodyInput) {
+        let before = self.given.body(body).displacement;
         let written = &mut self.velocities[self.given.place(body)];
+        for axis in 0..6 {
+            written.has_moved[axis] |= input.displacement[axis] != before[axis];
+        }
         written.value = input.velocity.map(|velocity| velocity.unwrap_or(0.0));
         written.is_given = input.velocity.map(|velocity| velocity.is_some());
-        written.has_speed = [0, 3].map(|first| written.is_given[first]); // 0 is a velocity too
+        written.has_speed = written.is_given; // 0 is a velocity too
         *self.given.body_mut(body) = input;
     }
 
@@ -86,10 +93,10 @@ impl HostInputs {
             Binding::Displacement { body, axis } => {
                 let (place, input) = (self.given.place(body), self.given.body_mut(body));
                 let before = std::mem::replace(&mut input.displacement[axis], values[0]);
-                let (written, kind) = (&mut self.velocities[place], axis / 3);
-                if steps && values[0] != before && !written.has_moved[kind] {
-                    written.has_moved[kind] = true;
-                    written.pass_on(kind, input);
+                let written = &mut self.velocities[place];
+                if steps && values[0] != before && !written.has_moved[axis] {
+                    written.has_moved[axis] = true;
+                    written.pass_on(axis, input);
                 }
             }
             _ => {
@@ -104,8 +111,8 @@ impl HostInputs {
         let written = &mut self.velocities[place];
         written.value[axis] = value;
         written.is_given[axis] |= is_given || value != 0.0;
-        written.has_speed[axis / 3] |= value != 0.0;
-        written.pass_on(axis / 3, input);
+        written.has_speed[axis] |= value != 0.0;
+        written.pass_on(axis, input);
     }
 }
 
@@ -138,9 +145,18 @@ mod tests {
         inputs.write(row("vy"), &[0.0], true);
         assert_eq!(given(&inputs)[..3], [Some(0.0), Some(0.0), None]);
         inputs.write(row("x"), &[0.1], true);
-        assert_eq!(given(&inputs), [None; 6]);
+        assert_eq!(given(&inputs)[..3], [None, Some(0.0), None]);
         inputs.write(row("vx"), &[0.5], true);
         inputs.write(row("vx"), &[0.0], true);
         assert_eq!(given(&inputs)[..3], [Some(0.0), Some(0.0), None]);
+        inputs.write(row("y"), &[0.1], true);
+        assert_eq!(given(&inputs)[..3], [Some(0.0), None, None]);
+        let moved = BodyInput {
+            displacement: [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
+            velocity: [None; 6],
+        };
+        inputs.set_body(body, moved);
+        inputs.write(row("vx"), &[0.0], true);
+        assert_eq!(given(&inputs), [None; 6]);
     }
 }

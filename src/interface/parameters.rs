@@ -82,7 +82,9 @@ impl Parameter {
 pub(super) fn variables(scene: &Scene) -> Vec<Variable> {
     let mut variables = Vec::new();
     let mut add = |place: Place, keys: &'static [Key], names: (&str, &str), about: &str| {
-        let parameters = keys.iter().filter(|key| key.rule.is_parameter);
+        // with soundings, the depth is only that of the waves
+        let rests = |key: &Key| place == Place::Seabed && key.name() == "depth" && scene.has_idle_depth();
+        let parameters = keys.iter().filter(|key| key.rule.is_parameter && !rests(key));
         variables.extend(parameters.filter_map(|key| variable(scene, &place, key, names, about)));
     };
     for name in scene.line_types.keys() {

@@ -68,8 +68,11 @@ pub(super) fn range(node: Option<usize>, count: usize) -> Range<usize> {
 
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Sentence on a velocity that the host does not give.
-const NOT_GIVEN: &str = "if never set to a non-zero value, it is derived from the displacements, or 0 if solver.input_reconstruction is 1";
+/// Sentences on a velocity and on an angular velocity that the host does not give.
+const NOT_GIVEN: [&str; 2] = [
+    "if never set to a non-zero value, it is derived from the displacements, or 0 if solver.input_reconstruction is 1",
+    "if no component is ever set to a non-zero value, they are derived from the displacements, or 0 if solver.input_reconstruction is 1",
+];
 
 /// Displacements of a body; a point has the first three.
 pub(super) const POSES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
@@ -106,7 +109,7 @@ pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
         };
         let unit = [Unit::METRE_PER_SECOND, Unit::RADIAN_PER_SECOND][axis / 3];
         let binding = Binding::Velocity { body, axis };
-        let meaning = format!("{meaning}; {NOT_GIVEN}");
+        let meaning = format!("{meaning}; {}", NOT_GIVEN[axis / 3]);
         add(RATES[axis], meaning, Causality::Input, unit, binding);
     }
     for axis in axes {

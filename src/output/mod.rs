@@ -205,7 +205,11 @@ fn create(partial: &Path) -> io::Result<File> {
 fn replace_file(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> io::Result<()> {
     let path = &target_of(path)?;
     let partial = partial_name(path);
-    let made = write(&partial).and_then(|()| fs::rename(&partial, path));
+    let rights = fs::metadata(path).map(|found| found.permissions());
+    let keep = || rights.map_or(Ok(()), |rights| fs::set_permissions(&partial, rights));
+    let made = write(&partial)
+        .and_then(|()| keep())
+        .and_then(|()| fs::rename(&partial, path));
     if made.is_err() {
         // The first failure is reported; an incomplete file that cannot be removed is recognisable by its name.
         let _ = fs::remove_file(&partial);

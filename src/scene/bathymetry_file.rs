@@ -84,6 +84,17 @@ fn words(line: &str) -> Vec<String> {
 
 /// Unit in the corner of a table [m]; 1 if there is none.
 fn corner_unit(corner: &str) -> Result<f64, String> {
+    let mut axes = corner
+        .split(['/', '\\'])
+        .map(|name| name.trim_start().to_lowercase());
+    if let (Some(down), Some(right)) = (axes.next(), axes.next())
+        && down.starts_with('x')
+        && right.starts_with('y')
+    {
+        return Err(format!(
+            "{corner:?} has x downwards: a table of soundings has y downwards and x to the right"
+        ));
+    }
     let mut factor = None;
     for unit in units::bracketed(corner) {
         let own = units::factor(unit, Quantity::Length)?;

@@ -79,12 +79,16 @@ impl Scene {
     /// Returns notes on keys that are required but have no effect.
     pub(super) fn idle_by_need(&self) -> Vec<Note> {
         let mut notes = Vec::new();
-        let sounded = self.seabed.as_ref().is_some_and(|seabed| seabed.grid.is_some());
         rules! { &mut notes, "seabed";
-            "" if sounded && self.waves().is_none() =>
-                "with soundings and no waves, `depth` changes nothing";
+            "" if self.has_idle_depth() => "with soundings and no waves, `depth` changes nothing";
         }
         notes
+    }
+
+    /// Returns whether the depth of the seabed has no effect: soundings give that under the lines, and there are no waves.
+    pub(crate) fn has_idle_depth(&self) -> bool {
+        let sounded = self.seabed.as_ref().is_some_and(|seabed| seabed.grid.is_some());
+        sounded && self.waves().is_none()
     }
 
     fn is_quasi_static(&self) -> bool {

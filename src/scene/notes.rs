@@ -186,6 +186,8 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
             "the scene's motion takes it to z = {lifted:.3} m, {everywhere}{end}";
         "force" if point.force.is_some() && point.kind != PointKind::Free =>
             "a force on a point that is not free changes only the reaction of its support";
+        "" if point.kind == PointKind::Prescribed && (point.mass.is_some() || point.volume.is_some()) =>
+            "mass and volume of a prescribed point change only the reaction of its support, which is no output of a run";
     }
 }
 

@@ -55,6 +55,14 @@ pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
     let mut profile = Vec::new();
     let text = text_of(path)?;
     let (above, flow) = profile_units(path, &text)?;
+    for (number, heading) in (1..).zip(text.lines().take(CURRENT_HEAD)) {
+        if is_row(heading) {
+            return Err(format!(
+                "{}, line {number}: this row would be skipped: three lines of headings come before the first row",
+                path.display()
+            ));
+        }
+    }
     for (line, row) in rows(path, &text, CURRENT_HEAD)? {
         let wrong = |problem: &str| format!("{}, line {line}: {problem}", path.display());
         match row.as_slice() {
@@ -77,6 +85,12 @@ pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
 fn text_of(path: &Path) -> Result<String, String> {
     let bytes = input_file::read_table(path, "a table of numbers")?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Returns whether a line consists of four numbers.
+fn is_row(line: &str) -> bool {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    words.len() == 4 && words.iter().all(|word| word.parse::<f64>().is_ok())
 }
 
 /// SI values of the units of heights [m] and velocities [m/s] in the last line of headings.

@@ -128,6 +128,7 @@ fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn halving_the_elements_quarters_the_error() {
     let resolutions = [40, 80, 160, 320]; // coarser meshes do not resolve the second transverse mode
     let sizes = resolutions.map(|n| 1.0 / n as f64);

@@ -237,6 +237,7 @@ fn twist_and_slacken(scene: &Scene) -> Result<Simulation, String> {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_twisted_rod_drawn_in_leaves_its_plane_and_its_energy_balance_closes() {
     for (elements, turns) in [(40, 2.0), (80, 4.0)] {
         let end = twist_and_slacken(&balanced(hockle(elements, turns))).unwrap();
@@ -317,6 +318,7 @@ fn dropped(elements: usize, keys: &str) -> Vector3<f64> {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_beam_that_drops_to_the_seabed_finds_the_same_rest_on_every_mesh() {
     let turned = "mass = 10.0, free = ['x', 'z'], moment = { z = -80.0 }";
     for keys in [turned, "mass = 10.0, moment = { z = -80.0 }", "mass = 10.0"] {

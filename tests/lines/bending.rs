@@ -738,6 +738,7 @@ fn driven(integrator: Integrator, step: f64) -> [Vec<Vector3<f64>>; 2] {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_driven_cable_moves_alike_in_all_integrators() {
     let implicit = driven(Integrator::GeneralisedAlpha, 0.01);
     for integrator in [Integrator::AxialImplicit, Integrator::Leapfrog] {

@@ -193,6 +193,17 @@ fn a_viscoelastic_rope_rests_as_one_of_its_static_stiffness_does_and_stays_there
     }
 }
 
+#[test]
+fn a_viscoelastic_rope_that_should_push_in_implicit_steps_is_refused() {
+    for integrator in INTEGRATORS {
+        let mut scene = with_integrator(rope(VISCOELASTIC, 203.0, ""), integrator, 0.05);
+        scene.solver.negative_tension = true;
+        let implicit = [Integrator::GeneralisedAlpha, Integrator::Bossak].contains(&integrator);
+        let problem = scene.check().err().map(|error| error.to_string());
+        assert_eq!(problem.is_some(), implicit, "{integrator:?}: {problem:?}");
+    }
+}
+
 /// A light rope that is stretched cyclically at a circular frequency [rad/s] about a strain of 2 %.
 fn stretched(integrator: Integrator, omega: f64, step: f64) -> Simulation {
     let sway = format!("fairlead = {{ x = [[0.4, {}]] }}", 2.0 * PI / omega);

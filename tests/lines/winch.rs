@@ -78,6 +78,33 @@ fn a_hoisted_weight_and_its_rope_weigh_what_they_weigh_and_their_inertia() {
     assert_eq!(fewest, 14);
 }
 
+#[test]
+fn a_rope_that_stands_still_below_a_heaving_winch_has_the_force_of_its_weight() {
+    let rope = draft(
+        "water = { density = 1025.0 }
+        line_types.rope = { mass = 30.0, diameter = 0.15, axial_stiffness = 1.0e7, axial_damping = 1.0e5, drag_tangential = 0.5 }",
+    )
+    .fixed("anchor", [0.0, 0.0, -60.0])
+    .coupled("deck", [0.0, 0.0, -10.0])
+    .line("rope", ["anchor", "deck"], "rope", 49.9, 5)
+    .with(WINCH);
+    let mut scene = with_integrator(rope.scene(), Integrator::Leapfrog, 2e-3);
+    scene.solver.input_reconstruction = Reconstruction::Interpolate;
+    let mut simulation = start(&scene);
+    let (rest, stretch) = (simulation.tension_b(0), 1.0 + simulation.tension_b(0) / 1.0e7);
+    let submerged = (30.0 - 1025.0 * std::f64::consts::PI * 0.15 * 0.15 / 4.0) * G;
+    let mut worst: f64 = 0.0;
+    for step in 1..=240 {
+        let heave = 2.0 * (0.04 * f64::from(step)).sin().powi(3);
+        simulation.set_displacement(1, [0.0, 0.0, heave]);
+        simulation.set_length_change(0, heave / stretch);
+        simulation.advance(0.05).unwrap();
+        worst = worst.max((simulation.tension_b(0) - rest - submerged * heave).abs());
+    }
+    // 1600 N with the drag of the half element at the velocity of the deck
+    assert!(worst < 0.01 * rest, "{worst} N of {rest} N");
+}
+
 /// The chain of 25 elements at rest after a length change [m] by its winch.
 fn at_rest_after(change: f64) -> Simulation {
     let mut simulation = chain(100.0, 25).with(WINCH).start();

@@ -189,6 +189,20 @@ fn soundings_above_the_water_are_refused_by_file_and_place() {
     let place = "seabed.csv: the depth at x = 0 m, y = 0 m is -50 m, above the water: depths count downwards";
     assert_says(&error, &[said, place]);
     assert!(load("y/x, 0, 200\n0, 50, 60\n").is_ok());
+    let error = load("x/y, 0, 200\n0, 50, 60\n").unwrap_err().list();
+    assert_says(&error, &["line 1: \"x/y\" has x downwards"]);
+}
+
+#[test]
+fn a_row_of_a_current_among_its_headings_is_refused() {
+    let folder = tempdir().unwrap();
+    let current = "density = 1025.0\ncurrent = { file = \"current.txt\" }";
+    let text = SCENE.replace("density = 1025.0", current);
+    fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let rows = "current\n(m) (m/s) (m/s) (m/s)\n0 0.5 0 0\n-50 0.1 0 0\n";
+    fs::write(folder.path().join("current.txt"), rows).unwrap();
+    let error = load(&folder.path().join("scene.toml")).unwrap_err().list();
+    assert_says(&error, &["line 3: this row would be skipped"]);
 }
 
 #[test]

@@ -258,6 +258,7 @@ fn system(integrator: Integrator) -> Scene {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn lines_at_rest_in_a_current_stay_at_rest_for_ten_minutes() {
     let risers = INTEGRATORS.map(|integrator| with_integrator(riser(16, SHEARED), integrator, 0.02));
     for scene in risers.into_iter().chain(JOINED.map(system)) {

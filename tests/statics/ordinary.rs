@@ -10,7 +10,7 @@
 //! Every line has a number and is reproducible. A part of the long run, or a single line:
 //!
 //! ```text
-//! LINES=120..121 cargo test --release --features moorline/slow-tests --test statics -- --nocapture ordinary::ten_thousand
+//! LINES=120..121 cargo test --release --test statics -- --ignored --nocapture ordinary::ten_thousand
 //! ```
 
 use std::ops::Range;
@@ -242,8 +242,8 @@ fn long_run() -> Range<u64> {
 }
 
 #[test]
-fn three_hundred_random_lines_with_friction_find_their_equilibrium() {
-    claim(0..300, Line::rough);
+fn a_hundred_random_lines_with_friction_find_their_equilibrium() {
+    claim(0..100, Line::rough);
 }
 
 /// On these lines, the minimisation stalls if nodes stick with their full stiffness from the start.
@@ -261,12 +261,24 @@ fn a_hundred_random_slack_floating_ropes_find_their_equilibrium() {
 
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn two_thousand_random_lines_with_friction_find_their_equilibrium() {
+    claim(0..2_000, Line::rough);
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn two_thousand_random_slack_floating_ropes_find_their_equilibrium() {
+    claim(0..2_000, Line::floating);
+}
+
+#[test]
+#[ignore = "takes minutes"]
 fn ten_thousand_random_lines_with_friction_find_their_equilibrium() {
     claim(long_run(), Line::rough);
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+#[ignore = "takes minutes"]
 fn ten_thousand_random_slack_floating_ropes_find_their_equilibrium() {
     claim(long_run(), Line::floating);
 }

@@ -51,6 +51,18 @@ fn a_motion_file_moves_the_vessel_of_a_deck_for_as_long_as_it_lasts() {
 }
 
 #[test]
+fn a_run_does_not_write_over_the_motion_that_it_reads() {
+    let folder = driven(OPENFAST, "");
+    let motion = heave_and_pitch("time,x,y,z,roll,pitch,yaw", 4.0);
+    folder.write("results.csv", &motion);
+    folder.refused(
+        "run deck.txt -o . --motion results.csv",
+        &["results.csv is the file that is read"],
+    );
+    assert_eq!(folder.read("results.csv"), motion);
+}
+
+#[test]
 fn regular_motion_of_a_deck_is_that_of_a_scene_that_says_it() {
     let moved = "--move vessel.x=1.5,8 --move vessel.pitch=0.02,6,0.5 --ramp 3 --duration 4";
     let by_flag = run(OPENFAST, "", moved);

@@ -1,6 +1,7 @@
 //! Access to the variables of an instance: the host reads results, and sets inputs and parameters.
 
 use moorline::interface::{Binding, Causality, INPUT_MAX, Interface, Kind, Variable};
+use moorline::scene::Note;
 
 use super::{Instance, Outcome, Refusal};
 use crate::saved::Phase;
@@ -177,7 +178,10 @@ impl Instance {
             self.inputs.write(variable, own, steps);
             let acts_at_start = matches!(
                 variable.binding,
-                Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Flow { .. }
+                Binding::Displacement { .. }
+                    | Binding::LengthChange { .. }
+                    | Binding::Flow { .. }
+                    | Binding::Release { .. }
             );
             if acts_at_start && self.phase == Phase::Initialization {
                 self.simulation = None;
@@ -234,7 +238,7 @@ impl Instance {
         if references.len() != values.len() {
             return Err(self.wrong_count(references, values.len()));
         }
-        let mut targets = Vec::with_capacity(references.len());
+        let (mut targets, mut unused) = (Vec::with_capacity(references.len()), Vec::new());
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
             let variable = Self::typed(&self.interface, Kind::Float64, reference)?;
             let named = |problem: String| Refusal(format!("{}: {problem}", variable.name));
@@ -250,11 +254,18 @@ impl Instance {
             match variable.binding {
                 // The rates of roll, pitch and yaw are not the angular velocity, which the path through the poses defines.
                 Binding::Displacement { body, axis } if axis < 3 => targets.push((body, axis, value)),
+                Binding::Displacement { .. } | Binding::LengthChange { .. } => {
+                    unused.push(variable.name.clone());
+                }
                 _ => {}
             }
         }
         for (body, axis, value) in targets {
             self.inputs.write_velocity(body, axis, value, true);
+        }
+        for name in unused {
+            let text = "time derivatives of angles and of paid-out lengths are not used: give angular velocities in their place";
+            self.warn_once(Note::new(name, text));
         }
         Ok(())
     }

@@ -58,6 +58,9 @@ impl Instance {
                 "outputs have derivatives of order 1, not of order {order}"
             )));
         }
+        if self.phase == Phase::Initialization {
+            self.solve_statics()?;
+        }
         let rows = self.outputs(references, values.len())?;
         let simulation = self.simulation.as_ref().ok_or(NO_SIMULATION)?;
         values.copy_from_slice(&Interface::rates(&rows, simulation)?);

@@ -1,8 +1,8 @@
 //! Communication steps in parts: between parts, an FMI 3.0 host reads outputs, sets inputs and may end the step.
 //!
 //! Source: FMI 3.0.2 section 4.2.2, intermediate update mode and early return. A step longer than the output interval of the scene is divided into
-//! equal parts no longer than this interval. The host must have announced all displacements and, if it sets the water flow, all flow inputs:
-//! otherwise, a body that it does not move between parts would be at rest there. A step is not divided if the inputs refer to its end.
+//! equal parts no longer than this interval. The host must have announced all displacements and paid-out lengths, the velocities that it gives, and
+//! all flow inputs if there are any: otherwise, a body that it does not move between parts would be at rest there. A step is not divided if the inputs refer to its end.
 
 use moorline::interface::{Binding, Interface};
 use moorline::scene::Reconstruction;
@@ -38,16 +38,23 @@ impl Parts {
 }
 
 impl Instance {
-    /// Records the variables that the host accesses within steps; its callback is used if they include all displacements and flow inputs.
+    /// Records the variables that the host accesses within steps.
     pub(crate) fn announce(&mut self, references: &[u32]) {
+        self.announced = references.to_vec();
+    }
+
+    /// Returns whether the host updates all inputs that change within a step.
+    fn is_updated(&self) -> bool {
+        let changes = |binding: &Binding| match *binding {
+            Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Flow { .. } => true,
+            Binding::Velocity { body, axis } => self.inputs.given().body(body).velocity[axis].is_some(),
+            _ => false,
+        };
         let mut rows = self.interface.variables().iter().enumerate();
-        self.is_updated = !references.is_empty()
+        !self.announced.is_empty()
             && rows.all(|(index, variable)| {
-                !matches!(
-                    variable.binding,
-                    Binding::Displacement { .. } | Binding::Flow { .. }
-                ) || references.contains(&Interface::reference(index))
-            });
+                !changes(&variable.binding) || self.announced.contains(&Interface::reference(index))
+            })
     }
 
     /// Divides the communication step of `length` [s] that begins at `start` [s].
@@ -56,10 +63,11 @@ impl Instance {
     /// Refused during an update by the host.
     pub(crate) fn divide(&self, start: f64, length: f64) -> Result<Parts, Refusal> {
         self.expect_no_update()?;
-        let divides = self.is_updated
-            && self.phase == Phase::Step
-            && self.scene.solver.input_reconstruction != Reconstruction::Interpolate;
         let parts = (length / self.scene.output.interval - ROUNDING).ceil();
+        let divides = parts > 1.0
+            && self.phase == Phase::Step
+            && self.scene.solver.input_reconstruction != Reconstruction::Interpolate
+            && self.is_updated();
         let count = match divides {
             true if parts.is_finite() => parts.clamp(1.0, PARTS_MAX) as u32,
             _ => 1,

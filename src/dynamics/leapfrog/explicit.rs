@@ -10,7 +10,8 @@
 //!
 //! Stage 4 is part of the loop of stage 3 unless the energy balance is evaluated between them.
 //!
-//! The scheme needs one force evaluation per step. It is of second order, and stable below [`crate::dynamics::limit::explicit_limit`] for any seabed.
+//! The scheme needs one force evaluation per step. It is of second order, with axial damping of first order since its rate of strain is that at
+//! t_{n−½}, and stable below [`crate::dynamics::limit::explicit_limit`] for any seabed.
 //!
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact as in `leapfrog/contact`.

@@ -32,6 +32,13 @@ fn check_solver(scene: &Scene, findings: &mut Findings) {
                 "the integrator is \"{word}\", and a spectral radius belongs to \"generalised_alpha\" and \"axial_implicit\"";
         }
     }
+    let implicit = [Integrator::GeneralisedAlpha, Integrator::Bossak].contains(&integrator);
+    let mut types = scene.sections().filter_map(|section| scene.type_of(section));
+    let viscoelastic = types.any(|kind| kind.dynamic_stiffness.is_some());
+    rules! { findings, "solver";
+        "negative_tension" if solver.negative_tension && implicit && viscoelastic =>
+            "with the integrator \"{word}\", viscoelastic ropes do not push: leave this out, or use \"axial_implicit\"";
+    }
     if let Some(bossak) = &solver.bossak {
         rules! { findings, "solver.bossak";
             "" if integrator != Integrator::Bossak =>

@@ -40,6 +40,7 @@ fn snaps_after_slack_peak_as_in_a_converged_run() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn ten_times_the_damping_and_none_keep_the_energy_balance() {
     for integrator in INTEGRATORS {
         for (damping, balance, steps) in [(10.0, 1e-2, 9000.0), (0.0, 6e-2, 1300.0)] {
@@ -52,6 +53,7 @@ fn ten_times_the_damping_and_none_keep_the_energy_balance() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn undamped_ropes_that_slacken_gain_no_energy() {
     for elements in [20, 40, 80] {
         for integrator in INTEGRATORS {
@@ -97,6 +99,7 @@ fn a_fairlead_that_jumps_by_a_metre_leaves_a_line_that_settles() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn resonance_at_the_axial_frequency_is_limited_as_in_a_damped_rod() {
     let omega = rod_frequency();
     for integrator in INTEGRATORS {
