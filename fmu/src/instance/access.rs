@@ -264,7 +264,8 @@ impl Instance {
             self.inputs.write_velocity(body, axis, value, true);
         }
         for name in unused {
-            let text = "time derivatives of angles and of paid-out lengths are not used: give angular velocities in their place";
+            let text =
+                "its time derivative is not used, since the path through the communication points defines it";
             self.warn_once(Note::new(name, text));
         }
         Ok(())

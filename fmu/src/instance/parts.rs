@@ -2,7 +2,8 @@
 //!
 //! Source: FMI 3.0.2 section 4.2.2, intermediate update mode and early return. A step longer than the output interval of the scene is divided into
 //! equal parts no longer than this interval. The host must have announced all displacements and paid-out lengths, the velocities that it gives, and
-//! all flow inputs if there are any: otherwise, a body that it does not move between parts would be at rest there. A step is not divided if the inputs refer to its end.
+//! all flow inputs if there are any: otherwise, a body that it does not move between parts would be at rest there. A step is not divided if the
+//! inputs refer to its end.
 
 use moorline::interface::{Binding, Interface};
 use moorline::scene::Reconstruction;

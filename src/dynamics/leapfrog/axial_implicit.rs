@@ -16,9 +16,9 @@
 //! with S the tension of the springs as if they also pushed, C that of the dampers over the step, b₁ = σ/N the weight of T^{n+1}, and h_i those of
 //! the earlier tensions. Dampers pull before segments are taut, and max(0, S + C) is averaged: a spring in compression is included if the damper
 //! pulls more. (Averaging max(0, S) and adding C would tend to b₁S + C there, even in short steps.) θ = 0.2 min(1, r/4), where
-//! r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) is the stiffness of the dampers over a step: of second order for r < 4, and without ringing of stiffer dampers,
-//! whose force then leads by 0.1 Δt. A row is
-//! inactive if its total would be negative. Eliminating v with the momentum equations of the nodes leaves one scalar tridiagonal system in T̄.
+//! r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) is the stiffness of the dampers over a step: of second order for r < 4, and without ringing of stiffer
+//! dampers, whose force then leads by 0.1 Δt. A row is inactive if its total would be negative. Eliminating v with the momentum equations of the
+//! nodes leaves one scalar tridiagonal system in T̄.
 //!
 //! A segment of a line that bends carries a compression of up to P ([`super::joints`]). Its tensions S, T and T̄ are measured from −P, and −P q acts on
 //! the nodes together with the forces of the joints. Since the weights sum to one, this is equivalent to a spring of a different length.
@@ -42,8 +42,8 @@
 //! processor then overlaps the latencies of roots, quotients and sums of several rows, and the compiler vectorises the sweep, which it cannot
 //! do where values depend on the previous row.
 //!
-//! The scheme is of second order in the step, except for that lead. The remaining error of the tension is that of the axial waves from a line that snaps taut. In steps much
-//! longer than their periods, these waves are delayed by (ωΔt)²/12, as with every second-order scheme that is stable for any ωΔt. They extend to
+//! The scheme is of second order in the step, except for that lead. The remaining error of the tension is that of the axial waves from a line that
+//! snaps taut. In steps much longer than their periods, these waves are delayed by (ωΔt)²/12, as with every second-order scheme that is stable for any ωΔt. They extend to
 //! frequencies at which the delay is a full turn, so that the RMS error decreases with Δt^1.2 to Δt^1.6.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
