@@ -66,8 +66,8 @@ impl HostInputs {
     pub fn set_body(&mut self, body: Body, input: BodyInput) {
         let before = self.given.body(body).displacement;
         let written = &mut self.velocities[self.given.place(body)];
-        for axis in 0..6 {
-            written.has_moved[axis] |= input.displacement[axis] != before[axis];
+        for (axis, before) in before.iter().enumerate() {
+            written.has_moved[axis] |= input.displacement[axis] != *before;
         }
         written.value = input.velocity.map(|velocity| velocity.unwrap_or(0.0));
         written.is_given = input.velocity.map(|velocity| velocity.is_some());
