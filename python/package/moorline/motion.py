@@ -32,7 +32,7 @@ def columns(motion: Any) -> dict[str, NDArray[np.float64]]:
 
 
 def _numbers(name: str, values: Any) -> NDArray[np.float64]:
-    kind = getattr(getattr(values, "dtype", None), "kind", None)
+    kind = str(getattr(getattr(values, "dtype", None), "kind", ""))
     if kind in ("m", "M", "c") or np.ma.is_masked(values):
         what = {"m": "durations", "M": "dates", "c": "complex numbers"}.get(kind, "masked numbers")
         raise InputError(f"{name}: {what} are no numbers of a motion: give times in seconds, displacements and rates", place=name)
