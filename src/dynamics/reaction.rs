@@ -208,14 +208,19 @@ impl<'a> HalfNode<'a> {
         force
     }
 
-    /// Chord from the end to the next node [m], its direction [-], and the pull of the end segment including shear [N].
-    fn pull(&self) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
+    /// Segment at the end, and its chord from the end to the next node [m].
+    fn chord(&self) -> (usize, Vector3<f64>) {
         let position = &self.at.state.position;
         let (segment, other) = match self.at.end {
             End::A => (0, 1),
             End::B => (self.node - 1, self.node - 1),
         };
-        let chord = position[other] - position[self.node];
+        (segment, position[other] - position[self.node])
+    }
+
+    /// Chord from the end to the next node [m], its direction [-], and the pull of the end segment including shear [N].
+    fn pull(&self) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
+        let (segment, chord) = self.chord();
         let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         (chord, inward, self.along(segment, inward))
     }
@@ -244,7 +249,7 @@ impl<'a> HalfNode<'a> {
         pull + shear(line, nodes, segment, at, self.at.moments)
     }
 
-    /// Velocity of the material at the end [m/s]: on a winch, it differs from that of the point by the line that is paid out.
+    /// Velocity of the material at the end [m/s], which on a winch is that of the line as it passes.
     fn velocity(&self) -> Vector3<f64> {
         let LineEnd {
             line,
@@ -255,8 +260,8 @@ impl<'a> HalfNode<'a> {
         } = self.at;
         match (state.winch_state, end) {
             (Some(winch_state), End::B) => {
-                let (inward, _, _) = self.pull();
-                point.velocity + winch_state.rate / line.segments.length[self.node - 1] * inward
+                let (segment, chord) = self.chord();
+                point.velocity + winch_state.rate / line.segments.length[segment] * chord
             }
             _ => point.velocity,
         }

@@ -30,28 +30,29 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
         })
     };
     let knowns: Vec<Known> = variables.iter().enumerate().filter_map(known).collect();
-    let mut known_scopes: BTreeMap<(BTreeSet<usize>, Of), Vec<u32>> = BTreeMap::new();
+    let mut known_scopes: BTreeMap<(BTreeSet<usize>, Subject), Vec<u32>> = BTreeMap::new();
     for variable in &mut *variables {
-        let (lines, of) = match &variable.binding {
-            Binding::EndForce { body, .. } => (networks_of(model, attached_to(*body)), Of::ForceOn(*body)),
-            Binding::Interface { body, .. } => (networks_of(model, attached_to(*body)), Of::Step),
+        let (lines, subject) = match &variable.binding {
+            Binding::EndForce { body, .. } => {
+                (networks_of(model, attached_to(*body)), Subject::ForceOn(*body))
+            }
+            Binding::Interface { body, .. } => (networks_of(model, attached_to(*body)), Subject::Step),
             Binding::Line { line, result } if result.is_catenary() => {
-                (BTreeSet::from([*line]), Of::ClosedForm)
+                (BTreeSet::from([*line]), Subject::ClosedForm)
             }
             Binding::Line { line, .. } | Binding::Profile { line, .. } | Binding::FlowPlace { line, .. } => {
-                (networks_of(model, [*line]), Of::Lines)
+                (networks_of(model, [*line]), Subject::Lines)
             }
             _ => continue,
         };
         variable.initial_dependencies = known_scopes
-            .entry((lines, of))
-            .or_insert_with_key(|(lines, of)| {
+            .entry((lines, subject))
+            .or_insert_with_key(|(lines, subject)| {
                 let scope = Scope {
                     scene,
                     model,
                     lines,
-                    of: *of,
-                    closed_form: *of == Of::ClosedForm,
+                    subject: *subject,
                 };
                 let of_scope = knowns.iter().filter(|known| scope.depends_on(known));
                 of_scope.map(|known| known.reference).collect()
@@ -166,7 +167,7 @@ struct Known {
 
 /// What a variable describes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Of {
+enum Subject {
     /// The equilibrium of lines.
     Lines,
     /// The force on a body, with that of its own points.
@@ -182,18 +183,21 @@ struct Scope<'a> {
     scene: &'a Scene,
     model: &'a Model,
     lines: &'a BTreeSet<usize>,
-    of: Of,
-    closed_form: bool,
+    subject: Subject,
 }
 
 impl Scope<'_> {
+    fn is_closed_form(&self) -> bool {
+        self.subject == Subject::ClosedForm
+    }
+
     fn depends_on(&self, known: &Known) -> bool {
         match &known.binding {
             Binding::Displacement { .. } => {
-                !self.closed_form && known.moves.iter().any(|line| self.lines.contains(line))
+                !self.is_closed_form() && known.moves.iter().any(|line| self.lines.contains(line))
             }
-            Binding::LengthChange { line } => !self.closed_form && self.lines.contains(line),
-            Binding::Release { line } => self.of == Of::Step && self.lines.contains(line),
+            Binding::LengthChange { line } => !self.is_closed_form() && self.lines.contains(line),
+            Binding::Release { line } => self.subject == Subject::Step && self.lines.contains(line),
             Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
             _ => false,
         }
@@ -206,7 +210,7 @@ impl Scope<'_> {
                 self.types().any(|used| used == name) && self.depends_on_property(name, key)
             }
             (Place::Section { line, .. }, _) => self.lines.contains(line),
-            (Place::Water | Place::Scene, _) if self.of == Of::Step => true,
+            (Place::Water | Place::Scene, _) if self.subject == Subject::Step => true,
             (Place::Water, _) => {
                 self.types()
                     .any(|name| self.is_buoyant(name) || self.is_pushed(name))
@@ -224,7 +228,7 @@ impl Scope<'_> {
                         .any(|point| point.mass.is_some() || point.volume.is_some())
             }
             (Place::Solver, "tolerance") => {
-                !self.closed_form
+                !self.is_closed_form()
                     && scene.solver.elements.is_none()
                     && self.lines.iter().any(|&line| scene.lines[line].is_open())
             }
@@ -234,7 +238,7 @@ impl Scope<'_> {
 
     fn depends_on_property(&self, name: &str, key: &str) -> bool {
         match (LineType::SCHEMA.key(key).map(|key| key.rule.acts), key) {
-            _ if self.of == Of::Step => true,
+            _ if self.subject == Subject::Step => true,
             (Some(Acts::InMotion), _) => false,
             (Some(Acts::InFlow), _) => self.flows(),
             (Some(Acts::InAccelerations), _) => self.is_in_waves(),
@@ -242,9 +246,9 @@ impl Scope<'_> {
             (_, "diameter") => {
                 self.is_buoyant(name)
                     || self.is_pushed(name)
-                    || (self.scene.seabed.is_some() && !self.closed_form)
+                    || (self.scene.seabed.is_some() && !self.is_closed_form())
             }
-            (_, "bending_stiffness" | "shear_stiffness" | "torsional_stiffness") => !self.closed_form,
+            (_, "bending_stiffness" | "shear_stiffness" | "torsional_stiffness") => !self.is_closed_form(),
             _ => true,
         }
     }
@@ -260,12 +264,12 @@ impl Scope<'_> {
     /// Returns whether the water moves; closed forms are for still water.
     fn flows(&self) -> bool {
         let water = self.scene.water.as_ref();
-        !self.closed_form && water.is_some_and(|water| water.current.is_some() || water.accelerates())
+        !self.is_closed_form() && water.is_some_and(|water| water.current.is_some() || water.accelerates())
     }
 
     fn is_in_waves(&self) -> bool {
         let water = self.scene.water.as_ref();
-        !self.closed_form && water.is_some_and(Water::accelerates)
+        !self.is_closed_form() && water.is_some_and(Water::accelerates)
     }
 
     /// Returns whether moving water exerts a force on a line type.
@@ -276,7 +280,7 @@ impl Scope<'_> {
     /// Returns whether a line may come out of the water; in closed forms, no line does.
     fn emerges(&self) -> bool {
         let mut lines = self.lines.iter();
-        !self.closed_form && lines.any(|&line| self.model.lines[line].surface.is_some())
+        !self.is_closed_form() && lines.any(|&line| self.model.lines[line].surface.is_some())
     }
 
     /// Line types that the lines use.
@@ -291,11 +295,11 @@ impl Scope<'_> {
     fn points(&self) -> impl Iterator<Item = &crate::scene::Point> {
         let networks = self.model.networks.iter().filter(|network| {
             let mut lines = network.lines.iter();
-            !self.closed_form && lines.any(|line| self.lines.contains(line))
+            !self.is_closed_form() && lines.any(|line| self.lines.contains(line))
         });
         let free = networks.flat_map(|network| &network.free_points).copied();
-        let own = (0..self.model.points.len()).filter(|&point| match self.of {
-            Of::ForceOn(body) => self.model.moves_with(point, body),
+        let own = (0..self.model.points.len()).filter(|&point| match self.subject {
+            Subject::ForceOn(body) => self.model.moves_with(point, body),
             _ => false,
         });
         free.chain(own).map(|point| &self.scene.points[point])

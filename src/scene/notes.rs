@@ -187,7 +187,7 @@ fn note_point((scene, names): (&Scene, &Names), at: &str, point: &Point, notes: 
         "force" if point.force.is_some() && point.kind != PointKind::Free =>
             "a force on a point that is not free changes only the reaction of its support";
         "" if point.kind == PointKind::Prescribed && (point.mass.is_some() || point.volume.is_some()) =>
-            "mass and volume of a prescribed point change only the reaction of its support, which only channels show";
+            "the mass and volume of a prescribed point change only the reaction of its support, which a run reports in channels alone";
     }
 }
 

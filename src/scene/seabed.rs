@@ -57,7 +57,7 @@ table! {
 choice! {
     /// Use of the seabed's stiffness and damping at the nodes.
     pub enum ContactLaw {
-        /// Both are reduced until a node at rest compresses its spring by a small fraction of its segment length; a line at rest lies half of that below the seabed, at which its suspended part is most accurate. The damper keeps a fraction of critical damping if the given one has as much.
+        /// Both are reduced until a node at rest compresses its spring by a small fraction of its segment length; a line at rest lies half of that below the seabed, where its suspended part is most accurate. The damper keeps a fraction of critical damping if the given one has as much.
         Regularised = "regularised",
         /// The given coefficients.
         AsGiven = "as_given",

@@ -58,7 +58,7 @@ pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
     for (number, heading) in (1..).zip(text.lines().take(CURRENT_HEAD)) {
         if is_row(heading) {
             return Err(format!(
-                "{}, line {number}: this row would be skipped: three lines of headings come before the first row",
+                "{}, line {number}: this row of numbers is among the three lines of headings, which are skipped: write three headings above the first row",
                 path.display()
             ));
         }

@@ -193,27 +193,29 @@ fn soundings_above_the_water_are_refused_by_file_and_place() {
     assert_says(&error, &["line 1: \"x/y\" has x downwards"]);
 }
 
-#[test]
-fn a_row_of_a_current_among_its_headings_is_refused() {
+/// Loads the scene with the current of a file that has these lines.
+fn load_with_current(lines: &str) -> Result<LoadedScene, LoadError> {
     let folder = tempdir().unwrap();
     let current = "density = 1025.0\ncurrent = { file = \"current.txt\" }";
     let text = SCENE.replace("density = 1025.0", current);
     fs::write(folder.path().join("scene.toml"), text).unwrap();
-    let rows = "current\n(m) (m/s) (m/s) (m/s)\n0 0.5 0 0\n-50 0.1 0 0\n";
-    fs::write(folder.path().join("current.txt"), rows).unwrap();
-    let error = load(&folder.path().join("scene.toml")).unwrap_err().list();
-    assert_says(&error, &["line 3: this row would be skipped"]);
+    fs::write(folder.path().join("current.txt"), lines).unwrap();
+    load(&folder.path().join("scene.toml"))
+}
+
+#[test]
+fn a_row_of_a_current_among_its_headings_is_refused() {
+    let lines = "current\n(m) (m/s) (m/s) (m/s)\n0 0.5 0 0\n-50 0.1 0 0\n";
+    let error = load_with_current(lines).unwrap_err().list();
+    assert_says(
+        &error,
+        &["line 3: this row of numbers is among the three lines of headings"],
+    );
 }
 
 #[test]
 fn a_note_on_what_stands_in_a_file_names_the_key_of_the_file() {
-    let folder = tempdir().unwrap();
-    let current = "density = 1025.0\ncurrent = { file = \"current.txt\" }";
-    let text = SCENE.replace("density = 1025.0", current);
-    fs::write(folder.path().join("scene.toml"), text).unwrap();
-    let rows = "a\nb\n(m) (m/s) (m/s) (m/s)\n0 0.5 0 0\n-50 50 0 0\n";
-    fs::write(folder.path().join("current.txt"), rows).unwrap();
-    let loaded = load(&folder.path().join("scene.toml")).unwrap();
+    let loaded = load_with_current("a\nb\n(m) (m/s) (m/s) (m/s)\n0 0.5 0 0\n-50 50 0 0\n").unwrap();
     let note = loaded
         .notes
         .iter()

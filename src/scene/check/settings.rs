@@ -37,7 +37,7 @@ fn check_solver(scene: &Scene, findings: &mut Findings) {
     let viscoelastic = types.any(|kind| kind.dynamic_stiffness.is_some());
     rules! { findings, "solver";
         "negative_tension" if solver.negative_tension && implicit && viscoelastic =>
-            "with the integrator \"{word}\", viscoelastic ropes do not push: leave this out, or use \"axial_implicit\"";
+            "with the integrator \"{word}\", viscoelastic ropes carry no negative tension: leave this out, or use \"axial_implicit\"";
     }
     if let Some(bossak) = &solver.bossak {
         rules! { findings, "solver.bossak";

@@ -215,7 +215,7 @@ fn profile_in_words(rows: &[[f64; 3]]) -> String {
 fn seabed_in_words(seabed: &Seabed, under_beams: bool) -> String {
     let law = match seabed.contact {
         ContactLaw::Regularised => {
-            "both reduced on coarse meshes, where up to 0.2 of critical damping is kept; lines at rest lie 1.5 % of an element below the seabed"
+            "both reduced on coarse meshes, where up to 0.2 of critical damping is kept; lines at rest lie up to 1.5 % of an element below the seabed"
         }
         ContactLaw::AsGiven => "used as given",
         ContactLaw::AtNodes => "used as given, at the nodes only",
