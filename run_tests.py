@@ -17,6 +17,7 @@ python_tests/requirements.txt and python/requirements.txt name. Arguments are pa
 the same.
 """
 
+import concurrent.futures
 import hashlib
 import json
 import os
@@ -42,20 +43,15 @@ class Failure(Exception):
     """A step without which the others mean nothing."""
 
 
-def start(*command, **environment):
-    """Starts a command in the repository, and shows it."""
+def run(*command, log=None, **environment):
+    """Runs a command in the repository, shows it here or in a log, and says whether it succeeded."""
     words = [str(word) for word in command]
-    print("\n$", " ".join(words), flush=True)
-    return subprocess.Popen(words, cwd=ROOT, env={**os.environ, **environment}, stdin=subprocess.DEVNULL)
-
-
-def run(*command, **environment):
-    """Runs a command in the repository, shows it, and says whether it succeeded."""
+    print("\n$", " ".join(words), file=log, flush=True)
     began = time.monotonic()
-    with start(*command, **environment) as process:
-        succeeded = process.wait() == 0
-    print(f"({time.monotonic() - began:.0f} s)", flush=True)
-    return succeeded
+    streams = {"stdin": subprocess.DEVNULL, "stdout": log, "stderr": log and subprocess.STDOUT}
+    done = subprocess.run(words, cwd=ROOT, env={**os.environ, **environment}, **streams)
+    print(f"({time.monotonic() - began:.0f} s)", file=log, flush=True)
+    return done.returncode == 0
 
 
 def must(*command, **environment):
@@ -107,16 +103,22 @@ def libclang(interpreter):
     return settings
 
 
-def test_wheel(interpreter, built, arguments):
+def test_wheel(interpreter, built, arguments, log):
     """Packs the wheel of the Python package around what cargo built, installs it into .venv and runs its tests; returns whether they passed."""
     with tempfile.TemporaryDirectory() as folder:
-        if not run(interpreter, ROOT / "python" / "build.py", "--built", built, "-o", folder):
+        if not run(interpreter, ROOT / "python" / "build.py", "--built", built, "-o", folder, log=log):
             return False
         (wheel,) = pathlib.Path(folder).glob("*.whl")
         quiet = ["--quiet", "--disable-pip-version-check"]
-        if not run(interpreter, "-m", "pip", "install", *quiet, "--no-deps", "--no-index", "--force-reinstall", wheel):
+        if not run(interpreter, "-m", "pip", "install", *quiet, "--no-deps", "--no-index", "--force-reinstall", wheel, log=log):
             return False
-    return run(interpreter, "-m", "pytest", "python/tests", *arguments)
+    return run(interpreter, "-m", "pytest", "python/tests", *arguments, log=log)
+
+
+def test_python(interpreter, built, program, arguments, log):
+    """Runs all tests in Python; returns whether those of the FMUs and those of the package passed."""
+    of_fmus = run(interpreter, "-m", "pytest", "python_tests", *arguments, log=log, MOORLINE=str(program))
+    return of_fmus, test_wheel(interpreter, built, arguments, log)
 
 
 def run_all(arguments):
@@ -128,14 +130,18 @@ def run_all(arguments):
     settings = {**libclang(interpreter), **module, "MOORLINE": str(program)}
     # Programs, tests and bench in one build: dependencies of the tests add features to those of the library, which would then be built twice.
     must("cargo", "build", "--release", *EVERYTHING, "--lib", "--bins", "--test", "*", "--bench", "instructions", **settings)
-    # The unit tests of the library are one unit of code, which takes one thread for minutes: pytest has the other one.
-    with start("cargo", "build", "--quiet", "--release", *EVERYTHING, "--tests", **settings):
-        pytest = run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program))
-    # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
+    with concurrent.futures.ThreadPoolExecutor() as aside, tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
+        # Beside those in Rust, which use one core for minutes: the unit tests of the library are one unit of code, and some tests run alone.
+        tests = aside.submit(test_python, interpreter, built, program, arguments, log)
+        # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
+        rust = run("cargo", "test", "--release", *EVERYTHING, "--no-fail-fast", **settings)
+        of_fmus, of_package = tests.result()
+        log.seek(0)
+        sys.stdout.write(log.read())
     passed = {
-        "pytest": pytest,
-        "cargo test": run("cargo", "test", "--release", *EVERYTHING, "--no-fail-fast", **settings),
-        "pytest of the Python package": test_wheel(interpreter, built, arguments),
+        "cargo test": rust,
+        "pytest": of_fmus,
+        "pytest of the Python package": of_package,
         "instructions": run("cargo", "bench", *EVERYTHING, "--bench", "instructions", **settings),
     }
     return [name for name, passed in passed.items() if not passed]

@@ -65,7 +65,7 @@ pub(crate) enum Command {
         /// Drive the run as a host does: set the motion at every multiple of H [s], step by H and write a row. With input_reconstruction = "interpolate" the motion is that at the end of the step
         #[arg(long, value_name = "H", value_parser = positive_number)]
         communication_step: Option<f64>,
-        /// Set velocities as well as displacements
+        /// With --communication-step, set velocities as well as displacements
         #[arg(long, requires = "communication_step")]
         velocities: bool,
         /// Continue the interrupted run in DIR from its saved state, to the same rows as an uninterrupted run

@@ -1,5 +1,5 @@
-//! Folder into which a command writes: created and tested before any work, and removed again if it stays empty. Also the message on the results that
-//! an interrupted command leaves.
+//! Folder into which a command writes: created, tested and locked before any work, and removed again if it stays empty. Also the message on the results
+//! that an interrupted command leaves.
 
 use std::fs;
 use std::io::{self, Write};
@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use moorline::output::{open_folder, remove_partial};
+use moorline::output::folder::ResultsFolder;
+use moorline::output::remove_partial;
 
 use crate::failure::Failure;
 
@@ -37,37 +38,47 @@ struct Place {
 
 /// Folder that is open for results until this value is dropped.
 #[derive(Debug)]
-pub(crate) struct Folder(Place);
+pub(crate) struct Folder {
+    place: Place,
+    /// The lock of a folder for results, unless it is taken.
+    results: Option<ResultsFolder>,
+}
 
 impl Folder {
-    /// Creates a folder if it is missing, and checks that files can be written into it. The message of an interrupted command names the results in
-    /// it.
+    /// Creates a folder if it is missing, checks that files can be written into it, and refuses other processes. The message of an interrupted
+    /// command names the results in it.
     pub(crate) fn open(path: &Path) -> Result<Folder, Failure> {
         let above = path.ancestors();
         let missing = above.take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let made = missing.map(Path::to_path_buf).collect();
-        open_folder(path)?;
-        Ok(Folder::of(path, made, true))
+        let results = ResultsFolder::open(path)?;
+        Ok(Folder::of(path, made, Some(results)))
     }
 
     /// Returns the folder of one file, whose incomplete content an interrupted command removes.
     pub(crate) fn of_file(target: &Path) -> Folder {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
-        Folder::of(folder.unwrap_or(Path::new(".")), Vec::new(), false)
+        Folder::of(folder.unwrap_or(Path::new(".")), Vec::new(), None)
     }
 
-    fn of(path: &Path, made: Vec<PathBuf>, is_own: bool) -> Folder {
-        let path = path.to_path_buf();
+    fn of(path: &Path, made: Vec<PathBuf>, results: Option<ResultsFolder>) -> Folder {
+        let (path, is_own) = (path.to_path_buf(), results.is_some());
         let place = Place { path, made, is_own };
         set_open(Some(place.clone()));
-        Folder(place)
+        Folder { place, results }
+    }
+
+    /// Gives the lock to something that lives shorter than this value.
+    pub(crate) fn take(&mut self) -> ResultsFolder {
+        self.results.take().expect("a folder for results, taken once")
     }
 }
 
 impl Drop for Folder {
     fn drop(&mut self) {
         set_open(None);
-        self.0.remove_empty();
+        self.results = None;
+        self.place.remove_empty();
     }
 }
 
@@ -127,6 +138,9 @@ impl Place {
     /// Removes incomplete files; returns whether any results remain.
     fn clear(&self) -> bool {
         remove_partial(&self.path);
+        if self.is_own {
+            ResultsFolder::abandon(&self.path);
+        }
         self.remove_empty();
         self.is_own && fs::read_dir(&self.path).is_ok_and(|mut entries| entries.next().is_some())
     }

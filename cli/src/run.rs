@@ -83,6 +83,7 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
         check_step(step, &loaded.scene)?;
     }
     let given = Given::of(&loaded.scene, stepping);
+    let _open = Folder::open(folder)?;
     let saved = match course.resume {
         true => Some(given.saved_in(folder)?),
         false => None,
@@ -94,7 +95,6 @@ pub(crate) fn run(input: &Input, drive: &Drive, folder: &Path, course: &Course) 
         let text = format!("--until {until}: the run has already reached t = {done} s");
         return Err(Failure::Argument(text));
     }
-    let _open = Folder::open(folder)?;
     match &saved {
         Some(saved) => loaded.scene = given.discretised(saved)?,
         None if stepping == Stepping::Scene => discretise(&mut loaded, discretisation::select),

@@ -25,12 +25,26 @@ pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
             let text = "runs start on this shape, not in the equilibrium that is shown";
             remark_all(&loaded, vec![Note::new(at, text)]);
         }
-    }
-    if as_json {
-        return print(&json::text(&collect::statics(&loaded.scene, simulation)));
+        let path = line.winch.as_ref().and_then(|winch| winch.path.as_ref());
+        if path.is_some_and(|path| path.at(0.0) != 0.0) {
+            let at = format!("lines[{index}].winch.path");
+            let text = "runs start with the length that the path gives; the equilibrium that is shown has none paid out or hauled in";
+            remark_all(&loaded, vec![Note::new(at, text)]);
+        }
     }
     let record = collect::record(&loaded.scene, &simulation, Some(&simulation), (Vec::new(), 0));
     let statics = collect::statics(&loaded.scene, simulation);
+    let seabed = loaded.scene.seabed.as_ref();
+    let has_friction = seabed.is_some_and(|seabed| seabed.friction.transverse > 0.0);
+    if has_friction && !statics.vessels.is_empty() && statics.lines.iter().any(|line| line.laid_length > 0.0)
+    {
+        let text = "the stiffness of the closed form lays every line anew; in small motions friction holds what is laid, \
+                    as in the stiffness from the elements, `elements` in --json";
+        remark_all(&loaded, vec![Note::new("seabed.friction", text)]);
+    }
+    if as_json {
+        return print(&json::text(&statics));
+    }
     let mut points = Table::new(&["force of the mooring [N]", "x", "y", "z"]);
     for point in &statics.points {
         points.row(&point.name, &point.force);

@@ -34,8 +34,8 @@ pub(crate) fn sweep(input: &Input, file: &Path, folder: &Path, choice: &Choice) 
         // a failure to write a remark does not end the command
         let _ = writeln!(io::stderr(), "note: {}:{}: {note}", file.display(), case.line);
     }
-    let _open = Folder::open(folder)?;
-    let mut sweep = Sweep::open(&cases, folder, choice.series)?;
+    let mut open = Folder::open(folder)?;
+    let mut sweep = Sweep::open(&cases, open.take(), choice.series)?;
     let before = sweep.rows().len();
     if before > 0 {
         print(&format!("{before} of {} cases are done already\n", cases.len()))?;
@@ -164,7 +164,7 @@ impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
         match error {
             SweepError::Output(error) => error.into(),
-            SweepError::Other { .. } | SweepError::InUse { .. } => Failure::Argument(error.to_string()),
+            SweepError::Other { .. } => Failure::Argument(error.to_string()),
         }
     }
 }

@@ -204,12 +204,12 @@ impl MoorDyn {
         })
     }
 
-    /// Returns the depth of the seabed at a horizontal position [m].
+    /// Returns the height of the seabed at a horizontal position [m], negative below the still water.
     fn depth_at(&self, x: f64, y: f64) -> Result<f64, Failure> {
         self.call(|system| system.depth_at(x, y))
     }
 
-    /// Returns the mean and least depth of the seabed [m].
+    /// Returns the heights z of the seabed at its mean and at its least depth [m].
     fn depths(&self) -> Result<[f64; 2], Failure> {
         self.call(|system| system.depths())
     }

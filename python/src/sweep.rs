@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use moorline::output::OutputError;
+use moorline::output::folder::ResultsFolder;
 use moorline::output::record::{Column, Form};
 use moorline_decks::Supplement;
 use moorline_sweep::{
@@ -98,7 +99,8 @@ impl Sweep {
     /// Opens the folder of the sweep and returns the numbers of the cases that have not been completed there.
     #[pyo3(signature = (folder, series=false))]
     fn open(&self, folder: PathBuf, series: bool) -> PyResult<Vec<usize>> {
-        let sweep = moorline_sweep::Sweep::open(&self.cases, &folder, series).map_err(of_sweep)?;
+        let folder = ResultsFolder::open(&folder).map_err(of_output)?;
+        let sweep = moorline_sweep::Sweep::open(&self.cases, folder, series).map_err(of_sweep)?;
         let left = sweep.left();
         *self.lock() = Some(sweep);
         Ok(left)

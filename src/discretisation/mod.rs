@@ -183,6 +183,15 @@ impl Discretisation {
                     mesh.elements
                 )
             });
+            let untried =
+                !mesh.tried && mesh.error <= tolerance && self.scene.solver.integrator == Integrator::Auto;
+            let untried = untried.then(|| {
+                format!(
+                    "{}: the mesh was extrapolated from coarser ones, and the error of its time steps was not tried; compare with a run with \
+                     `integrator = \"leapfrog\"`",
+                    self.names(&[mesh])
+                )
+            });
             let unknown = match mesh.short_sections {
                 _ if mesh.is_unknown() => Some("this mesh"),
                 None => Some("short sections with one element"),
@@ -194,7 +203,7 @@ impl Discretisation {
                     self.names(&[mesh])
                 )
             });
-            [coarse, unknown].into_iter().flatten()
+            [coarse, untried, unknown].into_iter().flatten()
         };
         let sentences = self.meshes.iter().flat_map(of_mesh);
         sentences

@@ -34,7 +34,8 @@ use layout::{Layout, Water};
 use step::Step;
 
 pub use axial_implicit::AxialImplicit;
-pub use explicit::{Explicit, segment_tension};
+pub use explicit::Explicit;
+pub(super) use explicit::segment_tension;
 pub use network::LeapfrogNetwork;
 
 /// Ends in the order of the nodes.

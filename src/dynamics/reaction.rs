@@ -59,19 +59,32 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     if let Some(closed_form) = &state.closed_form {
         return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
     }
-    let ends = [state.position[i], state.position[i + 1]];
-    let velocities = [i, i + 1].map(|node| velocity_of_stretching(line, state, node));
-    if let Some(viscoelastic) = ViscoelasticSegment::of(line, state, i) {
-        let strain = Stretching::of(line, i, ends, velocities);
-        return viscoelastic.tension(strain, line.compression_max(i), negative_tension);
+    let stretching = stretching(line, state, i);
+    match ViscoelasticSegment::of(line, state, i) {
+        Some(viscoelastic) => viscoelastic.tension(stretching, line.compression_max(i), negative_tension),
+        None => segment_tension(line, i, stretching, negative_tension),
     }
-    segment_tension(line, i, ends, velocities, negative_tension)
+}
+
+/// Strain of segment `i`, and its rate as the integrator takes it.
+fn stretching(line: &Line, state: &LineState, i: usize) -> Stretching {
+    let (chord, memory) = (state.position[i + 1] - state.position[i], &state.half_step);
+    if memory.tension[0].is_empty() || memory.steps[1] == 0.0 {
+        let [low, high] = [i, i + 1].map(|node| velocity_of_stretching(line, state, node));
+        return Stretching::of(line, i, chord, high - low);
+    }
+    let velocities = [&memory.velocity, &memory.velocity_before].map(|of| of[i + 1] - of[i]);
+    let unstretched = line.segments.length[i];
+    Stretching {
+        strain: chord.norm() / unstretched - 1.0,
+        rate: implicit_rate(chord, velocities, memory.steps) / unstretched,
+    }
 }
 
 /// Velocity of a node [m/s] that gives the rate of strain of its segments.
 ///
-/// With a leapfrog, the velocity of an end is extrapolated from half steps like those of the nodes. The velocity of its point differs from that by
-/// O(Δt²), which a stiff damper on a short segment would turn into a false tension.
+/// With the explicit leapfrog, the velocity of an end is extrapolated from half steps like those of the nodes. The velocity of its point differs from
+/// that by O(Δt²), which a stiff damper on a short segment would turn into a false tension.
 fn velocity_of_stretching(line: &Line, state: &LineState, node: usize) -> Vector3<f64> {
     let memory = &state.half_step;
     let is_end = node == 0 || node == line.segment_count();
@@ -80,6 +93,29 @@ fn velocity_of_stretching(line: &Line, state: &LineState, node: usize) -> Vector
     }
     let [last, before] = [memory.velocity[node], memory.velocity_before[node]];
     last + Step::after(memory.steps, memory.steps[0]).extrapolation * (last - before)
+}
+
+/// Rate of a segment's length [m/s] as the axial-implicit leapfrog takes it: the mean of the velocities along the segment at t_n, of which the
+/// coming one is extrapolated. These exceed the rates r of the length by ± κ/Δt while the segment turns (`leapfrog/axial_implicit.rs`), and the
+/// lengths that it finds make up for that. With the velocities v of the last step and of the earlier one along the segment at their ends, a,
+///
+///   rate = r + ½ (2 (r − r₋) − (a − a₋)).
+fn implicit_rate(chord: Vector3<f64>, [last, earlier]: [Vector3<f64>; 2], steps: [f64; 2]) -> f64 {
+    let before = chord - steps[0] * last;
+    let first = before - steps[1] * earlier;
+    let rates = |start: Vector3<f64>, end: Vector3<f64>, velocity: Vector3<f64>| {
+        let lengths = [start.norm(), end.norm()];
+        let along = |direction: Vector3<f64>, length: f64| match length > 0.0 {
+            true => direction.dot(&velocity) / length,
+            false => 0.0,
+        };
+        [
+            along(start + end, lengths[0] + lengths[1]),
+            along(end, lengths[1]),
+        ]
+    };
+    let [now, then] = [rates(before, chord, last), rates(first, before, earlier)];
+    now[0] + Step::after(steps, steps[0]).extrapolation * (2.0 * (now[0] - then[0]) - (now[1] - then[1]))
 }
 
 /// Inertia force of the material transport at a winch, divided by −λq [N]: m ℓ̇² + M ℓ̈.

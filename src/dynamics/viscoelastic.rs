@@ -25,18 +25,13 @@ pub(super) struct Stretching {
 }
 
 impl Stretching {
-    /// Strain and strain rate from the positions [m] and velocities [m/s] of the ends of segment `i`.
-    pub(super) fn of(
-        line: &Line,
-        i: usize,
-        [low, high]: [Vector3<f64>; 2],
-        [low_velocity, high_velocity]: [Vector3<f64>; 2],
-    ) -> Stretching {
-        let (chord, unstretched) = (high - low, line.segments.length[i]);
+    /// Strain and strain rate of segment `i` from its chord [m] and the rate of its chord [m/s].
+    pub(super) fn of(line: &Line, i: usize, chord: Vector3<f64>, rate: Vector3<f64>) -> Stretching {
+        let unstretched = line.segments.length[i];
         let direction = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         Stretching {
             strain: chord.norm() / unstretched - 1.0,
-            rate: direction.dot(&(high_velocity - low_velocity)) / unstretched,
+            rate: direction.dot(&rate) / unstretched,
         }
     }
 }

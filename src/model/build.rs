@@ -33,7 +33,7 @@ use crate::physics::weight::submerged_weight;
 use crate::scene::channel::LineEnd;
 use crate::scene::{
     self, Axis, ContactLaw, FibreLaw, InitialShape, Integrator, LineType, Names, PointKind, RestShape, Scene,
-    SceneError, Strain,
+    SceneError, Strain, TimeFunction,
 };
 
 /// Maximum number of segments that a winch pays out.
@@ -520,7 +520,12 @@ fn on_winch(
         ));
     }
     let mut line = longest.clone();
-    line.winch = Some(Winch::new(longest, segments, winch));
+    let winch = Winch::new(longest, segments, winch);
+    let path = winch.path.iter().flat_map(TimeFunction::corners);
+    if let Some(problem) = path.map(|change| winch.check(change)).find_map(Result::err) {
+        return Err(SceneError::new(format!("lines[{index}].winch.path"), problem));
+    }
+    line.winch = Some(winch);
     line.pay_out(segments[1], 0.0);
     Ok(line)
 }

@@ -29,6 +29,8 @@ pub struct WaveSpan {
     pub times: [f64; 2],
     /// Kinematics at both times, by node; empty if no waves act.
     pub ends: [Vec<Orbit>; 2],
+    /// Positions of the nodes at its start [m]; empty if a host gives the flow.
+    pub places: Vec<Vector3<f64>>,
 }
 
 impl Clone for WaveSpans {
@@ -50,12 +52,14 @@ impl Clone for WaveSpan {
         WaveSpan {
             times: self.times,
             ends: self.ends.clone(),
+            places: self.places.clone(),
         }
     }
 
     fn clone_from(&mut self, source: &Self) {
         self.times = source.times;
         self.ends.clone_from(&source.ends);
+        self.places.clone_from(&source.places);
     }
 }
 
@@ -65,6 +69,7 @@ impl WaveSpan {
         WaveSpan {
             times: [time; 2],
             ends: [nodes.clone(), nodes],
+            places: Vec::new(),
         }
     }
 

@@ -83,6 +83,20 @@ impl Winch {
         self.longest.nodes.arc[self.least - 1] + SHORTEST * end - self.length
     }
 
+    /// Checks that a length change [m] can be paid out; returns the reason why it cannot.
+    pub fn check(&self, change: f64) -> Result<(), String> {
+        let (least, most) = (self.length_min(), self.length_max);
+        // a sum in the host may exceed the bounds by rounding
+        let rounding = 1e-9 * (most - least);
+        if change >= least - rounding && change <= most + rounding {
+            return Ok(());
+        }
+        Err(format!(
+            "the winch cannot change its length by {change} m: the change is between {least} m, beyond which shorter elements would be hauled in, \
+             and length_max, {most} m"
+        ))
+    }
+
     /// Length [m] of the last of `count` segments at a length change [m].
     pub fn end_length(&self, count: usize, change: f64) -> f64 {
         let left = self.length + change - self.longest.nodes.arc[count - 1];

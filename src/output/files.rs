@@ -9,11 +9,12 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::csv::write_units;
+use super::folder::make_folder;
 use super::growing::{Growing, Mark};
 use super::record::{Column, Form, Frame, Record};
 use super::table::Table;
 use super::times::Times;
-use super::{OutputError, figures, make_folder, vtk, write_file};
+use super::{OutputError, figures, vtk, write_file};
 use crate::scene::table::Choice;
 use crate::scene::{Format, Frames, Output};
 

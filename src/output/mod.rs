@@ -12,6 +12,7 @@ pub mod description;
 pub mod figures;
 pub mod files;
 pub mod fmi;
+pub mod folder;
 mod growing;
 pub mod json;
 pub mod modes;
@@ -62,6 +63,12 @@ pub enum OutputError {
         /// Error of the operating system.
         source: io::Error,
     },
+    /// Another process writes into a folder.
+    #[error("another process of moorline writes into the folder {}: wait for its end, or give another folder", .path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A file could not be written.
     #[error("cannot write {}: {source}", .path.display())]
     File {
@@ -85,36 +92,6 @@ impl OutputError {
         let path = path.to_path_buf();
         OutputError::File { path, source }
     }
-}
-
-/// Creates a folder and its parents, if they are missing.
-///
-/// # Errors
-/// A file has this name, or the operating system refuses the folder.
-pub fn make_folder(path: &Path) -> Result<(), OutputError> {
-    if path.exists() && !path.is_dir() {
-        return Err(OutputError::NotAFolder {
-            path: path.to_path_buf(),
-        });
-    }
-    fs::create_dir_all(path).map_err(|source| OutputError::Folder {
-        path: path.to_path_buf(),
-        source,
-    })
-}
-
-/// Creates a folder as [`make_folder`] does, and checks that files can be written into it.
-///
-/// # Errors
-/// As for [`make_folder`], and if no file can be written there.
-pub fn open_folder(path: &Path) -> Result<(), OutputError> {
-    make_folder(path)?;
-    let probe = partial_name(&path.join("probe"));
-    let tried = create(&probe).and_then(|_| fs::remove_file(&probe));
-    tried.map_err(|source| OutputError::Closed {
-        path: path.to_path_buf(),
-        source,
-    })
 }
 
 /// Removes incomplete files of this process from the folder of a run, and next to the targets of links in it.
@@ -313,14 +290,5 @@ mod tests {
         let left: Vec<_> = left.map(|entry| entry.unwrap().file_name()).collect();
         assert_eq!(left, ["earlier.fmu"]);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
-    }
-
-    #[test]
-    fn a_file_in_place_of_a_folder_is_refused_by_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("taken");
-        fs::write(&path, "").unwrap();
-        let message = make_folder(&path).unwrap_err().to_string();
-        assert!(message.ends_with("taken is no folder: give the name of one"));
     }
 }

@@ -18,8 +18,7 @@
 //!
 //! Between two instants no further apart than [`Waves::interval_below`], velocity, acceleration and elevation are cubics in time with the slopes at
 //! both instants, [`Orbit::between`]. The error of such a cubic is h⁴f⁗/384. The interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ keeps it below 10⁻³ of
-//! the acceleration. The stretching adds an error of the slopes, of the order of (ka)². Positions are extrapolated over an interval by their
-//! velocities. h is therefore also at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, and at most 2 s. Here a is the
+//! the acceleration. The stretching adds an error of the slopes, of the order of (ka)². Positions are extrapolated over an interval. h is therefore also at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, and at most 2 s. Here a is the
 //! amplitude at the highest position, a e^{kz} with z again three standard deviations too high: short waves, which change fastest, do not reach lines
 //! that hang from a deep fairlead.
 //!

@@ -59,7 +59,7 @@ table! {
         /// Tangential added-mass coefficient on the displaced volume [-].
         pub added_mass_tangential: Option<f64> => coefficient(Acts::InAccelerations).elsewhere(&["caax", "cat"])
             .label("tangential added-mass coefficient").absence("tangential added mass"),
-        /// Solid round section from which stiffnesses follow that are not given: EI = Eπd⁴/64.
+        /// Solid round section, from which EI = Eπd⁴/64 follows where it is not given, and GA, GJ and rotary inertia of beams.
         pub solid_section: Option<SolidSection> => PLAIN.label("solid round section"),
         /// Number of loose strands that share the section [-]; by default 1.
         pub fibres: Option<usize> => within(1.0, 1e9).label("number of fibres"),

@@ -115,6 +115,8 @@ fn current(scene: &Scene, notes: &mut Vec<Note>) {
     let factor = factors.map(f64::abs).fold(0.0, f64::max);
     let speed = significant(factor * fastest);
     rules! { notes, "water.current";
+        "velocity" if x.abs().max(y.abs()) <= SPEED_USUAL && x.hypot(y) > SPEED_USUAL =>
+            "{} is unusual: less than {SPEED_USUAL} m/s is usual", quantity(significant(x.hypot(y)), "m/s");
         "factor" if fastest <= SPEED_USUAL && factor * fastest > SPEED_USUAL =>
             "a current of {} with it is unusual: less than {SPEED_USUAL} m/s is usual",
             quantity(speed, "m/s");

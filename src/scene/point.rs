@@ -18,7 +18,7 @@ table! {
         pub kind: PointKind,
         /// Vessel that carries a coupled point, whose position is then in the vessel's frame.
         pub on: Option<String>,
-        /// Axes along which a free point may move; by default all.
+        /// List of the axes along which a free point may move, such as `["x"]`; by default all.
         pub free: Option<Vec<Axis>>,
         /// Own mass [kg]; not for fixed points. At points that are not free it adds to the force on the structure that holds them.
         pub mass: Option<f64> => not_negative(1e12).label("mass"),

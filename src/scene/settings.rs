@@ -16,7 +16,8 @@ table! {
         /// Target error of fairlead tension [-].
         pub tolerance: f64 = 0.02 => within(1e-12, 0.5).described("target error of fairlead tension; sets integrator and steps where the \
             scene leaves them open; elements stay those of the packaged scene"),
-        /// Quantity whose RMS error, over its standard deviation, the selected mesh and step keep within the tolerance.
+        /// Quantity whose RMS error, over its standard deviation, the selected mesh and step keep within the tolerance; the deviation of a tension
+        /// counts as at least 1 % of its mean.
         pub tolerance_of: ToleranceOf = ToleranceOf::Tension,
         /// Number of elements of lines and sections without a number of their own [-]; of a network, that of its longest line. Selected for the tolerance by default.
         pub elements: Option<usize> => within(1.0, ELEMENTS_MAX).elsewhere(&["segments"]),
@@ -29,7 +30,7 @@ table! {
         /// Spectral radius at infinite frequency [-] of `generalised_alpha` (0 to 1, default 0.2) or `axial_implicit` (½ to 1, default 0.9); if
         /// `auto` selects the latter, values below ½ count as ½.
         pub spectral_radius: Option<f64> => MIXED.in_units("-"),
-        /// Parameters of the integrator `bossak`.
+        /// Parameters of the integrator `bossak`; by default α = −0.3 and γ = 0.8.
         pub bossak: Option<Bossak>,
         /// Path of a coupled point between communication points.
         pub input_reconstruction: Reconstruction = Reconstruction::Smooth => PLAIN.described("path of a coupled point between communication \
@@ -116,8 +117,8 @@ table! {
         pub interval: f64 = 0.05 => positive(1e9).elsewhere(&["dtout", "dt"]),
         /// Node positions and tensions as variables too: `true` or `array` gives arrays in FMI 3.0, `scalar` one variable for each node in both versions.
         pub profile: Profile = Profile::None,
-        /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost about 50 %
-        /// more.
+        /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost 50 to
+        /// 100 % more.
         pub energy_balance: bool = false,
         /// Force `fx` … of a coupled point or a vessel in the variables.
         pub force: ForceOutput = ForceOutput::Total,

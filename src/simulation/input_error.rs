@@ -53,7 +53,7 @@ const SAMPLES_MIN: usize = 8;
 const NEGLIGIBLE: f64 = 1e-7;
 /// Least standard deviation of a tension to which its errors are related, relative to its mean [-].
 pub(crate) const STILL_TENSION: f64 = 0.01;
-/// Fraction of the tolerance available for the inputs [-]: the mesh takes 0.8, and squares of the errors add.
+/// Fraction of the tolerance available for the inputs [-]: the mesh takes 0.7, and squares of the errors add.
 const PART: f64 = 0.6;
 /// Order at which the error falls with the communication step [-].
 const ORDER: f64 = 3.0;

@@ -138,7 +138,7 @@ impl Paths {
                 _ => {
                     let wrong =
                         |reason| StepError::new(time, line, line.segment_count(), StepFailure::Winch(reason));
-                    winches::check(line, changes[index]).map_err(wrong)?;
+                    winch.check(changes[index]).map_err(wrong)?;
                     winch_state.extend(winch.speed_max, [sample_time, changes[index]], extrapolation);
                 }
             }

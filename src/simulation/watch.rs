@@ -15,6 +15,11 @@ const JUMP: f64 = 0.1;
 /// Depth below a seabed that is not level from which on a point is noted [m].
 const BURIED: f64 = 0.01;
 
+/// Depth below a seabed that is not level from which on a segment is noted, relative to its length [-]: four times that of a segment on the level.
+const SUNK: f64 = 0.06;
+/// Places along a segment at which its depth is examined [-].
+const WITHIN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
 /// Observes a simulation at its communication points; each note is given once.
 #[derive(Debug, Clone)]
 pub struct Watch {
@@ -58,6 +63,7 @@ impl Watch {
             at_start: [
                 scene.idle_with(simulation.choices().map(|choice| choice.integrator)),
                 buried(simulation),
+                sunk(simulation),
             ]
             .concat(),
         }
@@ -122,6 +128,33 @@ fn buried(simulation: &Simulation) -> Vec<Note> {
         (height - place.z > BURIED).then(|| Note::new(format!("points[{point}].position"), text))
     };
     held.filter_map(note).collect()
+}
+
+/// Notes on lines that lie deep in a seabed that is not level: drawn into its softened springs over a ridge, or straight through one between nodes.
+fn sunk(simulation: &Simulation) -> Vec<Note> {
+    let (model, lines) = (&simulation.model, &simulation.snapshot.state.lines);
+    let Some(seabed) = model.seabed.as_ref().filter(|seabed| !seabed.level) else {
+        return Vec::new();
+    };
+    let depth = |place: Vector3<f64>| seabed.ground.height(place.x, place.y) - place.z;
+    let deepest = |line: usize| {
+        let (lengths, nodes) = (&model.lines[line].segments.length, &lines[line].position);
+        let segments = lengths.iter().zip(nodes.windows(2));
+        let within = segments.flat_map(|(length, ends)| {
+            WITHIN.map(|part| (depth(ends[0] + part * (ends[1] - ends[0])), *length))
+        });
+        within.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))
+    };
+    let note = |line: usize| {
+        model.lines[line].nodes.contact.as_ref()?;
+        let (depth, length) = deepest(line).filter(|(depth, length)| *depth > SUNK * length)?;
+        let text = format!(
+            "{depth:.3} m inside the seabed at the start, with elements of {length:.2} m: over a ridge a line in tension sinks into the regularised \
+             seabed, and elements are straight across it; `contact = \"as_given\"` and more elements are more accurate"
+        );
+        Some(Note::new(format!("lines[{line}]"), text))
+    };
+    (0..lines.len()).filter_map(note).collect()
 }
 
 /// Positions of the points at the ends of a line [m].

@@ -49,22 +49,6 @@ fn start(winch: &Winch, given: f64, follows: Option<f64>) -> f64 {
     }
 }
 
-/// Checks that a winch can pay out a length change [m].
-pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
-    let Some(winch) = &line.winch else {
-        return Ok(());
-    };
-    let (least, most) = (winch.length_min(), winch.length_max);
-    // a sum in the host may exceed the bounds by rounding
-    let rounding = 1e-9 * (most - least);
-    if change >= least - rounding && change <= most + rounding {
-        return Ok(());
-    }
-    Err(format!(
-        "the winch is to have paid out {change} m, and can from {least} to {most} m"
-    ))
-}
-
 /// Winch paths at rest from a time [s], by line; empty if there is no winch.
 pub(super) fn paths(model: &Model, given: &[f64], time: f64, follows_scene: bool) -> Vec<WinchPath> {
     if model.lines.iter().all(|line| line.winch.is_none()) {
@@ -92,8 +76,8 @@ pub(super) fn lay_out(model: &mut Arc<Model>, given: &[f64], follows: Option<f64
             continue;
         };
         let change = start(winch, given, follows);
-        check(&model.lines[index], change)
-            .map_err(|problem| SceneError::new(format!("lines[{index}].winch"), problem))?;
+        let checked = winch.check(change);
+        checked.map_err(|problem| SceneError::new(format!("lines[{index}].winch"), problem))?;
         let count = winch.segments_at(change);
         Arc::make_mut(model).lines[index].pay_out(count, change);
     }

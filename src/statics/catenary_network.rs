@@ -48,7 +48,7 @@ pub fn serves(model: &Model, network: &Network) -> bool {
     if model.current.is_some() && spheres.any(|sphere| sphere.drag > 0.0) {
         return false;
     }
-    lines.all(|line| line.bending.is_none() && !line.drifts(model) && line.has_catenary(model))
+    lines.all(|line| !line.bends() && !line.drifts(model) && line.has_catenary(model))
 }
 
 /// Finds the equilibrium like [`equilibrium::rest`], on closed-form catenaries where that is possible. A network

@@ -28,6 +28,8 @@ const DURATION: &str = "output.duration";
 pub struct Base {
     loaded: LoadedScene,
     document: Value,
+    /// Remarks on the document, as in cases that have them too.
+    known: Vec<Note>,
 }
 
 impl Base {
@@ -45,7 +47,12 @@ impl Base {
         };
         let document = text.parse().map(Value::Table);
         let document = document.expect("the reader of scenes has read the same text");
-        Ok(Base { loaded, document })
+        let known = load_text(&loaded.path, text)?.notes;
+        Ok(Base {
+            loaded,
+            document,
+            known,
+        })
     }
 
     /// Remarks on the base itself.
@@ -296,14 +303,13 @@ impl<'b> Builder<'b> {
         let loaded = input.load().map_err(|error| self.located(draft, error))?;
         let from = self.start(draft, &loaded.scene)?;
         let mut notes = loaded.notes;
-        notes.retain(|note| {
-            !self
-                .base
-                .loaded
-                .notes
+        let known = |note: &Note| {
+            self.base
+                .known
                 .iter()
                 .any(|known| (&known.at, &known.text) == (&note.at, &note.text))
-        });
+        };
+        notes.retain(|note| !known(note));
         let before = &self.sheet.text[..draft.span.start];
         Ok(Checked {
             system: Sha256::digest(system(&loaded.scene)).into(),

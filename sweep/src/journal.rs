@@ -5,7 +5,7 @@
 //! cases run again.
 
 use std::collections::HashMap;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -71,7 +71,7 @@ enum Record {
     Case(usize, Result<(usize, Vec<Figures>), String>, Vec<String>),
 }
 
-/// A journal that is open for this process only.
+/// A journal that is open.
 #[derive(Debug)]
 pub(crate) struct Journal {
     path: PathBuf,
@@ -83,7 +83,7 @@ impl Journal {
     /// Opens the journal of a folder, or creates one; returns the rows of the cases that have ended.
     ///
     /// # Errors
-    /// The journal belongs to another sweep or version, is open in another process, or cannot be read or written.
+    /// The journal belongs to another sweep or version, or cannot be read or written.
     pub(crate) fn open(
         folder: &Path,
         identity: &Identity,
@@ -101,10 +101,6 @@ impl Journal {
             .truncate(false)
             .open(&path);
         let mut file = opened.map_err(in_file)?;
-        match file.try_lock() {
-            Ok(()) | Err(TryLockError::Error(_)) => {} // some file systems have no locks
-            Err(TryLockError::WouldBlock) => return Err(SweepError::InUse { path }),
-        }
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(in_file)?;
         let mut journal = Journal {

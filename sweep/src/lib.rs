@@ -46,12 +46,6 @@ pub enum SweepError {
         /// The difference, in words.
         problem: String,
     },
-    /// Another process runs a sweep in the folder.
-    #[error("{}: another process runs a sweep in this folder: wait for its end, or give another folder", .path.display())]
-    InUse {
-        /// The journal.
-        path: PathBuf,
-    },
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),

@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use moorline::output::{OutputError, make_folder};
+use moorline::output::OutputError;
+use moorline::output::folder::{ResultsFolder, make_folder};
 use moorline::scene::Note;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -25,7 +26,7 @@ const TABLE_EVERY: Duration = Duration::from_secs(60);
 #[derive(Debug)]
 pub struct Sweep {
     cases: Arc<[Case]>,
-    folder: PathBuf,
+    folder: ResultsFolder,
     series: Option<PathBuf>,
     journal: Journal,
     rows: Vec<Row>,
@@ -45,19 +46,17 @@ pub struct Progress {
 }
 
 impl Sweep {
-    /// Opens the folder, which is created if it is missing, and reads the rows of the cases that have ended there. With `series`, all results in
-    /// time of every case are also kept.
+    /// Reads the rows of the cases that have ended in a folder. With `series`, all results in time of every case are also kept.
     ///
     /// # Errors
-    /// The folder belongs to another sweep, is in use, or cannot be written into.
-    pub fn open(cases: &Arc<[Case]>, folder: &Path, series: bool) -> Result<Sweep, SweepError> {
-        make_folder(folder)?;
-        let (journal, rows) = Journal::open(folder, &identity(cases, series)?, cases)?;
-        let series = series.then(|| folder.join(SERIES));
+    /// The folder belongs to another sweep, or a file in it cannot be read or written.
+    pub fn open(cases: &Arc<[Case]>, folder: ResultsFolder, series: bool) -> Result<Sweep, SweepError> {
+        let (journal, rows) = Journal::open(folder.path(), &identity(cases, series)?, cases)?;
+        let series = series.then(|| folder.path().join(SERIES));
         series.as_deref().map_or(Ok(()), make_folder)?;
         Ok(Sweep {
             cases: cases.clone(),
-            folder: folder.to_path_buf(),
+            folder,
             series,
             journal,
             rows,
@@ -141,7 +140,7 @@ impl Sweep {
     /// # Errors
     /// A file that cannot be written.
     pub fn write_table(&mut self) -> Result<(), SweepError> {
-        table(&self.rows).write(&self.folder)?;
+        table(&self.rows).write(self.folder.path())?;
         self.written = Instant::now();
         Ok(())
     }

@@ -288,6 +288,17 @@ fn a_length_that_the_winch_does_not_have_is_refused_and_leaves_the_state() {
 }
 
 #[test]
+fn a_path_of_the_scene_beyond_what_the_winch_can_haul_in_is_refused() {
+    let hauled = |change: f64| Simulation::new(&stepped([1.0, 2.0], change, 10, 0.01)).map(|_| ());
+    let refusal = hauled(-87.0).unwrap_err().to_string();
+    assert!(
+        refusal.contains("winch.path") && refusal.contains("between -86 m"),
+        "{refusal}"
+    );
+    hauled(-85.0).unwrap();
+}
+
+#[test]
 fn a_line_on_a_rough_seabed_stays_at_rest_and_pays_out_as_on_a_smooth_one() {
     let text = chain(100.0, 25).with(WINCH).scene().to_toml();
     let text = text.replace("\nfriction = 0.0", "");

@@ -252,6 +252,23 @@ fn a_line_with_both_ends_on_a_vessel_holds_it_nowhere() {
 }
 
 #[test]
+fn a_beam_pulls_a_vessel_with_the_force_of_its_elements() {
+    let float = draft(
+        "vessels = [{ name = 'float', position = [0.0, 0.0, 0.0] }]
+        line_types.pipe = { model = 'beam', mass = 50.0, axial_stiffness = 1e8, diameter = 0.1,
+          solid_section = { diameter = 0.05, youngs_modulus = 2.1e11, poisson = 0.3 } }",
+    )
+    .fixed("end", [100.0, 0.0, -30.0]);
+    let scene = on(float, "float", "bow", [0.0; 3])
+        .line("pipe", ["end", "bow"], "pipe", 110.0, 24)
+        .scene();
+    let simulation = start(&scene);
+    let force = simulation.vessel_force(0);
+    assert!(force[0] > 1e4 && force[2] < -1e4, "{force:?}");
+    assert_eq!(simulation.on_catenaries().vessel_force(0), force);
+}
+
+#[test]
 fn a_network_that_nothing_ties_to_a_vessel_does_not_hold_it() {
     let mut scene = OC3.scene(10, "");
     for point in &mut scene.points {

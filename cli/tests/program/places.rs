@@ -5,6 +5,8 @@ use std::io::Read;
 use std::thread::sleep;
 use std::time::Duration;
 
+use moorline::output::folder::ResultsFolder;
+
 use super::*;
 
 #[test]
@@ -21,6 +23,26 @@ fn an_output_folder_that_cannot_be_made_is_refused_before_the_run() {
     );
     folder.refused("demo -o taken", &["taken is no folder"]);
     assert_eq!(folder.names(), ["scene.toml", "taken"]);
+}
+
+#[test]
+fn a_folder_into_which_another_process_writes_is_refused() {
+    let folder = folder();
+    folder.write("cases.csv", "output.duration\n2.0\n");
+    let taken = ResultsFolder::open(&folder.path("out")).unwrap();
+    let commands = [
+        "run scene.toml",
+        "sweep scene.toml cases.csv",
+        "demo",
+        "modes scene.toml",
+    ];
+    for command in commands {
+        let parts = ["another process of moorline writes into the folder out"];
+        folder.refused(&format!("{command} -o out"), &parts);
+    }
+    drop(taken);
+    folder.done("modes scene.toml -o out");
+    assert_eq!(folder.names(), ["cases.csv", "out/modes.svg", "scene.toml"]);
 }
 
 #[test]

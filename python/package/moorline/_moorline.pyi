@@ -222,9 +222,9 @@ class MoorDyn:
     def flow(self, place: Sequence[float]) -> tuple[list[float], list[float], float]:
         """Returns velocity [m/s] and acceleration [m/s²] of the water at a position, and the surface elevation there [m]."""
     def depth_at(self, x: float, y: float) -> float:
-        """Returns the depth of the seabed at a horizontal position [m]."""
+        """Returns the height of the seabed at a horizontal position [m], negative below the still water."""
     def depths(self) -> list[float]:
-        """Returns the mean and least depth of the seabed [m]."""
+        """Returns the heights z of the seabed at its mean and at its least depth [m]."""
     def body(self, index: int, what: str) -> Any:
         """Returns a property of a body, by name."""
     def rod(self, index: int, what: str, node: int = 0) -> Any:

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::Flow;
 use crate::dynamics::leapfrog::segment_tension;
+use crate::dynamics::viscoelastic::Stretching;
 use crate::elements::friction::{resting_node, resting_point};
 use crate::elements::{end_moment, end_moment_power, shear};
 use crate::model::{ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State};
@@ -163,11 +164,10 @@ fn force_of_line(
         End::A => (0, 1.0),
         End::B => (line.segment_count() - 1, -1.0),
     };
-    let ends = [shape.position[segment], shape.position[segment + 1]];
-    let still = [Vector3::zeros(); 2];
-    let tension = segment_tension(line, segment, ends, still, false);
-    let chord = (ends[1] - ends[0]).try_normalize(0.0);
-    let mut force = sign * tension * chord.unwrap_or_else(Vector3::zeros);
+    let chord = shape.position[segment + 1] - shape.position[segment];
+    let still = Stretching::of(line, segment, chord, Vector3::zeros());
+    let tension = segment_tension(line, segment, still, false);
+    let mut force = sign * tension * chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
     if let Some(surface) = &line.surface {
         force.z -= surface.node(line.end_node(end), &shape.position).weight;
     }

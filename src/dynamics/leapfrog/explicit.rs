@@ -31,6 +31,7 @@ use super::{ENDS, EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
 use crate::dynamics::limit::{ExplicitLimit, expected_slope};
 use crate::dynamics::motion::AxisPath;
+use crate::dynamics::viscoelastic::Stretching;
 use crate::math::lanes::{LANES, Lanes};
 use crate::math::striping::{Column, Field, Slot};
 use crate::model::{End, Kinematics, Line, LineState, Model, Network};
@@ -415,26 +416,17 @@ impl ExplicitLine {
     }
 }
 
-/// Tension [N] of one segment from its end positions [m] and velocities [m/s], by the law of the kernel.
-pub fn segment_tension(
+/// Tension [N] of one segment, by the law of the kernel.
+pub(in crate::dynamics) fn segment_tension(
     line: &Line,
     segment: usize,
-    [low, high]: [Vector3<f64>; 2],
-    [low_velocity, high_velocity]: [Vector3<f64>; 2],
+    now: Stretching,
     negative_tension: bool,
 ) -> f64 {
     let segments = &line.segments;
-    let (chord, length) = (high - low, segments.length[segment]);
-    let l = chord.norm();
-    let elastic = segments.axial_stiffness[segment] * segments.law[segment].at(l / length - 1.0).force;
-    let rate = if l > 0.0 {
-        chord.dot(&(high_velocity - low_velocity)) / (l * length)
-    } else {
-        0.0
-    };
     total_tension(
-        elastic,
-        segments.axial_damping[segment] * rate,
+        segments.axial_stiffness[segment] * segments.law[segment].at(now.strain).force,
+        segments.axial_damping[segment] * now.rate,
         0.0 - line.compression_max(segment),
         negative_tension,
     )

@@ -99,9 +99,10 @@ impl AxialLine {
             let (before, here, after) = (position[at - 1], position[at], position[at + 1]);
             let segment = &mut segments[at - 1];
             let chord = after - here;
-            segment.inverse = inverse_norm(chord.dot(chord));
-            segment.direction = chord.scale(segment.inverse);
-            segment.length = chord.dot(chord) * segment.inverse;
+            let inverse = inverse_norm(chord.dot(chord));
+            segment.inverse = inverse.min(line.inverse_length.load(at));
+            segment.direction = chord.scale(inverse);
+            segment.length = chord.dot(chord) * inverse;
             let chord = after - before;
             nodes[at - 1].tangent = chord.scale(inverse_norm(chord.dot(chord)));
         }
