@@ -6,7 +6,7 @@
 //! other's waves. A communication step that is longer than the shortest such time is divided into parts. The position of a node is extrapolated
 //! by the parabola through its positions at the start of the previous span and of this one, with its velocity at the latter. For a node that follows a
 //! wave over a twelfth of its period this is in error by 5 % of the amplitude. The load of the waves on a body is not small beside the other forces, and bodies
-//! vibrate on taut lines faster than the wave: points have spans of a quarter of the length. The values at the end of a span are those
+//! vibrate on taut lines faster than the wave: points have spans of a quarter of the length, but of at least one step. The values at the end of a span are those
 //! at the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use nalgebra::Vector3;
@@ -111,15 +111,11 @@ impl Place {
     /// Longest time between samples [s].
     fn interval(self, waves: &Waves, state: &State) -> f64 {
         let heights = self.nodes(state).0.iter().map(|position| position.z);
-        self.share() * waves.interval_below(heights.fold(f64::NEG_INFINITY, f64::max))
-    }
-
-    /// Length of its spans relative to those of a line [-].
-    fn share(self) -> f64 {
-        match self {
+        let share = match self {
             Place::Line(_) => 1.0,
             Place::Point(_) => POINT,
-        }
+        };
+        share * waves.interval_below(heights.fold(f64::NEG_INFINITY, f64::max))
     }
 }
 
@@ -179,8 +175,7 @@ impl SeaWork {
     /// Length of the next part [s] of a step of `length` [s]: the part does not extend beyond the end of a span, except by
     /// rounding.
     pub(super) fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
-        let share = Place::of(model).map(Place::share).fold(1.0, f64::min);
-        let parts = length / (share * waves.interval_below(f64::INFINITY)) - ROUNDING;
+        let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
         let part = length / parts.ceil().max(1.0);
         let left = Place::of(model).map(|place| left(place, state, length));
         let shorter = left.filter(|left| *left > 0.0 && *left < (1.0 - ROUNDING) * part);

@@ -51,6 +51,8 @@ fn waves(components: &str) -> String {
 struct Host {
     waves: Waves,
     flow: WaterFlow,
+    /// Positions of the nodes of all lines one step ago [m]; empty before the first step.
+    before: Vec<Vec<Vector3<f64>>>,
 }
 
 impl Host {
@@ -60,19 +62,28 @@ impl Host {
         Host {
             waves: model.waves.unwrap(),
             flow: WaterFlow::still(simulation.model()),
+            before: Vec::new(),
         }
     }
 
-    /// Sets the flow of a time [s] at the positions where it is required.
+    /// Sets the flow of a time [s] at the positions where it is required, which the built-in waves extrapolate by a parabola.
     fn give(&mut self, simulation: &mut Simulation, time: f64) {
-        for line in 0..simulation.model().lines.len() {
+        let (step, lines) = (time - simulation.time(), simulation.state().lines.clone());
+        for (line, shape) in lines.iter().enumerate() {
             for node in 0..self.flow.node_count(line) {
-                let orbit = self.waves.orbit(simulation.flow_place(line, node), time);
+                let bend = self.before.get(line).map_or(Vector3::zeros(), |before| {
+                    step * shape.velocity[node] - (shape.position[node] - before[node])
+                });
+                let place = simulation.flow_place(line, node) + bend;
+                let orbit = self.waves.orbit(place, time);
                 self.flow
                     .set(line, node, orbit.velocity.into(), orbit.acceleration.into());
             }
         }
         simulation.inputs_mut().flow.clone_from(&self.flow);
+        if step > 0.0 {
+            self.before = lines.into_iter().map(|shape| shape.position).collect();
+        }
     }
 }
 
