@@ -3,11 +3,12 @@
 //!
 //! Every line and every point has a separate span. Its length is the longest time that a cubic may interpolate at the
 //! highest node ([`Waves::interval_below`]), rounded down to whole communication steps. Lines therefore do not affect each
-//! other's waves. A communication step that is longer than the shortest such time is divided into parts. The position of a node is extrapolated
-//! by the parabola through its positions at the start of the previous span and of this one, with its velocity at the latter. For a node that follows a
-//! wave over a twelfth of its period this is in error by 5 % of the amplitude. The load of the waves on a body is not small beside the other forces, and bodies
-//! vibrate on taut lines faster than the wave: points have spans of a quarter of the length, but of at least one step. The values at the end of a span are those
-//! at the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
+//! other's waves. A communication step that is longer than the shortest such time is divided into parts.
+//!
+//! The position of a node is extrapolated by the parabola through its positions at the start of the previous span and of this one, with its velocity at
+//! the latter. For a node that follows a wave over a twelfth of its period the error is 5 % of the amplitude. On a body the load of the waves is not small
+//! beside the other forces, and a body may vibrate on taut lines faster than the wave: the spans of points are a quarter as long, but at least one step.
+//! The values at the end of a span are those at the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -22,6 +23,8 @@ use crate::physics::airy::{Instant, Orbit, Waves};
 const ROUNDING: f64 = 1e-9;
 /// Length of the span of a point, relative to that of a line at the same height [-].
 const POINT: f64 = 0.25;
+/// Greatest ratio of a span to the previous one over which the parabola is extrapolated [-]; beyond, the velocity alone.
+const RATIO_MAX: f64 = 4.0;
 
 #[derive(Debug)]
 pub(super) struct SeaWork {
@@ -251,9 +254,10 @@ impl SeaWork {
         let work = |_, part: &mut [Due], instant: &mut Instant| {
             for due in part {
                 let times = (state.time, due.length);
+                let before = before(due.place, state);
                 let nodes = Nodes {
                     now: due.place.nodes(state),
-                    before: before(due.place, state),
+                    before: before.filter(|(_, since)| due.length <= RATIO_MAX * since),
                 };
                 sample(waves, times, nodes, &mut due.samples, (unit, instant));
             }

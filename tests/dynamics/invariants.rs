@@ -323,6 +323,28 @@ fn a_step_of_no_length_changes_nothing() {
 }
 
 #[test]
+fn a_slack_chain_above_its_anchor_weighs_what_hangs_though_segments_on_the_seabed_have_no_length() {
+    let scene = draft(
+        "water = { density = 1025.0 }
+        seabed = { depth = 60.0 }
+        solver = { integrator = 'axial_implicit' }
+        line_types.chain = { mass = 126.0, diameter = 0.144, axial_stiffness = 5.5e8, drag_normal = 1.3, added_mass_normal = 1.0 }
+        motion.fairlead = { x = [[1.0, 8.0]], z = [[0.5, 6.0]], ramp = 4.0 }",
+    )
+    .fixed("anchor", [0.0, 0.0, -60.0])
+    .coupled("fairlead", [0.0, 0.0, -5.0])
+    .line("line", ["anchor", "fairlead"], "chain", 60.0, 320)
+    .scene();
+    let mut chain = following(&scene);
+    let weight = chain.tension_b(0);
+    for _ in 0..120 {
+        chain.advance(0.05).unwrap();
+        let ratio = chain.tension_b(0) / weight;
+        assert!((0.9..1.1).contains(&ratio), "{ratio}"); // its inertia is 5 %
+    }
+}
+
+#[test]
 fn one_long_communication_step_is_many_short_ones() {
     for integrator in INTEGRATORS {
         let scene = chain(integrator);

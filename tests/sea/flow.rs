@@ -47,12 +47,13 @@ fn waves(components: &str) -> String {
     components.replace("RIPPLE", RIPPLE)
 }
 
+/// Distance [m] at a node of a line.
+type Distance<'a> = dyn Fn(usize, usize) -> Vector3<f64> + 'a;
+
 /// A host that computes Airy waves.
 struct Host {
     waves: Waves,
     flow: WaterFlow,
-    /// Positions of the nodes of all lines one step ago [m]; empty before the first step.
-    before: Vec<Vec<Vector3<f64>>>,
 }
 
 impl Host {
@@ -62,28 +63,25 @@ impl Host {
         Host {
             waves: model.waves.unwrap(),
             flow: WaterFlow::still(simulation.model()),
-            before: Vec::new(),
         }
     }
 
-    /// Sets the flow of a time [s] at the positions where it is required, which the built-in waves extrapolate by a parabola.
+    /// Sets the flow of a time [s] at the positions where it is required.
     fn give(&mut self, simulation: &mut Simulation, time: f64) {
-        let (step, lines) = (time - simulation.time(), simulation.state().lines.clone());
-        for (line, shape) in lines.iter().enumerate() {
+        self.give_beside(simulation, time, &|_, _| Vector3::zeros());
+    }
+
+    /// Sets the flow of a time [s] at a distance [m] from the positions where it is required.
+    fn give_beside(&mut self, simulation: &mut Simulation, time: f64, distance: &Distance) {
+        for line in 0..simulation.model().lines.len() {
             for node in 0..self.flow.node_count(line) {
-                let bend = self.before.get(line).map_or(Vector3::zeros(), |before| {
-                    step * shape.velocity[node] - (shape.position[node] - before[node])
-                });
-                let place = simulation.flow_place(line, node) + bend;
+                let place = simulation.flow_place(line, node) + distance(line, node);
                 let orbit = self.waves.orbit(place, time);
                 self.flow
                     .set(line, node, orbit.velocity.into(), orbit.acceleration.into());
             }
         }
         simulation.inputs_mut().flow.clone_from(&self.flow);
-        if step > 0.0 {
-            self.before = lines.into_iter().map(|shape| shape.position).collect();
-        }
     }
 }
 
@@ -165,8 +163,18 @@ fn difference_from_waves(sea: &str, integrator: Integrator, longest: f64) -> f64
     let mut host = Host::new(&own, &hosted);
     host.give(&mut hosted, 0.0);
     hosted.restart(0.0).unwrap();
+    let mut before: Vec<Vec<Vector3<f64>>> = Vec::new();
     let found = history(&mut hosted, step, count, |simulation, end| {
-        host.give(simulation, end)
+        let lines = simulation.state().lines.clone();
+        // from the straight path to the parabola on which the built-in waves are sampled
+        let bend = |line: usize, node: usize| {
+            let (now, rate) = (lines[line].position[node], lines[line].velocity[node]);
+            before
+                .get(line)
+                .map_or(Vector3::zeros(), |before| step * rate - (now - before[node]))
+        };
+        host.give_beside(simulation, end, &bend);
+        before = lines.into_iter().map(|line| line.position).collect();
     });
     difference(&found, &wanted)
 }
