@@ -183,9 +183,8 @@ impl Discretisation {
                     mesh.elements
                 )
             });
-            let untried =
-                !mesh.tried && mesh.error <= tolerance && self.scene.solver.integrator == Integrator::Auto;
-            let untried = untried.then(|| {
+            let is_extrapolated = !mesh.tried && !mesh.is_unknown() && mesh.error <= tolerance;
+            let untried = (is_extrapolated && self.scene.solver.integrator == Integrator::Auto).then(|| {
                 format!(
                     "{}: the mesh was extrapolated from coarser ones, and the error of its time steps was not tried; compare with a run with \
                      `integrator = \"leapfrog\"`",
