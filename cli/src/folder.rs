@@ -40,7 +40,7 @@ struct Place {
 #[derive(Debug)]
 pub(crate) struct Folder {
     place: Place,
-    /// The lock of a folder for results, unless it is taken.
+    /// Lock of a folder for results, until it is handed over.
     results: Option<ResultsFolder>,
 }
 
@@ -68,7 +68,7 @@ impl Folder {
         Folder { place, results }
     }
 
-    /// Gives the lock to something that lives shorter than this value.
+    /// Hands the lock over to a value that is dropped before this one.
     pub(crate) fn take(&mut self) -> ResultsFolder {
         self.results.take().expect("a folder for results, taken once")
     }

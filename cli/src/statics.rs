@@ -28,7 +28,7 @@ pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
         let path = line.winch.as_ref().and_then(|winch| winch.path.as_ref());
         if path.is_some_and(|path| path.at(0.0) != 0.0) {
             let at = format!("lines[{index}].winch.path");
-            let text = "runs start with the length that the path gives; the equilibrium that is shown has none paid out or hauled in";
+            let text = "runs start with the length that the path gives; the equilibrium shown has the length of the scene";
             remark_all(&loaded, vec![Note::new(at, text)]);
         }
     }
@@ -38,8 +38,8 @@ pub(crate) fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
     let has_friction = seabed.is_some_and(|seabed| seabed.friction.transverse > 0.0);
     if has_friction && !statics.vessels.is_empty() && statics.lines.iter().any(|line| line.laid_length > 0.0)
     {
-        let text = "the stiffness of the closed form lays every line anew; in small motions friction holds what is laid, \
-                    as in the stiffness from the elements, `elements` in --json";
+        let text = "the stiffness shown takes every line as freshly laid; in small motions friction holds the part on the seabed, \
+                    as in the stiffness from the elements: `elements` in --json";
         remark_all(&loaded, vec![Note::new("seabed.friction", text)]);
     }
     if as_json {

@@ -96,8 +96,8 @@ fn velocity_of_stretching(line: &Line, state: &LineState, node: usize) -> Vector
 }
 
 /// Rate of a segment's length [m/s] as the axial-implicit leapfrog takes it: the mean of the velocities along the segment at t_n, of which the
-/// coming one is extrapolated. These exceed the rates r of the length by ± κ/Δt while the segment turns (`leapfrog/axial_implicit.rs`), and the
-/// lengths that it finds make up for that. With the velocities v of the last step and of the earlier one along the segment at their ends, a,
+/// coming one is extrapolated. While the segment turns, these differ by ± κ/Δt from the rates r of its length (`leapfrog/axial_implicit.rs`), and the
+/// lengths that the scheme finds compensate for that. With a the velocity of a step along the segment at the end of that step,
 ///
 ///   rate = r + ½ (2 (r − r₋) − (a − a₋)).
 fn implicit_rate(chord: Vector3<f64>, [last, earlier]: [Vector3<f64>; 2], steps: [f64; 2]) -> f64 {

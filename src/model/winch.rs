@@ -92,7 +92,7 @@ impl Winch {
             return Ok(());
         }
         Err(format!(
-            "the winch cannot change its length by {change} m: the change is between {least} m, beyond which shorter elements would be hauled in, \
+            "the winch cannot change the length by {change} m, only by a value between {least} m, where finer elements would be needed to haul in more, \
              and length_max, {most} m"
         ))
     }

@@ -12,7 +12,7 @@ const LOCK: &str = ".moorline.lock";
 #[derive(Debug)]
 pub struct ResultsFolder {
     path: PathBuf,
-    /// Locked until it is closed, even if the process is killed.
+    /// Locked until it is closed, which the system does if the process is killed.
     _lock: File,
 }
 
@@ -32,7 +32,7 @@ impl ResultsFolder {
                 source,
             })?;
             match lock.try_lock() {
-                // removed by the process that wrote here before, since it was opened
+                // after it was opened here, the process that wrote before removed it
                 Ok(()) if !path.join(LOCK).exists() => {}
                 Ok(()) | Err(TryLockError::Error(_)) => return Ok(ResultsFolder { path, _lock: lock }),
                 Err(TryLockError::WouldBlock) => return Err(OutputError::InUse { path }),
@@ -45,9 +45,9 @@ impl ResultsFolder {
         &self.path
     }
 
-    /// Removes the file that is locked, before a process ends that has a folder open.
+    /// Removes the locked file of a folder, for a process that ends without dropping the value.
     pub fn abandon(path: &Path) {
-        let _ = fs::remove_file(path.join(LOCK)); // one that stays is not locked and is opened again
+        let _ = fs::remove_file(path.join(LOCK)); // a file that stays is not locked, and does no harm
     }
 }
 

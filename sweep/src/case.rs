@@ -28,7 +28,7 @@ const DURATION: &str = "output.duration";
 pub struct Base {
     loaded: LoadedScene,
     document: Value,
-    /// Remarks on the document, as in cases that have them too.
+    /// Notes on the document, under the paths that cases have: cases do not repeat them.
     known: Vec<Note>,
 }
 
@@ -41,13 +41,16 @@ impl Base {
         let mut loaded = load_with(path, supplement)?;
         let note = loaded.scene.without_host().map(|note| loaded.locate_note(note));
         loaded.notes.extend(note);
-        let text = match loaded.format {
-            TOML => loaded.text.clone(),
-            _ => loaded.scene.to_toml(),
+        let (text, known) = match loaded.format {
+            TOML => (loaded.text.clone(), loaded.notes.clone()),
+            _ => {
+                let text = loaded.scene.to_toml();
+                let known = load_text(&loaded.path, text.clone())?.notes;
+                (text, known)
+            }
         };
         let document = text.parse().map(Value::Table);
         let document = document.expect("the reader of scenes has read the same text");
-        let known = load_text(&loaded.path, text)?.notes;
         Ok(Base {
             loaded,
             document,

@@ -9,7 +9,7 @@
 //! ¼, ½, ¼). Below ½ it increases again, and below ⅓ it exceeds 1. Averaging delays waves by (3σ−1)(ωΔt)²/24, and waves up to ωΔt = 2 are stable
 //! without it. Therefore σ = max(⅓, 1 − 3.2/(ωΔt)²), with the highest axial frequency ω of the line; this is stable for all ρ from ½ to 1. σ is 1
 //! if springs may stiffen or are viscoelastic, or if an end is released. The new strain is linear in the new velocity,
-//! ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
+//! ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2 max(|G(r)|, L)), so that
 //!
 //! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)] + θ BA κ/Δt,  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
 //!

@@ -64,8 +64,9 @@ pub(super) struct SegmentRow {
     pub axial_damping: Lanes,
     /// Unit vectors q along the segments.
     pub direction: Vectors,
-    /// Lengths l at t_n [m], and 1/l.
+    /// Lengths l at t_n [m].
     pub length: Lanes,
+    /// 1/max(l, L) with the unstretched lengths L [1/m]: slack segments of no length do not turn without bound.
     pub inverse: Lanes,
     /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].
     pub along: Lanes,
