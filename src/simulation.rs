@@ -129,7 +129,10 @@ impl Simulation {
         let begin = |model: &Model| start::begin(model, 0.0, Inputs::new(model), false, shapes);
         let (mut snapshot, mut work) = begin(&model)?;
         let rests = |_: usize, line: &Line| line.initial == InitialShape::Static;
-        if start::stiffen_clamps(&mut model, &snapshot.state, rests) {
+        for round in 0..start::ADAPTATIONS_MAX {
+            if !start::adapt(&mut model, &snapshot.state, rests, round) {
+                break;
+            }
             (snapshot, work) = begin(&model)?;
         }
         let model = Arc::new(model);
@@ -162,8 +165,11 @@ impl Simulation {
         make_still(Arc::make_mut(&mut still.model));
         still.begin(0.0, false, start::Shapes::Equilibrium)?;
         let had_shape = |index: usize, _: &Line| self.model.lines[index].initial != InitialShape::Static;
-        let model = Arc::make_mut(&mut still.model);
-        if start::stiffen_clamps(model, &still.snapshot.state, had_shape) {
+        for round in 0..start::ADAPTATIONS_MAX {
+            let model = Arc::make_mut(&mut still.model);
+            if !start::adapt(model, &still.snapshot.state, had_shape, round) {
+                break;
+            }
             still.begin(0.0, false, start::Shapes::Equilibrium)?;
         }
         Ok(still)

@@ -97,16 +97,29 @@ impl History {
 
     /// Standard deviation, of positions in space, or the least value used if that is greater, in the history's unit.
     pub(super) fn deviation(&self) -> f64 {
-        let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
+        self.variation().max(self.least_deviation())
+    }
+
+    /// Returns whether the history varies so little that its errors are related to the least deviation.
+    pub(super) fn is_still(&self) -> bool {
+        self.variation() < self.least_deviation()
+    }
+
+    /// Least deviation to which errors are related, in the history's unit.
+    fn least_deviation(&self) -> f64 {
+        match self.kind {
+            Kind::Tension { .. } => STILL_TENSION * mean(&self.series[0]).abs(),
+            Kind::Positions { length } => STILL_POSITION * length,
+        }
+    }
+
+    /// Standard deviation, of positions in space, in the history's unit.
+    fn variation(&self) -> f64 {
         let squares = self.series.iter().map(|series| {
             let mean = mean(series);
             mean_square(series.iter().map(|value| value - mean))
         });
-        let least = match self.kind {
-            Kind::Tension { .. } => STILL_TENSION * mean(&self.series[0]).abs(),
-            Kind::Positions { length } => STILL_POSITION * length,
-        };
-        squares.sum::<f64>().sqrt().max(least)
+        squares.sum::<f64>().sqrt()
     }
 }
 
@@ -129,6 +142,10 @@ fn positions(simulation: &Simulation, line: usize) -> Vec<f64> {
         [0, 1, 2].map(|axis| of_axis(&axes[axis]))
     };
     PLACES.iter().flat_map(at).collect()
+}
+
+fn mean(series: &[f64]) -> f64 {
+    series.iter().sum::<f64>() / series.len() as f64
 }
 
 fn mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {

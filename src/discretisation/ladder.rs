@@ -204,6 +204,10 @@ impl Ladder {
             elements,
             error,
             tried: self.found.is_some(),
+            still: self
+                .runs
+                .last()
+                .is_some_and(|run| run.histories.iter().any(History::is_still)),
             short_sections: Some(1),
             rest: None,
         })
@@ -233,7 +237,7 @@ fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
 
 /// RMS difference of two runs over the deviation of the second, or over the least deviation used, for the line where this ratio is greatest [-]: the
 /// small variation of lines that hardly move needs no relative accuracy.
-fn distance(run: &Run, reference: &Run) -> f64 {
+pub(super) fn distance(run: &Run, reference: &Run) -> f64 {
     let lines = run.histories.iter().zip(&reference.histories);
     let of_line = |(own, right): (&History, &History)| match right.deviation() {
         0.0 => 0.0,

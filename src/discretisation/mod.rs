@@ -86,6 +86,8 @@ pub struct Mesh {
     pub error: f64,
     /// True if a trial was run on this mesh, or none is needed; false if it was extrapolated, or no trial could be run.
     pub tried: bool,
+    /// True if a line varies so little in the trials that its errors are related to the least deviation used, not to its own.
+    pub still: bool,
     /// Elements of sections that are one element on all levels [-]; `None` if their error could not be tried.
     pub short_sections: Option<usize>,
     /// Static error that requires more elements than the motion or the rule, if there is one.
@@ -110,6 +112,7 @@ impl Mesh {
             elements: line_elements(tolerance).round() as usize,
             error: 0.0,
             tried: true,
+            still: false,
             short_sections: Some(1),
             rest: None,
         }
@@ -139,7 +142,7 @@ impl Discretisation {
         for mesh in &self.meshes {
             let key = |mesh: &Mesh| {
                 let fewer = mesh.rest.map(|rest| rest.fewer);
-                (mesh.elements, mesh.tried, mesh.short_sections, fewer)
+                (mesh.elements, mesh.tried, mesh.still, mesh.short_sections, fewer)
             };
             match kinds.iter_mut().find(|kind| key(kind[0]) == key(mesh)) {
                 Some(kind) => kind.push(mesh),
@@ -239,6 +242,16 @@ impl Discretisation {
                 mesh.rest.map_or(mesh.elements, |rest| rest.fewer),
                 self.duration,
                 tried.join(", ")
+            ));
+        }
+        if mesh.still {
+            let of_line = if mesh.lines.len() > 1 { " of a line" } else { "" };
+            let (quantity, least) = match self.scene.solver.tolerance_of {
+                ToleranceOf::Position => ("position", "0.1 % of the length of the line"),
+                ToleranceOf::Tension | ToleranceOf::LowPassedTension => ("tension", "1 % of its mean"),
+            };
+            said.push(format!(
+                "the {quantity}{of_line} varies by less than {least}, to which these errors are therefore related: in its variation they are greater"
             ));
         }
         match mesh.short_sections {

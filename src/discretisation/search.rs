@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::ladder::{LEVELS, Ladder, smooth_error};
+use super::ladder::{LEVELS, Ladder, distance, smooth_error};
 use super::trials::{Run, Steps, Trials};
 use super::{AIM, Mesh, Networks, Trial, elements_of, short_sections};
 use crate::dynamics::axial_implicit_cost;
@@ -20,6 +20,10 @@ const WORTH: f64 = 0.8;
 const EXCESS_MAX: f64 = 100.0;
 /// Greatest number of halvings of the longest axial-implicit step [-].
 const HALVINGS: u32 = 8;
+/// Fraction of the tolerance allowed for the error of axial-implicit steps on a mesh that was not tried [-].
+const UNTRIED: f64 = 0.5;
+/// Number of axial-implicit steps that are tried for a mesh that was not, each half the one before [-].
+const HALVINGS_UNTRIED: u32 = 4;
 /// Greatest number of trials between two mesh levels [-].
 const TRIALS_BETWEEN: usize = 2;
 /// Ratio of the expected to the allowed error above which an option is not tried [-].
@@ -214,10 +218,7 @@ impl<'a> Search<'a> {
     /// Ratio of the error of implicit steps of at most `step` [s] to the part of the tolerance allowed for it [-], on the meshes found or else the
     /// last ones assessed, and the longest of these steps [s]. The ratio is 0 if the error cannot be determined.
     fn excess(&mut self, step: f64) -> (f64, f64) {
-        let assessed = self.ladders.iter().map(Ladder::assessed);
-        let elements: Vec<usize> = assessed
-            .map(|run| run.map_or(LEVELS[0], |run| run.elements))
-            .collect();
+        let elements = self.assessed();
         let steps = self.at_level(&elements);
         if !self.trials.implicit && steps.integrator != Integrator::AxialImplicit {
             return (0.0, step);
@@ -234,6 +235,13 @@ impl<'a> Search<'a> {
         let ladders = self.ladders.iter().zip(&halved);
         let errors = ladders.filter_map(|(ladder, halved)| Some(smooth_error(ladder.assessed()?, halved)));
         (errors.fold(0.0, f64::max) / most, step)
+    }
+
+    /// Elements of the meshes found, or else of the last ones assessed.
+    fn assessed(&self) -> Vec<usize> {
+        let runs = self.ladders.iter().map(Ladder::assessed);
+        runs.map(|run| run.map_or(LEVELS[0], |run| run.elements))
+            .collect()
     }
 
     /// Runs the scene with increasing numbers of elements in the networks that need them. Returns the cost in explicit steps of an element [-].
@@ -310,7 +318,7 @@ impl<'a> Search<'a> {
             return self.implicit(step).of(scene);
         }
         if !tried {
-            return scene;
+            return self.with_coarser_steps(&scene).unwrap_or(scene);
         }
         let Some((step, trials)) = self.axial_implicit(meshes) else {
             scene.solver.integrator = Integrator::Leapfrog;
@@ -320,6 +328,34 @@ impl<'a> Search<'a> {
             (mesh.elements, mesh.error) = (trial.elements, trial.error);
         }
         self.implicit(step).of(self.trials.with(&elements_of(meshes)))
+    }
+
+    /// Returns a scene on meshes that were not tried with axial-implicit steps that keep the error on the finest meshes assessed, compared with explicit
+    /// steps on these, or with explicit steps if none do. `None` if the rules choose explicit steps, or if these runs cost too much.
+    fn with_coarser_steps(&mut self, scene: &Scene) -> Option<Scene> {
+        let simulation = Simulation::new(scene).ok()?;
+        let choices = simulation.choices();
+        let axial_implicit = choices.filter(|choice| choice.integrator == Integrator::AxialImplicit);
+        let mut step = axial_implicit.map(|choice| choice.step_max).reduce(f64::min)?;
+        let elements = self.assessed();
+        if !self.trials.allow(self.explicit_cost(&elements)?.work) {
+            return None;
+        }
+        let explicit = Steps {
+            integrator: Integrator::Leapfrog,
+            ..self.implicit(scene.solver.time_step_max)
+        };
+        let right = self.trials.run(&elements, explicit).ok()??;
+        for _ in 0..HALVINGS_UNTRIED {
+            let steps = self.implicit(step);
+            let runs = self.trials.run(&elements, steps).ok()??;
+            let errors = runs.iter().zip(&right).map(|(run, right)| distance(run, right));
+            if errors.fold(0.0, f64::max) <= UNTRIED * self.tolerance() {
+                return Some(steps.of(scene.clone()));
+            }
+            step *= 0.5;
+        }
+        Some(explicit.of(scene.clone()))
     }
 
     /// Returns the cheapest axial-implicit steps [s] that keep the error on these meshes or finer ones, with the trials of the meshes; `None` if they

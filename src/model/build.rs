@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use self::reach::may_touch_seabed;
 use super::{
     Bending, Contact, Current, Drag, End, FreePoint, FroudeKrylov, Line, Model, Motion, Network, Nodes,
-    Point, PointContact, Release, Role, Seabed, Segments, Surface, Vessel, Winch, mesh,
+    Point, PointContact, Regularised, Release, Role, Seabed, Segments, Surface, Vessel, Winch, mesh,
 };
 use crate::math::circle;
 use crate::physics::bending;
@@ -25,7 +25,7 @@ use crate::physics::ground::{Grid, Ground};
 use crate::physics::morison::{DragCoefficients, drag_per_length};
 use crate::physics::point::Sphere;
 use crate::physics::rayleigh;
-use crate::physics::seabed::{ContactCoefficients, regularised, under_point};
+use crate::physics::seabed::{ContactCoefficients, under_point};
 use crate::physics::stretch::StretchLaw;
 use crate::physics::tension_table::TensionTable;
 use crate::physics::viscoelastic::Viscoelastic;
@@ -705,39 +705,30 @@ fn contact(scene: &Scene, parts: &[SegmentPart]) -> Contact {
     let of = |density: &dyn Fn(&LineLaw) -> f64| -> Vec<f64> {
         parts.iter().map(|part| part.length * density(part.law)).collect()
     };
-    let (weight, mass) = (of(&|law| law.weight), of(&|law| law.mass + law.added_normal));
-    let mut stiffness = of(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
-    let mut damping = of(&|law| law.contact.map_or(0.0, |contact| contact.damping));
-    let mut sinks = vec![0.0; parts.len()]; // compression of softened contact under a segment at rest [m]
-    if seabed.contact == ContactLaw::Regularised {
-        for i in 0..parts.len() {
-            let given = ContactCoefficients {
-                stiffness: stiffness[i],
-                damping: damping[i],
-            };
-            let soft = regularised(given, [weight[i], mass[i]], parts[i].length);
-            if soft.stiffness < given.stiffness {
-                sinks[i] = weight[i] / soft.stiffness;
-            }
-            (stiffness[i], damping[i]) = (soft.stiffness, soft.damping);
-        }
-    }
-    // a line at rest lies on the seabed; see also `resting`
-    let adjacent = |i: usize| &sinks[i.saturating_sub(1)..(i + 1).min(sinks.len())];
-    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
-    Contact {
+    let weight = of(&|law| law.weight);
+    let stiffness = of(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
+    let damping = of(&|law| law.contact.map_or(0.0, |contact| contact.damping));
+    let given = stiffness.iter().zip(&damping);
+    let given = given.map(|(&stiffness, &damping)| ContactCoefficients { stiffness, damping });
+    let regularised = (seabed.contact == ContactLaw::Regularised).then(|| Regularised {
+        given: given.collect(),
+        load: weight.clone(),
+    });
+    let mut contact = Contact {
         seabed_level: -seabed.depth,
-        level: (0..=parts.len())
-            .map(|i| mean(adjacent(i)) - seabed.depth)
-            .collect(),
+        level: vec![-seabed.depth; parts.len() + 1],
         stiffness,
         damping,
         weight,
-        mass,
+        mass: of(&|law| law.mass + law.added_normal),
+        regularised,
         at_nodes: seabed.contact == ContactLaw::AtNodes,
         seabed: None,
         stick: Vec::new(),
-    }
+    };
+    let lengths: Vec<f64> = parts.iter().map(|part| part.length).collect();
+    resting::size(&mut contact, &lengths);
+    contact
 }
 
 /// Refuses a beam that shares a free point with another line.

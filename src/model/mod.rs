@@ -381,12 +381,23 @@ pub struct Contact {
     pub weight: Vec<f64>,
     /// Mass across the line with the added mass, per segment [kg].
     pub mass: Vec<f64>,
+    /// Basis of regularised contact; `None` if stiffness and damping are those of the scene.
+    pub regularised: Option<Regularised>,
     /// True if contact acts at the nodes only.
     pub at_nodes: bool,
     /// Shape and friction of the seabed; `None` for a level plane without friction.
     pub seabed: Option<Arc<Seabed>>,
     /// Stiffness along the seabed of a node that sticks [N/m]; empty without friction.
     pub stick: Vec<f64>,
+}
+
+/// Basis of regularised contact, per segment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Regularised {
+    /// Stiffness and damping of the scene.
+    pub given: Vec<ContactCoefficients>,
+    /// Load that compresses the spring by the static penetration [N]: the weight less buoyancy, or the greater load over a ridge.
+    pub load: Vec<f64>,
 }
 
 /// Lines that share free points.

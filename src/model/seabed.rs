@@ -119,13 +119,33 @@ impl Contact {
 
     /// Part of the weight of a segment that the springs carry [-], with the nodes of the line at places [m].
     pub fn laid_part(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
-        let (weight, stiffness) = (self.weight[segment], self.stiffness[segment]);
+        let weight = self.weight[segment];
         if weight <= 0.0 {
             return 0.0;
         }
+        let carried = self
+            .spring_forces(segment, place)
+            .map(|force| (force / weight).min(1.0));
+        0.25 * carried.iter().sum::<f64>()
+    }
+
+    /// Force of the springs under a segment [N], with the nodes of the line at places [m].
+    pub fn load(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
+        0.25 * self.spring_forces(segment, place).iter().sum::<f64>()
+    }
+
+    /// Force of the springs under a whole segment [N] with the penetration at each of its parts.
+    fn spring_forces(&self, segment: usize, place: &[Vector3<f64>]) -> [f64; 4] {
         let [near, far] = [segment, segment + 1].map(|node| self.stand(node, place[node]).0);
-        let carried = |part: &Part| (stiffness * part.between(near, far) / weight).clamp(0.0, 1.0);
-        0.25 * self.parts().iter().map(carried).sum::<f64>()
+        self.parts()
+            .each_ref()
+            .map(|part| (self.stiffness[segment] * part.between(near, far)).max(0.0))
+    }
+
+    /// Returns whether the seabed has the shape of soundings.
+    pub fn on_soundings(&self) -> bool {
+        let seabed = self.seabed.as_ref();
+        seabed.is_some_and(|seabed| matches!(seabed.ground, Ground::Grid(_)))
     }
 
     /// z of the seabed under a place [m].

@@ -85,8 +85,23 @@ pub(super) fn begin(
     ))
 }
 
+/// Greatest number of times that an equilibrium is solved anew for clamps and springs adapted to it [-].
+pub(super) const ADAPTATIONS_MAX: usize = 4;
+
+/// Adapts the lines that `rests` selects to a state of rest, in the first `round` their clamps and then the springs of the seabed alone; returns whether
+/// any line is adapted.
+pub(super) fn adapt(
+    model: &mut Model,
+    state: &State,
+    rests: impl Fn(usize, &Line) -> bool,
+    round: usize,
+) -> bool {
+    let clamps = round == 0 && stiffen_clamps(model, state, &rests);
+    size_contact(model, state, rests) || clamps
+}
+
 /// Adapts the clamp joints of the lines that `rests` selects to their tension in a state of rest; returns whether any joint is adapted.
-pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
+fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
     let mut any = false;
     for (index, (line, shape)) in model.lines.iter_mut().zip(&state.lines).enumerate() {
         if line.bending.is_none() || !rests(index, line) {
@@ -98,6 +113,17 @@ pub(super) fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(us
             let bending = line.bending.as_mut();
             any |= bending.is_some_and(|bending| bending.stiffen_clamp(end, tension, length));
         }
+    }
+    any
+}
+
+/// Sizes the regularised springs of the seabed for the loads that they carry in a state of rest, under the lines that `rests` selects; returns whether
+/// any spring changed.
+fn size_contact(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
+    let Model { lines, points, .. } = model;
+    let mut any = false;
+    for (index, (line, shape)) in lines.iter_mut().zip(&state.lines).enumerate() {
+        any |= rests(index, line) && line.size_contact(points, &shape.position);
     }
     any
 }

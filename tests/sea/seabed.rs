@@ -359,6 +359,36 @@ fn a_line_over_a_ridge_rests_on_it_and_stays() {
     }
 }
 
+/// A taut chain on the seabed across a ridge 3 m high, and its tension without friction from the arc length over the ridge [N].
+fn across_a_ridge(elements: usize) -> (Scene, f64) {
+    let (span, length, axial_stiffness) = (600.0, 599.9, 753.6e6);
+    let height = |x: f64| 3.0 * (-((x - 300.0) / 30.0_f64).powi(2)).exp();
+    let x: Vec<f64> = (-5..126).map(|i| 5.0 * f64::from(i)).collect();
+    let depth: Vec<f64> = x.iter().map(|&x| 100.0 - height(x)).collect();
+    let ridge = format!("grid = {{ x = {x:?}, y = [-50.0, 50.0], depth = [{depth:?}, {depth:?}] }}");
+    let step = 0.01;
+    let rises =
+        (0..60_000).map(|i| (height((f64::from(i) + 1.0) * step) - height(f64::from(i) * step)).hypot(step));
+    let tension = axial_stiffness * (rises.sum::<f64>() / length - 1.0);
+    let scene = draft(format!(
+        "seabed = {{ depth = 100.0, {ridge} }}
+        line_types.chain = {{ mass = 108.6, diameter = 0.0766, axial_stiffness = {axial_stiffness:e}, axial_damping = 2.0e6 }}"
+    ))
+    .fixed("west", [0.0, 0.0, -100.0])
+    .fixed("east", [span, 0.0, -100.0])
+    .line("line", ["west", "east"], "chain", length, elements)
+    .scene();
+    (scene, tension)
+}
+
+#[test]
+fn a_taut_chain_does_not_sink_into_a_ridge() {
+    for (elements, most) in [(40, 0.08), (80, 0.03), (160, 0.01)] {
+        let (scene, tension) = across_a_ridge(elements);
+        assert_relative_eq!(start(&scene).tension_b(0), tension, max_relative = most);
+    }
+}
+
 #[test]
 fn a_hundred_times_stiffer_seabed_takes_the_same_steps() {
     for seabed in ["friction = 0.5", "slope = [0.02, 0.0]"] {

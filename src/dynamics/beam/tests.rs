@@ -189,6 +189,7 @@ fn dragged(n: usize) -> (Flight, impl Fn(f64) -> Section) {
         damping: vec![5.0; count - 1],
         weight: vec![0.0; count - 1],
         mass: vec![1.0; count - 1],
+        regularised: None,
         at_nodes: false,
         seabed: None,
         stick: Vec::new(),

@@ -19,8 +19,10 @@
 //!
 //! Source: beam without bending stiffness on Winkler's foundation, here solved for the level.
 
-use crate::model::{Contact, Line, Nodes, Point, Role};
-use crate::physics::seabed::REGULARISED_PENETRATION;
+use nalgebra::Vector3;
+
+use crate::model::{Contact, Line, Nodes, Point, Regularised, Role};
+use crate::physics::seabed::{REGULARISED_PENETRATION, regularised};
 
 /// Depth at which the line rests, relative to the static compression of the contact [-].
 const SUNK: f64 = 0.5;
@@ -28,6 +30,67 @@ const SUNK: f64 = 0.5;
 const RISE: f64 = 3.0;
 /// Length of the rise relative to ℓ for a line with bending stiffness, where ℓ counts up to an element [-].
 const RISE_BENT: f64 = 5.0;
+/// Greatest load of a segment relative to the load for which its springs are sized [-].
+const LOAD_MAX: f64 = 2.0;
+
+/// Sizes regularised springs and dampers for the loads of the segments, of the given lengths [m], and sets the level at which a line under these loads
+/// lies on the seabed.
+pub(super) fn size(contact: &mut Contact, length: &[f64]) {
+    let mut sinks = vec![0.0; length.len()]; // compression of softened contact under the load [m]
+    if let Some(Regularised { given, load }) = &contact.regularised {
+        for (i, (given, &load)) in given.iter().zip(load).enumerate() {
+            let soft = regularised(*given, [load, contact.mass[i]], length[i]);
+            if soft.stiffness < given.stiffness {
+                sinks[i] = load / soft.stiffness;
+            }
+            (contact.stiffness[i], contact.damping[i]) = (soft.stiffness, soft.damping);
+        }
+    }
+    let adjacent = |i: usize| &sinks[i.saturating_sub(1)..(i + 1).min(sinks.len())];
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    for (i, level) in contact.level.iter_mut().enumerate() {
+        *level = mean(adjacent(i)) + contact.seabed_level;
+    }
+}
+
+impl Line {
+    /// Sizes the regularised springs anew where soundings press on a segment with more than [`LOAD_MAX`] times the load for which its spring is sized,
+    /// as a ridge does on a line in tension. Adjacent segments, to which the load may move, are sized alike. `place` are the nodes at rest [m]. Returns
+    /// whether any spring changed.
+    pub fn size_contact(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
+        let Some(contact) = self
+            .nodes
+            .contact
+            .as_mut()
+            .filter(|contact| contact.on_soundings())
+        else {
+            return false;
+        };
+        let Some(Regularised { given, load }) = &contact.regularised else {
+            return false;
+        };
+        let carried: Vec<f64> = (0..load.len()).map(|i| contact.load(i, place)).collect();
+        let is_soft = |i: &usize| contact.stiffness[*i] < given[*i].stiffness;
+        let sinks = |i: &usize| is_soft(i) && carried[*i] > LOAD_MAX * load[*i];
+        let sunk: Vec<usize> = (0..load.len()).filter(sinks).collect();
+        if sunk.is_empty() || self.winch.is_some() {
+            return false; // the nodes of a line on a winch move along it
+        }
+        let mut load = load.clone();
+        for i in sunk {
+            let last = (i + 1).min(load.len() - 1);
+            for near in &mut load[i.saturating_sub(1)..=last] {
+                *near = near.max(carried[i]);
+            }
+        }
+        if let Some(regularised) = &mut contact.regularised {
+            regularised.load = load;
+        }
+        size(contact, &self.segments.length);
+        sink(self, points);
+        true
+    }
+}
 
 /// Lowers the level below which softened contact acts, from the level at which a line would rest on the seabed to the level
 /// that makes its suspended part accurate.
