@@ -68,7 +68,7 @@ impl Folder {
         Folder { place, results }
     }
 
-    /// Hands the lock over to a value that is dropped before this one.
+    /// Moves the lock to a value that is dropped before this one.
     pub(crate) fn take(&mut self) -> ResultsFolder {
         self.results.take().expect("a folder for results, taken once")
     }

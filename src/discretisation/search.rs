@@ -336,7 +336,8 @@ impl<'a> Search<'a> {
         let simulation = Simulation::new(scene).ok()?;
         let choices = simulation.choices();
         let axial_implicit = choices.filter(|choice| choice.integrator == Integrator::AxialImplicit);
-        let mut step = axial_implicit.map(|choice| choice.step_max).reduce(f64::min)?;
+        let step = axial_implicit.map(|choice| choice.step_max).reduce(f64::min)?;
+        let mut step = rounded_down(step);
         let elements = self.assessed();
         if !self.trials.allow(self.explicit_cost(&elements)?.work) {
             return None;
@@ -440,6 +441,12 @@ impl<'a> Search<'a> {
             axial_work: axial_implicit_cost(model.lines.iter()) * segments as f64 * output.duration,
         })
     }
+}
+
+/// Rounds a step [s] down to two significant digits.
+fn rounded_down(step: f64) -> f64 {
+    let per_unit = 10_f64.powf(1.0 - step.log10().floor());
+    (per_unit * step).floor() / per_unit
 }
 
 /// Cost of the runs of all networks, in explicit steps of an element [-].

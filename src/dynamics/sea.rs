@@ -7,7 +7,7 @@
 //!
 //! The position of a node is extrapolated by the parabola through its positions at the start of the previous span and of this one, with its velocity at
 //! the latter. For a node that follows a wave over a twelfth of its period the error is 5 % of the amplitude. On a body the load of the waves is not small
-//! beside the other forces, and a body may vibrate on taut lines faster than the wave: the spans of points are a quarter as long, but at least one step.
+//! compared with the other forces, and a body may vibrate on taut lines faster than the wave: the spans of points are a quarter as long, but at least one step.
 //! The values at the end of a span are those at the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use nalgebra::Vector3;

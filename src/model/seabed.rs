@@ -129,6 +129,13 @@ impl Contact {
         0.25 * carried.iter().sum::<f64>()
     }
 
+    /// Returns whether the springs act on all parts of a segment, with the nodes of the line at places [m].
+    pub fn is_laid(&self, segment: usize, place: &[Vector3<f64>]) -> bool {
+        self.spring_forces(segment, place)
+            .iter()
+            .all(|force| *force > 0.0)
+    }
+
     /// Force of the springs under a segment [N], with the nodes of the line at places [m].
     pub fn load(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
         0.25 * self.spring_forces(segment, place).iter().sum::<f64>()

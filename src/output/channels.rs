@@ -1,7 +1,7 @@
 //! Output channels with MoorDyn's names, in columns next to those of moorline.
 //!
-//! Tensions of nodes are those of segments, as in MoorDyn-C: at an end, the tension of the last segment; at an inner node, the magnitude of the mean
-//! of the two adjacent tension vectors. Positions are global. Forces at a point are those of [`Simulation::end_force`].
+//! Tensions of nodes are those of MoorDyn: at an end, the magnitude of the force on the point with the weight and drag of half a segment; at an inner
+//! node, that of the mean of the two adjacent tension vectors. Positions are global. Forces at a point include its own load, but no inertia.
 //!
 //! Source: MoorDyn 2.7.2, files and functions compared on one deck (`python_tests/test_libmoordyn.py`).
 

@@ -107,14 +107,20 @@ impl Scene {
         if self.makes_beams(line_type) {
             return "no structural damping: waves along the line are not damped".to_string();
         }
-        let open = "no `axial_damping`: the default decreases on finer meshes, so that axial waves decay slowly and results converge slowly";
+        let key = match line_type.dynamic_stiffness {
+            Some(_) => "dynamic_damping",
+            None => "axial_damping",
+        };
+        let open = format!(
+            "no `{key}`: the default decreases on finer meshes, so that axial waves decay slowly and results converge slowly"
+        );
         match self.damping_of_first_mode(line_type, longest) {
             Some(damping) => format!(
-                "{open}; `axial_damping = {damping:.1e}` [N s] would damp the first axial mode of {} with {} % of critical",
+                "{open}; `{key} = {damping:.1e}` [N s] would damp the first axial mode of {} with {} % of critical",
                 quantity(longest, "m"),
                 number(100.0 * FIRST_MODE_RATIO)
             ),
-            None => open.to_string(),
+            None => open,
         }
     }
 

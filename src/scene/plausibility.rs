@@ -92,7 +92,7 @@ fn outside(value: f64, [lower, upper]: [f64; 2]) -> bool {
     !(lower..=upper).contains(&value)
 }
 
-/// Notes rows of a current's profile, and its factor; the velocity has a usual range of its own.
+/// Notes rows of a current's profile, and its factor; the usual range of the velocity is checked separately.
 fn current(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(current) = scene.current() else {
         return;
@@ -389,7 +389,7 @@ fn weight_strain(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Notes sections whose elements, of given numbers, are far shorter than those beside them.
+/// Notes sections whose elements, of given numbers, are far shorter than the adjacent ones.
 fn element_lengths(scene: &Scene, notes: &mut Vec<Note>) {
     if scene.solver.integrator == Integrator::QuasiStatic {
         return;

@@ -42,9 +42,9 @@ impl<'t> Row<'t> {
         self.start + blanks..self.start + self.text.len()
     }
 
-    /// The row up to the first `mark`.
-    pub fn before(&self, mark: char) -> Row<'t> {
-        let end = self.text.find(mark).unwrap_or(self.text.len());
+    /// The row up to the first of the `marks`.
+    pub fn before(&self, marks: &[char]) -> Row<'t> {
+        let end = self.text.find(marks).unwrap_or(self.text.len());
         Row {
             text: self.text[..end].trim_end(),
             start: self.start,
@@ -123,7 +123,7 @@ mod tests {
                 assert_eq!(&text[field.span.clone()], field.text);
             }
         }
-        let words = rows[1].before('#').fields();
+        let words = rows[1].before(&['#']).fields();
         let words: Vec<&str> = words.iter().map(|field| field.text).collect();
         assert_eq!(words, ["ü", "c"]);
     }

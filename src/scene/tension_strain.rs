@@ -113,7 +113,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let mut heading = (1, "");
     for row in Row::all(&text) {
         let line = text[..row.span().start].matches('\n').count() + 1;
-        let row = row.before('#');
+        let row = row.before(&['#']);
         // with semicolons between the columns, a comma is the decimal mark
         let decimal = row.text.contains(';');
         let cells = row.split(|c| c.is_whitespace() || c == if decimal { ';' } else { ',' });

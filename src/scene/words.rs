@@ -19,9 +19,9 @@ use super::{ForceOutput, Format, Frames, Integrator, InterfaceOutput, Output, Re
 const WIDTH: usize = 110;
 
 /// Sentence on the relation of the tensions among the channels to the variables of a line.
-const TENSIONS_OF_CHANNELS: &str = "tensions among them are those of segments, as in MoorDyn-C: the last one for FairTen, the first for AnchTen, \
-     the mean of both segments at an inner node; `tension_a` and `tension_b` of a line are the forces on the points at its ends, including the \
-     weight, drag and inertia of half a segment";
+const TENSIONS_OF_CHANNELS: &str = "tensions among them are those of MoorDyn: at an end (FairTen, AnchTen), the magnitude of the force on the \
+     point with the weight and drag of half a segment; at an inner node, the mean of both segments; `tension_a` and `tension_b` of a line \
+     include the inertia of the half segment too";
 
 impl Scene {
     /// Describes the scene in sentences, with one line per line type, vessel, point and line.

@@ -439,8 +439,8 @@ impl Simulation {
             .collect()
     }
 
-    /// Tension of node `i` of a line as MoorDyn-C writes it [N], including damping within the line: at an end, the tension of the adjacent segment;
-    /// at an inner node, half the magnitude of the vector sum of the tensions of the two adjacent segments. [`Simulation::tension_a`] and
+    /// Tension at node `i` of a line from its segments [N], including damping within the line: at an end, the tension of the adjacent segment; at an
+    /// inner node, half the magnitude of the vector sum of the tensions of the two adjacent segments, as MoorDyn-C writes it. [`Simulation::tension_a`] and
     /// [`Simulation::tension_b`] are the forces on the points at the ends, with weight, drag and inertia of the half segment.
     pub fn segment_tension(&self, line: usize, i: usize) -> f64 {
         let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);

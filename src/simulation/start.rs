@@ -86,7 +86,7 @@ pub(super) fn begin(
 }
 
 /// Greatest number of times that an equilibrium is solved anew for clamps and springs adapted to it [-].
-pub(super) const ADAPTATIONS_MAX: usize = 4;
+pub(super) const ADAPTATIONS_MAX: usize = 8;
 
 /// Adapts the lines that `rests` selects to a state of rest, in the first `round` their clamps and then the springs of the seabed alone; returns whether
 /// any line is adapted.
@@ -97,7 +97,7 @@ pub(super) fn adapt(
     round: usize,
 ) -> bool {
     let clamps = round == 0 && stiffen_clamps(model, state, &rests);
-    size_contact(model, state, rests) || clamps
+    adapt_contact(model, state, rests) || clamps
 }
 
 /// Adapts the clamp joints of the lines that `rests` selects to their tension in a state of rest; returns whether any joint is adapted.
@@ -117,13 +117,12 @@ fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line)
     any
 }
 
-/// Sizes the regularised springs of the seabed for the loads that they carry in a state of rest, under the lines that `rests` selects; returns whether
-/// any spring changed.
-fn size_contact(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
+/// Adapts the regularised contact of the lines that `rests` selects to the loads in a state of rest; returns whether any changed.
+fn adapt_contact(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
     let Model { lines, points, .. } = model;
     let mut any = false;
     for (index, (line, shape)) in lines.iter_mut().zip(&state.lines).enumerate() {
-        any |= rests(index, line) && line.size_contact(points, &shape.position);
+        any |= rests(index, line) && line.adapt_contact(points, &shape.position);
     }
     any
 }

@@ -130,7 +130,7 @@ fn buried(simulation: &Simulation) -> Vec<Note> {
     held.filter_map(note).collect()
 }
 
-/// Notes on lines that lie deep in a seabed that is not level: pulled into its softened springs over a ridge, or cutting through one between nodes.
+/// Notes on lines that lie deep in a seabed that is not level: sunk into its softened springs over a ridge, or cutting through one between nodes.
 fn sunk(simulation: &Simulation) -> Vec<Note> {
     let (model, lines) = (&simulation.model, &simulation.snapshot.state.lines);
     let Some(seabed) = model.seabed.as_ref().filter(|seabed| !seabed.level) else {
@@ -149,8 +149,8 @@ fn sunk(simulation: &Simulation) -> Vec<Note> {
         model.lines[line].nodes.contact.as_ref()?;
         let (depth, length) = deepest(line).filter(|(depth, length)| *depth > SUNK * length)?;
         let text = format!(
-            "{depth:.3} m inside the seabed at the start, with elements of {length:.2} m: over a ridge, a line in tension sinks into the regularised \
-             seabed, and an element cuts straight through; `contact = \"as_given\"` and more elements are more accurate"
+            "{depth:.3} m inside the seabed at the start, with elements of {length:.2} m: they cut straight through a ridge or lie on softened \
+             springs; more elements are more accurate"
         );
         Some(Note::new(format!("lines[{line}]"), text))
     };

@@ -131,7 +131,7 @@ impl Case {
         Ok(scene)
     }
 
-    /// Files that the scene names, and the units beside motion files.
+    /// Files that the scene names, and the files of units next to motion files.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let mut names = Vec::new();
         let document = self.input.document.parse().map(Value::Table);

@@ -180,7 +180,7 @@ fn numbers_out_of_order(deck: &Deck, draft: &mut Draft<'_>) {
     }
 }
 
-/// Adds a note for each line whose fixed node lies above the seabed. In MAP++ every line has a level seabed of its own, at its NodeAnch.
+/// Adds a note for each line whose fixed node lies above the seabed. In MAP++ every line has a separate level seabed, at its NodeAnch.
 fn anchors_above(deck: &Deck, depth: f64, draft: &mut Draft<'_>) {
     for line in &deck.lines {
         let [anchor, _] = &line.ends;
@@ -232,7 +232,7 @@ fn remarks(deck: &Deck, draft: &mut Draft<'_>) {
     ));
     if let Some(first) = deck.unneeded.first() {
         let keys: Vec<&str> = deck.unneeded.iter().map(|key| key.value.as_str()).collect();
-        let text = format!("options that nothing here needs: {}", keys.join(", "));
+        let text = format!("options without effect: {}", keys.join(", "));
         draft.findings.remark(first, text);
     }
 }

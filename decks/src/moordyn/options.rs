@@ -10,7 +10,7 @@ use crate::table::{ROWS_MAX, is_one_of, left_out, placed_text};
 /// Keys, in capitals, that control the solution, start and output of MoorDyn and have no effect here.
 const UNNEEDED: &str = "DTM DT CFL TSCHEME DTIC ICDT CDSCALEIC ICDFAC THRESHIC ICTHRESH FILEIC ICGENDYNAMIC \
     GENDYNAMICIC ICFILE WRITELOG WRITEUNITS DISABLEOUTPUT DISABLEOUTTIME OUTSWITCH INERTIALF \
-    INERTIALF_RAMPT ECHO DTWAVE UNIFYCURRENTGRID DTOUTSNAP";
+    INERTIALF_RAMPT WAVEKIN_RAMPT ECHO DTWAVE UNIFYCURRENTGRID DTOUTSNAP";
 
 /// Meanings of the keys with an effect, and the spellings of these keys in capitals.
 const NEEDED: [(Meaning, &str); 12] = [
@@ -65,6 +65,9 @@ fn meaning(key: &str) -> Option<Meaning> {
 /// Keys of a file with the initial state.
 const STATE_FILES: &str = "FILEIC ICFILE";
 
+/// Key of the time over which MoorDyn-C raises the waves [s].
+const WAVE_RAMP: &str = "WAVEKIN_RAMPT";
+
 /// A row of OPTIONS.
 struct Choice {
     key: Placed<String>,
@@ -98,6 +101,12 @@ pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
             take(&mut options, meaning, choice, findings);
         } else if is_one_of(&key.value, STATE_FILES) && number(&value.value) != Ok(0.0) {
             options.state_file = Some(key.with(format!("{} {}", key.value, value.value)));
+        } else if is_one_of(&key.value, WAVE_RAMP) && number(&value.value) != Ok(0.0) {
+            let text = format!(
+                "{} is not read: the waves act in full from the start; `ramp` in `waves` of a scene raises them along half a cosine",
+                key.value
+            );
+            findings.remark(key, text);
         } else if is_one_of(&key.value, UNNEEDED) {
             options.unneeded.push(key.clone());
         } else if meaning(&value.value).is_some() || is_one_of(&value.value, UNNEEDED) {

@@ -21,6 +21,9 @@ pub(super) enum Kind {
     Outputs,
 }
 
+/// Marks of comments, which reach to the end of the row.
+const COMMENTS: [char; 3] = ['#', '!', '%'];
+
 /// Kinds, their names in messages, and the words of their headers in capitals; the first match counts, as in MoorDyn.
 const KINDS: [(Kind, &str, &[&str]); 11] = [
     (Kind::LineTypes, "LINE TYPES", &["LINE DICTIONARY", "LINE TYPES"]),
@@ -113,7 +116,7 @@ fn kind_of(row: &Row<'_>) -> Option<Kind> {
 
 /// Returns whether a text is a MoorDyn file, that is, has a header of such files.
 pub(crate) fn is_deck(text: &str) -> bool {
-    let mut rows = Row::all(text).map(|row| row.before('#'));
+    let mut rows = Row::all(text).map(|row| row.before(&COMMENTS));
     rows.any(|row| {
         let rule = row.text.trim_start().starts_with("---");
         rule && (kind_of(&row).is_some() || row.text.to_uppercase().contains("MOORDYN"))
@@ -126,7 +129,7 @@ pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> 
     // All rows below an unknown header count as one mistake.
     let mut unknown: Option<Row<'t>> = None;
     for whole in Row::all(text) {
-        let row = whole.before('#');
+        let row = whole.before(&COMMENTS);
         if row.text.trim().is_empty() {
             continue;
         }

@@ -97,7 +97,7 @@ fn unneeded_options(deck: &Deck, findings: &mut Findings) {
     if let Some(first) = unneeded.first() {
         let keys: Vec<&str> = unneeded.iter().map(|key| key.value.as_str()).collect();
         let text = format!(
-            "options that nothing here needs, since steps and the start are found without them: {}",
+            "options without effect, since the steps and the initial state follow from the scene: {}",
             keys.join(", ")
         );
         findings.remark(first, text);
@@ -114,8 +114,7 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
     let numbers = &deck.options.numbers;
     if let Some(damping) = numbers.get(&Meaning::FrictionDamping) {
-        let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a \
-                    line at rest creep";
+        let text = "friction here sticks up to its limit and needs no damping below it, with which a line at rest creeps in MoorDyn";
         findings.remark(damping, text);
     }
     if let Some(scale) = numbers.get(&Meaning::StaticFriction)

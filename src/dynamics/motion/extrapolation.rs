@@ -85,7 +85,7 @@ impl Clock {
     }
 
     /// Adds the sample of a step of length `step` [s] from `time` [s], taken at its end with [`Reconstruction::Interpolate`], else at its start. Sets
-    /// `extrapolation` for the continuation of the paths over the step, whatever its previous content.
+    /// `extrapolation` for the continuation of the paths over the step; its previous content is not used.
     pub fn add_sample(
         &mut self,
         time: f64,

@@ -31,7 +31,9 @@ const RISE: f64 = 3.0;
 /// Length of the rise relative to ℓ for a line with bending stiffness, where ℓ counts up to an element [-].
 const RISE_BENT: f64 = 5.0;
 /// Greatest load of a segment relative to the load for which its springs are sized [-].
-const LOAD_MAX: f64 = 2.0;
+const LOAD_MAX: f64 = 1.1;
+/// Least shift of a level under a laid line, relative to the compression of the springs [-].
+const SHIFT_MIN: f64 = 0.1;
 
 /// Sizes regularised springs and dampers for the loads of the segments, of the given lengths [m], and sets the level at which a line under these loads
 /// lies on the seabed.
@@ -54,41 +56,83 @@ pub(super) fn size(contact: &mut Contact, length: &[f64]) {
 }
 
 impl Line {
-    /// Sizes the regularised springs anew where soundings press on a segment with more than [`LOAD_MAX`] times the load for which its spring is sized,
-    /// as a ridge does on a line in tension. Adjacent segments, to which the load may move, are sized alike. `place` are the nodes at rest [m]. Returns
-    /// whether any spring changed.
-    pub fn size_contact(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
-        let Some(contact) = self
-            .nodes
-            .contact
-            .as_mut()
-            .filter(|contact| contact.on_soundings())
-        else {
+    /// Adapts regularised contact to soundings that press on a line in tension with another load than its weight, as a ridge and its flanks do. `place`
+    /// are the nodes at rest [m]. Returns whether anything changed.
+    pub fn adapt_contact(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
+        let contact = self.nodes.contact.as_ref();
+        let on_soundings = contact.is_some_and(Contact::on_soundings);
+        // the nodes of a line on a winch move along it
+        on_soundings
+            && self.winch.is_none()
+            && (self.size_springs(points, place) || self.shift_levels(points, place))
+    }
+
+    /// Sizes springs that carry more than [`LOAD_MAX`] times the load for which they are sized, with those of adjacent segments, to which the load may
+    /// move; returns whether there are any.
+    fn size_springs(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
+        let Some(contact) = &mut self.nodes.contact else {
             return false;
         };
         let Some(Regularised { given, load }) = &contact.regularised else {
             return false;
         };
         let carried: Vec<f64> = (0..load.len()).map(|i| contact.load(i, place)).collect();
-        let is_soft = |i: &usize| contact.stiffness[*i] < given[*i].stiffness;
-        let sinks = |i: &usize| is_soft(i) && carried[*i] > LOAD_MAX * load[*i];
+        let is_soft = |i: usize| contact.stiffness[i] < given[i].stiffness;
+        let sinks = |i: &usize| is_soft(*i) && carried[*i] > LOAD_MAX * load[*i];
         let sunk: Vec<usize> = (0..load.len()).filter(sinks).collect();
-        if sunk.is_empty() || self.winch.is_some() {
-            return false; // the nodes of a line on a winch move along it
-        }
         let mut load = load.clone();
-        for i in sunk {
+        for &i in &sunk {
             let last = (i + 1).min(load.len() - 1);
             for near in &mut load[i.saturating_sub(1)..=last] {
                 *near = near.max(carried[i]);
             }
         }
-        if let Some(regularised) = &mut contact.regularised {
+        if let Some(regularised) = contact.regularised.as_mut().filter(|_| !sunk.is_empty()) {
             regularised.load = load;
+            size(contact, &self.segments.length);
+            sink(self, points);
         }
-        size(contact, &self.segments.length);
-        sink(self, points);
-        true
+        !sunk.is_empty()
+    }
+
+    /// Shifts the level under nodes between segments that lie on the seabed, until they lie as deep as under the loads for which the springs are sized;
+    /// returns whether any level changed by more than [`SHIFT_MIN`].
+    fn shift_levels(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
+        let unshifted = self.levels_of_loads(points);
+        let Some(contact) = &mut self.nodes.contact else {
+            return false;
+        };
+        let regularised = contact.regularised.as_ref();
+        let Some(Regularised { load, .. }) = regularised.filter(|sized| sized.load != contact.weight) else {
+            return false;
+        };
+        let mut level = contact.level.clone();
+        let mut shifts = false;
+        for node in 1..place.len() - 1 {
+            let adjacent = || contact.adjacent(node).map(|(segment, _)| segment);
+            if !adjacent().all(|segment| contact.is_laid(segment, place)) {
+                continue;
+            }
+            let compression: f64 = adjacent().map(|i| 0.5 * load[i] / contact.stiffness[i]).sum();
+            let height = contact.lift(node) - contact.stand(node, place[node]).0;
+            let shift = unshifted[node] - contact.seabed_level - compression - height;
+            shifts |= shift.abs() > SHIFT_MIN * compression;
+            level[node] += shift;
+        }
+        if shifts {
+            contact.level = level;
+        }
+        shifts
+    }
+
+    /// Levels at which a line under the loads of its springs lies on the seabed [m], per node.
+    fn levels_of_loads(&self, points: &[Point]) -> Vec<f64> {
+        let mut line = self.clone();
+        if let Some(contact) = &mut line.nodes.contact {
+            size(contact, &self.segments.length);
+        }
+        sink(&mut line, points);
+        line.nodes.contact.map_or(Vec::new(), |contact| contact.level)
     }
 }
 
