@@ -38,6 +38,8 @@ impl fmt::Display for Note {
     }
 }
 
+/// Least number of steps in a period of a motion without a note [-].
+const STEPS_PER_PERIOD: f64 = 10.0;
 /// Damping ratio of the first axial mode of a line with the suggested axial damping [-].
 const FIRST_MODE_RATIO: f64 = 0.01;
 
@@ -262,7 +264,16 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
     let slides = scene.seabed.as_ref().is_some_and(|seabed| seabed.friction.acts());
     let mut types = scene.line_types.values();
     let steps = scene.output.duration / scene.output.interval;
+    let longest = scene.solver.time_step_max.min(scene.output.interval);
+    let follows_steps = !matches!(
+        scene.solver.integrator,
+        Integrator::Auto | Integrator::Leapfrog | Integrator::QuasiStatic
+    );
+    let period = scene.periods().reduce(f64::min).filter(|_| follows_steps);
     rules! { notes, "";
+        "solver.integrator" given period = period.filter(|period| *period < STEPS_PER_PERIOD * longest) =>
+            "steps of up to {} do not resolve the motion with a period of {}; {} would take {STEPS_PER_PERIOD} steps in it",
+            quantity(longest, "s"), quantity(period, "s"), quantity(period / STEPS_PER_PERIOD, "s");
         "gravity" if scene.gravity == 0.0 => "0: lines and points are weightless";
         "seabed.friction" if slides && types.any(|line_type| scene.makes_beams(line_type)) =>
             "beams have no friction on the seabed: for them `friction` changes nothing";

@@ -17,6 +17,10 @@
 //! which a beam on springs of stiffness k per length settles; its curvature is then that of the step. R grows up to five
 //! elements as ℓ approaches an element.
 //!
+//! Over a ridge of soundings a line under the tension T presses on the seabed with w + Tκ per length, and on the flanks with less than w. On springs sized
+//! for w it would sink in at the crest and lie high on the flanks, shorter than the ridge by far more than its stretch.
+//! [`Line::adapt_contact`] sizes the springs for the load at rest and shifts the level, so that laid nodes are δ/2 below the seabed everywhere.
+//!
 //! Source: beam without bending stiffness on Winkler's foundation, here solved for the level.
 
 use nalgebra::Vector3;
