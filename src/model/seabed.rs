@@ -119,40 +119,31 @@ impl Contact {
 
     /// Part of the weight of a segment that the springs carry [-], with the nodes of the line at places [m].
     pub fn laid_part(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
-        let weight = self.weight[segment];
+        let (weight, stiffness) = (self.weight[segment], self.stiffness[segment]);
         if weight <= 0.0 {
             return 0.0;
         }
-        let carried = self
-            .spring_forces(segment, place)
-            .map(|force| (force / weight).min(1.0));
-        0.25 * carried.iter().sum::<f64>()
-    }
-
-    /// Returns whether the springs act on all parts of a segment, with the nodes of the line at places [m].
-    pub fn is_laid(&self, segment: usize, place: &[Vector3<f64>]) -> bool {
-        self.spring_forces(segment, place)
-            .iter()
-            .all(|force| *force > 0.0)
-    }
-
-    /// Force of the springs under a segment [N], with the nodes of the line at places [m].
-    pub fn load(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
-        0.25 * self.spring_forces(segment, place).iter().sum::<f64>()
-    }
-
-    /// Force of the springs under a whole segment [N] with the penetration at each of its parts.
-    fn spring_forces(&self, segment: usize, place: &[Vector3<f64>]) -> [f64; 4] {
         let [near, far] = [segment, segment + 1].map(|node| self.stand(node, place[node]).0);
-        self.parts()
-            .each_ref()
-            .map(|part| (self.stiffness[segment] * part.between(near, far)).max(0.0))
+        let carried = |part: &Part| (stiffness * part.between(near, far) / weight).clamp(0.0, 1.0);
+        0.25 * self.parts().iter().map(carried).sum::<f64>()
     }
 
-    /// Returns whether the seabed has the shape of soundings.
-    pub fn on_soundings(&self) -> bool {
-        let seabed = self.seabed.as_ref();
-        seabed.is_some_and(|seabed| matches!(seabed.ground, Ground::Grid(_)))
+    /// Load of a segment of a length [m] on soundings that it touches or nearly touches, under a tension [N] in a line at rest with nodes at places [m]:
+    /// the weight, and the pull against the curvature of the ground, over an element to either side [N]. It is not negative, and the weight elsewhere.
+    pub fn load_at_rest(&self, segment: usize, length: f64, place: &[Vector3<f64>], tension: f64) -> f64 {
+        let weight = self.weight[segment];
+        let ground = self.seabed.as_ref().map(|seabed| &seabed.ground);
+        let Some(ground @ Ground::Grid(_)) = ground.filter(|_| weight > 0.0) else {
+            return weight;
+        };
+        let ends = [place[segment], place[segment + 1]];
+        let depths = [segment, segment + 1].map(|node| self.stand(node, place[node]).0);
+        if depths[0].max(depths[1]) < -weight / self.stiffness[segment] {
+            return weight;
+        }
+        let along = (ends[1] - ends[0]).xy().try_normalize(0.0).unwrap_or_default();
+        let curvature = ground.crest(0.5 * (ends[0] + ends[1]), length * along);
+        (weight + tension * curvature * length).max(0.0)
     }
 
     /// z of the seabed under a place [m].

@@ -17,7 +17,7 @@
 //! (2002), Curves and Surfaces for CAGD, 5th ed., chapter 14. Valid where penetrations are small compared with the
 //! radius of curvature. A summit between soundings of nearly equal height is cut off.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::math::real::{Real, RealVector};
@@ -133,6 +133,19 @@ impl Ground {
     /// Height of the surface [m] at x, y [m].
     pub fn height(&self, x: f64, y: f64) -> f64 {
         self.relief(x, y).height
+    }
+
+    /// Curvature of the surface along a horizontal step [m], from the heights at a place and a step before and behind it [1/m]; positive on crests, and 0
+    /// along no step.
+    pub fn crest(&self, place: Vector3<f64>, step: Vector2<f64>) -> f64 {
+        let height = |count: f64| self.height(place.x + count * step.x, place.y + count * step.y);
+        let [before, here, after] = [-1.0, 0.0, 1.0].map(height);
+        let square = step.norm_squared();
+        if square == 0.0 {
+            return 0.0;
+        }
+        let slope = 0.5 * (after - before) / square.sqrt();
+        (2.0 * here - before - after) / (square * (1.0 + slope * slope).powf(1.5))
     }
 
     /// Upward unit normal [-] at x, y [m].

@@ -122,7 +122,11 @@ fn adapt_contact(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) 
     let Model { lines, points, .. } = model;
     let mut any = false;
     for (index, (line, shape)) in lines.iter_mut().zip(&state.lines).enumerate() {
-        any |= rests(index, line) && line.adapt_contact(points, &shape.position);
+        if rests(index, line) {
+            let tension = |i: usize| reaction::tension(line, shape, i, false);
+            let tension: Vec<f64> = (0..line.segment_count()).map(tension).collect();
+            any |= line.adapt_contact(points, &shape.position, &tension);
+        }
     }
     any
 }

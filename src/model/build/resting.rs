@@ -19,7 +19,8 @@
 //!
 //! Over a ridge of soundings a line under the tension T presses on the seabed with w + Tκ per length, and on the flanks with less than w. On springs sized
 //! for w it would sink in at the crest and lie high on the flanks, shorter than the ridge by far more than its stretch.
-//! [`Line::adapt_contact`] sizes the springs for the load at rest and shifts the level, so that laid nodes are δ/2 below the seabed everywhere.
+//! [`Line::adapt_contact`] sizes the springs for the load at rest, if it exceeds the weight, and lowers the level where it is less than the weight, so that
+//! laid nodes are δ/2 below the seabed everywhere. κ is taken over an element to either side, and T in the first equilibrium.
 //!
 //! Source: beam without bending stiffness on Winkler's foundation, here solved for the level.
 
@@ -34,17 +35,16 @@ const SUNK: f64 = 0.5;
 const RISE: f64 = 3.0;
 /// Length of the rise relative to ℓ for a line with bending stiffness, where ℓ counts up to an element [-].
 const RISE_BENT: f64 = 5.0;
-/// Greatest load of a segment relative to the load for which its springs are sized [-].
-const LOAD_MAX: f64 = 1.1;
-/// Least shift of a level under a laid line, relative to the compression of the springs [-].
-const SHIFT_MIN: f64 = 0.1;
+/// Least change of the load of a segment to which the contact is adapted, relative to the weight [-].
+const CHANGE_MIN: f64 = 0.02;
 
-/// Sizes regularised springs and dampers for the loads of the segments, of the given lengths [m], and sets the level at which a line under these loads
-/// lies on the seabed.
+/// Sizes regularised springs and dampers for the loads of the segments, of the given lengths [m], but at least for their weights, and sets the level at
+/// which a line that loads them so lies on the seabed.
 pub(super) fn size(contact: &mut Contact, length: &[f64]) {
     let mut sinks = vec![0.0; length.len()]; // compression of softened contact under the load [m]
     if let Some(Regularised { given, load }) = &contact.regularised {
-        for (i, (given, &load)) in given.iter().zip(load).enumerate() {
+        for (i, given) in given.iter().enumerate() {
+            let load = load[i].max(contact.weight[i]);
             let soft = regularised(*given, [load, contact.mass[i]], length[i]);
             if soft.stiffness < given.stiffness {
                 sinks[i] = load / soft.stiffness;
@@ -52,91 +52,49 @@ pub(super) fn size(contact: &mut Contact, length: &[f64]) {
             (contact.stiffness[i], contact.damping[i]) = (soft.stiffness, soft.damping);
         }
     }
-    let adjacent = |i: usize| &sinks[i.saturating_sub(1)..(i + 1).min(sinks.len())];
-    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
     for (i, level) in contact.level.iter_mut().enumerate() {
-        *level = mean(adjacent(i)) + contact.seabed_level;
+        *level = mean_at_node(&sinks, i) + contact.seabed_level;
     }
 }
 
+/// Mean at a node of the values of the adjacent segments.
+fn mean_at_node(of_segments: &[f64], node: usize) -> f64 {
+    let adjacent = &of_segments[node.saturating_sub(1)..(node + 1).min(of_segments.len())];
+    adjacent.iter().sum::<f64>() / adjacent.len() as f64
+}
+
 impl Line {
-    /// Adapts regularised contact to soundings that press on a line in tension with another load than its weight, as a ridge and its flanks do. `place`
-    /// are the nodes at rest [m]. Returns whether anything changed.
-    pub fn adapt_contact(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
-        let contact = self.nodes.contact.as_ref();
-        let on_soundings = contact.is_some_and(Contact::on_soundings);
-        // the nodes of a line on a winch move along it
-        on_soundings
-            && self.winch.is_none()
-            && (self.size_springs(points, place) || self.shift_levels(points, place))
-    }
-
-    /// Sizes springs that carry more than [`LOAD_MAX`] times the load for which they are sized, with those of adjacent segments, to which the load may
-    /// move; returns whether there are any.
-    fn size_springs(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
-        let Some(contact) = &mut self.nodes.contact else {
+    /// Adapts regularised contact to soundings that press on the segments with another load than their weight, w + Tκ per length. `place` are the nodes
+    /// at rest [m], and `tension` the tensions of the segments [N]. Returns whether the load of any segment changed by more than [`CHANGE_MIN`].
+    pub fn adapt_contact(&mut self, points: &[Point], place: &[Vector3<f64>], tension: &[f64]) -> bool {
+        let Some(contact) = self.nodes.contact.as_mut().filter(|_| self.winch.is_none()) else {
+            return false; // the nodes of a line on a winch move along it
+        };
+        let length = &self.segments.length;
+        let load = |i: usize| contact.load_at_rest(i, length[i], place, tension[i]);
+        let loads: Vec<f64> = (0..length.len()).map(load).collect();
+        let weight = contact.weight.clone();
+        let Some(Regularised { load, .. }) = &mut contact.regularised else {
             return false;
         };
-        let Some(Regularised { given, load }) = &contact.regularised else {
+        let changes = load.iter().zip(&loads).zip(&weight);
+        if !changes
+            .clone()
+            .any(|((before, now), weight)| (now - before).abs() > CHANGE_MIN * weight)
+        {
             return false;
-        };
-        let carried: Vec<f64> = (0..load.len()).map(|i| contact.load(i, place)).collect();
-        let is_soft = |i: usize| contact.stiffness[i] < given[i].stiffness;
-        let sinks = |i: &usize| is_soft(*i) && carried[*i] > LOAD_MAX * load[*i];
-        let sunk: Vec<usize> = (0..load.len()).filter(sinks).collect();
-        let mut load = load.clone();
-        for &i in &sunk {
-            let last = (i + 1).min(load.len() - 1);
-            for near in &mut load[i.saturating_sub(1)..=last] {
-                *near = near.max(carried[i]);
+        }
+        load.clone_from(&loads);
+        size(contact, length);
+        sink(self, points);
+        if let Some(contact) = &mut self.nodes.contact {
+            let spared = |i: usize| (weight[i] - loads[i]).max(0.0) / contact.stiffness[i];
+            let spared: Vec<f64> = (0..loads.len()).map(spared).collect(); // less compression than under the weight [m]
+            for (node, level) in contact.level.iter_mut().enumerate() {
+                *level -= mean_at_node(&spared, node);
             }
         }
-        if let Some(regularised) = contact.regularised.as_mut().filter(|_| !sunk.is_empty()) {
-            regularised.load = load;
-            size(contact, &self.segments.length);
-            sink(self, points);
-        }
-        !sunk.is_empty()
-    }
-
-    /// Shifts the level under nodes between segments that lie on the seabed, until they lie as deep as under the loads for which the springs are sized;
-    /// returns whether any level changed by more than [`SHIFT_MIN`].
-    fn shift_levels(&mut self, points: &[Point], place: &[Vector3<f64>]) -> bool {
-        let unshifted = self.levels_of_loads(points);
-        let Some(contact) = &mut self.nodes.contact else {
-            return false;
-        };
-        let regularised = contact.regularised.as_ref();
-        let Some(Regularised { load, .. }) = regularised.filter(|sized| sized.load != contact.weight) else {
-            return false;
-        };
-        let mut level = contact.level.clone();
-        let mut shifts = false;
-        for node in 1..place.len() - 1 {
-            let adjacent = || contact.adjacent(node).map(|(segment, _)| segment);
-            if !adjacent().all(|segment| contact.is_laid(segment, place)) {
-                continue;
-            }
-            let compression: f64 = adjacent().map(|i| 0.5 * load[i] / contact.stiffness[i]).sum();
-            let height = contact.lift(node) - contact.stand(node, place[node]).0;
-            let shift = unshifted[node] - contact.seabed_level - compression - height;
-            shifts |= shift.abs() > SHIFT_MIN * compression;
-            level[node] += shift;
-        }
-        if shifts {
-            contact.level = level;
-        }
-        shifts
-    }
-
-    /// Levels at which a line under the loads of its springs lies on the seabed [m], per node.
-    fn levels_of_loads(&self, points: &[Point]) -> Vec<f64> {
-        let mut line = self.clone();
-        if let Some(contact) = &mut line.nodes.contact {
-            size(contact, &self.segments.length);
-        }
-        sink(&mut line, points);
-        line.nodes.contact.map_or(Vec::new(), |contact| contact.level)
+        true
     }
 }
 
