@@ -87,6 +87,7 @@ impl Kinds {
             scene: whole,
             meshes: networks.open(&meshes).cloned().collect(),
             duration: found.duration,
+            untried_steps: found.untried_steps,
         }
     }
 }

@@ -133,6 +133,8 @@ pub struct Discretisation {
     pub meshes: Vec<Mesh>,
     /// Duration of the trials in the scene's time [s].
     pub duration: f64,
+    /// True if the error of the time steps on meshes that were extrapolated could not be tried.
+    pub untried_steps: bool,
 }
 
 impl Discretisation {
@@ -187,7 +189,7 @@ impl Discretisation {
                 )
             });
             let is_extrapolated = !mesh.tried && !mesh.is_unknown() && mesh.error <= tolerance;
-            let untried = (is_extrapolated && self.scene.solver.integrator == Integrator::Auto).then(|| {
+            let untried = (is_extrapolated && self.untried_steps).then(|| {
                 format!(
                     "{}: the mesh was extrapolated from coarser ones, and the error of its time steps was not tried; compare with a run with \
                      `integrator = \"leapfrog\"`",
@@ -342,6 +344,7 @@ fn tried_in_motion(scene: &Scene, networks: &Networks, search: &mut Search) -> O
     let settled = search.settled(&mut meshes, tried);
     Some(Discretisation {
         duration: search.scene().output.duration,
+        untried_steps: search.untried_steps,
         scene: Scene {
             output: scene.output.clone(),
             ..settled
@@ -373,6 +376,7 @@ fn without_trials(
         scene: networks.with_elements(scene, &elements_of(&meshes)),
         meshes: networks.open(&meshes).cloned().collect(),
         duration: 0.0,
+        untried_steps: false,
     };
     Some((found, refined))
 }

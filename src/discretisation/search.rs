@@ -36,6 +36,8 @@ pub(super) struct Search<'a> {
     ladders: Vec<Ladder>,
     /// Axial-implicit or fully implicit step whose error is small [s]; `None` if steps follow from the scene's integrator.
     step: Option<f64>,
+    /// True if the error of the steps found could not be tried.
+    pub(super) untried_steps: bool,
 }
 
 impl<'a> Search<'a> {
@@ -54,6 +56,7 @@ impl<'a> Search<'a> {
             ladders: ladders.collect(),
             trials,
             step: None,
+            untried_steps: false,
         })
     }
 
@@ -318,7 +321,9 @@ impl<'a> Search<'a> {
             return self.implicit(step).of(scene);
         }
         if !tried {
-            return self.with_coarser_steps(&scene).unwrap_or(scene);
+            let found = self.with_coarser_steps(&scene);
+            self.untried_steps = found.is_none();
+            return found.unwrap_or(scene);
         }
         let Some((step, trials)) = self.axial_implicit(meshes) else {
             scene.solver.integrator = Integrator::Leapfrog;
@@ -330,14 +335,15 @@ impl<'a> Search<'a> {
         self.implicit(step).of(self.trials.with(&elements_of(meshes)))
     }
 
-    /// Returns a scene on meshes that were not tried with axial-implicit steps that keep the error on the finest meshes assessed, compared with explicit
-    /// steps on these, or with explicit steps if none do. `None` if the rules choose explicit steps, or if these runs cost too much.
+    /// Returns a scene on meshes that were not tried with steps that keep the error on the finest meshes assessed, compared with explicit steps on these:
+    /// those of the rules, else shorter axial-implicit steps, else explicit ones. `None` if these runs fail or cost too much.
     fn with_coarser_steps(&mut self, scene: &Scene) -> Option<Scene> {
         let simulation = Simulation::new(scene).ok()?;
         let choices = simulation.choices();
         let axial_implicit = choices.filter(|choice| choice.integrator == Integrator::AxialImplicit);
-        let step = axial_implicit.map(|choice| choice.step_max).reduce(f64::min)?;
-        let mut step = rounded_down(step);
+        let Some(longest) = axial_implicit.map(|choice| choice.step_max).reduce(f64::max) else {
+            return Some(scene.clone());
+        };
         let elements = self.assessed();
         if !self.trials.allow(self.explicit_cost(&elements)?.work) {
             return None;
@@ -347,14 +353,18 @@ impl<'a> Search<'a> {
             ..self.implicit(scene.solver.time_step_max)
         };
         let right = self.trials.run(&elements, explicit).ok()??;
+        let mut step = longest;
         for _ in 0..HALVINGS_UNTRIED {
             let steps = self.implicit(step);
             let runs = self.trials.run(&elements, steps).ok()??;
             let errors = runs.iter().zip(&right).map(|(run, right)| distance(run, right));
             if errors.fold(0.0, f64::max) <= UNTRIED * self.tolerance() {
-                return Some(steps.of(scene.clone()));
+                return Some(match step == longest {
+                    true => scene.clone(),
+                    false => steps.of(scene.clone()),
+                });
             }
-            step *= 0.5;
+            step = rounded_down(0.5 * step);
         }
         Some(explicit.of(scene.clone()))
     }
