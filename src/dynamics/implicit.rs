@@ -109,6 +109,7 @@ impl Scheme {
             acceleration: 0.0,
             stretch: Stretch::Before,
             convex: false,
+            span: dt,
         };
         let after = Weights {
             force: 1.0 - alpha_f,
@@ -119,6 +120,7 @@ impl Scheme {
             acceleration: (1.0 - alpha_m) * per_acceleration,
             stretch: Stretch::OverStep,
             convex: false,
+            span: dt,
         };
         let now = (1.0 - alpha_m) / (1.0 - alpha_f) * per_acceleration;
         ([before, after], [per_velocity, now])
@@ -155,6 +157,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
         acceleration: 1.0,
         stretch: Stretch::Now,
         convex: false,
+        span: 0.0,
     };
     work.fade_dampers(model, network, state, 0.0);
     work.assemble_dynamic::<true>(model, network, state, t, &weights);

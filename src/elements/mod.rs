@@ -175,6 +175,8 @@ pub(crate) struct StaticCase {
     pub breadth: f64,
     /// True if every correction is limited to a moderate rotation of each segment, at the cost of more corrections.
     pub cautious: bool,
+    /// True if viscoelastic segments have their stiffness in fast motion, about their tension at rest.
+    pub vibrates: bool,
     /// Tension of a segment that is shortened to zero length; zero if slack segments carry no tension [N].
     pub slack: f64,
 }
@@ -190,6 +192,7 @@ impl StaticCase {
             anchoring: 0.0,
             predicted: false,
             bends: true,
+            vibrates: false,
             stick: 1.0,
             limit: friction::AT_REST,
             keeps_pressure: false,
@@ -220,6 +223,8 @@ pub(crate) struct Weights {
     pub stretch: Stretch,
     /// True if the tangent must be positive semi-definite, rather than exact.
     pub convex: bool,
+    /// Time over which the loads on points are averaged [s]: the step, so that a short pulse is neither missed nor counted twice.
+    pub span: f64,
 }
 
 /// Time at which the tension of the segments of a moving line is evaluated.
@@ -275,7 +280,7 @@ impl Workspace {
         }
         for (index, free) in free_points(model, network) {
             let point = &mut self.points[index];
-            let load = model.points[index].load_at(t);
+            let load = model.points[index].load_about(t, weights.span);
             let (seabed, state_of) = (model.seabed.as_deref(), &state.points[index]);
             let water = (stream, state.waves_at_point(index, t));
             point.assemble_dynamic::<TANGENT>(free, seabed, state_of, load, water, weights);

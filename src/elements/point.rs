@@ -212,6 +212,7 @@ mod tests {
                 acceleration: 0.8 * moves[2],
                 stretch: crate::elements::Stretch::Now,
                 convex: false,
+                span: 0.0,
             };
             for z in HEIGHTS {
                 let residual = |state: &PointState| {

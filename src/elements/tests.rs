@@ -16,6 +16,7 @@ const FORCES: Weights = Weights {
     acceleration: 0.0,
     stretch: crate::elements::Stretch::Now,
     convex: false,
+    span: 0.0,
 };
 
 /// Pseudo-random number in −1 … 1.

@@ -200,10 +200,9 @@ fn build_point(scene: &Scene, names: &Names, vessels: &[Vessel], point: &scene::
                 .map(|path| Motion::until(path, scene.output.duration)),
         },
         (PointKind::Fixed, _) => Role::Fixed,
-        (PointKind::Prescribed, _) => point
-            .motion
-            .as_ref()
-            .map_or(Role::Fixed, |m| Role::Prescribed(Motion::new(m))),
+        (PointKind::Prescribed, _) => point.motion.as_ref().map_or(Role::Fixed, |path| {
+            Role::Prescribed(Motion::until(path, scene.output.duration))
+        }),
         (PointKind::Free, _) => Role::Free(free_point(scene, names, point)),
     };
     Point {

@@ -718,6 +718,11 @@ impl Point {
         self.load_axes().map(mean).into()
     }
 
+    /// Mean point load over `span` [s] about the time `t` [s], in [N].
+    pub fn load_about(&self, t: f64, span: f64) -> Vector3<f64> {
+        self.load_mean(t - 0.5 * span, t + 0.5 * span)
+    }
+
     /// Moment at time `t` [s], in [N m].
     pub fn moment_at(&self, t: f64) -> Vector3<f64> {
         self.moment_axes().map(|f| f.map_or(0.0, |f| f.at(t))).into()

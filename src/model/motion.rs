@@ -224,7 +224,7 @@ fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
     }
 }
 
-/// Relative time by which a run may end after a table and still count as ending with it [-].
+/// Relative time after the last row of a table that counts as the time of that row [-]: the time of a run is a sum of steps.
 const ROUNDING: f64 = 1e-9;
 
 fn table(rows: &[MotionRow], end: f64) -> Vec<TableRow> {
@@ -245,9 +245,10 @@ fn table(rows: &[MotionRow], end: f64) -> Vec<TableRow> {
 
 fn interpolate(rows: &[TableRow], t: f64) -> Pose {
     let mut after = rows.partition_point(|row| row.time <= t);
-    let ends = after > 1 && after == rows.len() && rows[after - 1].time == t;
+    let is_at = |row: &TableRow| t - row.time <= ROUNDING * row.time.abs();
+    let ends = after > 1 && after == rows.len() && is_at(&rows[after - 1]);
     if ends {
-        after -= 1; // the end of the last piece belongs to it
+        after -= 1; // the end of the last piece belongs to it, also where the time of a run is rounded up
     }
     if after == 0 || after == rows.len() {
         let held = if after == 0 { rows.first() } else { rows.last() };
@@ -320,6 +321,20 @@ mod tests {
         assert_relative_eq!(motion.at(2.0).position.x, f64::sin(2.0), epsilon = 1e-14);
         assert_relative_eq!(motion.at(2.04).position.x, f64::sin(2.04), epsilon = 1e-5);
         assert_derivatives(&motion, 2.05, 1e-5);
+    }
+
+    #[test]
+    fn a_run_whose_time_is_rounded_up_ends_on_the_last_piece_of_its_table() {
+        let rows: Vec<MotionRow> = (0..=400)
+            .map(|i| 0.05 * f64::from(i))
+            .map(|t| [t, t.sin(), 0.0, 0.0, 0.0, 0.0, 0.0])
+            .collect();
+        let motion = Motion::Table(table(&rows, 20.0));
+        let time = (0..400).fold(0.0, |time, _| time + 0.05);
+        assert!(time > 20.0, "{time}");
+        let end = motion.at(time);
+        assert_relative_eq!(end.velocity.x, f64::cos(20.0), epsilon = 1e-4);
+        assert_relative_eq!(end.acceleration.x, -f64::sin(20.0), epsilon = 1e-2);
     }
 
     #[test]

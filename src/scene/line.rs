@@ -31,7 +31,7 @@ table! {
         pub release: Option<LineEnd>,
         /// Tension or time at which the line breaks from one of its points.
         pub failure: Option<Break> => super::table::PLAIN.called("break"),
-        /// Winch that pays out and hauls in the line at one end.
+        /// Winch that pays out and hauls in the line at end B.
         pub winch: Option<Winch>,
     }
 }
@@ -98,7 +98,7 @@ table! {
 table! {
     /// A winch, which pays out line and hauls it in.
     pub struct Winch, "`winch`" {
-        /// End of the line that is on the winch.
+        /// End of the line that is on the winch: `"b"`.
         pub end: LineEnd,
         /// Greatest length paid out, in addition to that of the section at its end [m].
         pub length_max: f64 => positive(1e6),

@@ -209,7 +209,11 @@ impl TimeFunction {
             TimeFunction::Step([t0, _, t1, _]) | TimeFunction::Ramp([t0, _, t1, _]) => {
                 self.mean_over([*t0, *t1].into_iter(), from, to)
             }
-            TimeFunction::Table(pairs) => self.mean_over(pairs.iter().map(|[time, _]| *time), from, to),
+            TimeFunction::Table(pairs) => {
+                let first = pairs.partition_point(|[time, _]| *time < from);
+                let inside = pairs[first..].iter().map(|[time, _]| *time);
+                self.mean_over(inside.take_while(|time| *time < to), from, to)
+            }
         }
     }
 

@@ -49,6 +49,7 @@ use super::prescribed::MotionSource;
 use crate::model::{Body, End, Model, PointState};
 use crate::scene::Integrator;
 pub(super) use trial::StepStart;
+pub(super) use trial::distance;
 use trial::{Sides, Trial};
 
 /// Interval between the samples from which time derivatives are computed, as a fraction of the step [-].

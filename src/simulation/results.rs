@@ -2,10 +2,10 @@
 
 use std::cell::OnceCell;
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::coupling::InterfaceValues;
+use super::coupling::{InterfaceValues, distance};
 use super::prescribed::MotionSource;
 use super::{Simulation, Snapshot, start};
 use crate::dynamics::advance::Counters;
@@ -13,14 +13,14 @@ use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::energy_balance::{Energy, EnergyBalance};
 use crate::dynamics::reaction::{self, LineEnd};
 use crate::elements;
-use crate::math::attitude::angle_rates;
+use crate::math::attitude::Order;
 use crate::model::{Body, ClosedForm, End, Line, LineState, Model, PointState, WaterAlong, joint};
 use crate::scene::{ForceOutput, Integrator};
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
 
-/// Displacement of a vessel to either side in the difference quotients of its stiffness in a current [m, rad].
-const ASIDE: f64 = 1e-3;
+/// Displacement of a vessel in the difference quotients of its stiffness in a current, relative to the longest line [-].
+const ASIDE: f64 = 1e-6;
 
 /// A node of a line's profile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -200,10 +200,11 @@ impl Simulation {
     fn stiffness_in_current(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
         let mut stiffness = [[0.0; 6]; 6];
         for axis in 0..6 {
+            let way = distance(self, Body::Vessel(vessel), axis, ASIDE);
             let aside = |way: f64| Some(self.at_rest_aside(vessel, axis, way)?.vessel_force(vessel));
-            let [below, above] = [aside(-ASIDE)?, aside(ASIDE)?];
+            let [below, above] = [aside(-way)?, aside(way)?];
             for (row, force) in stiffness.iter_mut().enumerate() {
-                force[axis] = (below[row] - above[row]) / (2.0 * ASIDE);
+                force[axis] = (below[row] - above[row]) / (2.0 * way);
             }
         }
         Some(stiffness)
@@ -222,11 +223,12 @@ impl Simulation {
         if axis < 3 {
             pose[axis] += way;
         } else {
-            let mut spin = Vector3::zeros();
-            spin[axis - 3] = way;
-            let angles = Vector3::from_row_slice(&pose[3..]) + self.model.vessels[vessel].attitude;
-            let turn = angle_rates(angles, spin)?;
-            (0..3).for_each(|angle| pose[3 + angle] += turn[angle]);
+            let mut turn = Vector3::zeros();
+            turn[axis - 3] = way;
+            let attitude = self.model.vessels[vessel].attitude;
+            let angles = Vector3::from_row_slice(&pose[3..]) + attitude;
+            let turned = UnitQuaternion::from_scaled_axis(turn) * Order::Zyx.rotation(angles);
+            pose[3..].copy_from_slice((Order::Zyx.angles(&turned, angles) - attitude).as_slice());
         }
         aside.set_pose(vessel, pose);
         aside.begin(state.time, false, start::Shapes::Equilibrium).ok()?;

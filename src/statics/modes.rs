@@ -3,7 +3,8 @@
 //! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent of statics: axial,
 //! geometric and bending stiffness of the lines, and the springs of the seabed and of the water surface where lines touch or pierce them. M is that
 //! of dynamics: lumped, including added mass, M_n I + (M_t − M_n) t tᵀ at a node. M couples the axes of a node only, so that with the Cholesky
-//! factors M = L Lᵀ of its blocks L⁻¹ K L⁻ᵀ y = ω² y is as sparse as K, φ = L⁻ᵀ y. Damping and drag are left out.
+//! factors M = L Lᵀ of its blocks L⁻¹ K L⁻ᵀ y = ω² y is as sparse as K, φ = L⁻ᵀ y. Damping and drag are left out. Viscoelastic ropes have their
+//! stiffness in fast motion, which is that of periods shorter than 2π times their relaxation time.
 //!
 //! Source: the linearised equation of motion of `elements`, reduced here; `tests/dynamics/analytic.rs` compares it with closed forms.
 //! Valid for motion small enough that no segment slackens and no node lands or lifts off. A slack segment has no stiffness and
@@ -90,7 +91,11 @@ impl Modes {
         }
         let network = &model.networks[network];
         let nodes = Nodes::new(model, network, state, work)?;
-        work.assemble_static(model, network, state, &StaticCase::whole(state.time));
+        let case = StaticCase {
+            vibrates: true,
+            ..StaticCase::whole(state.time)
+        };
+        work.assemble_static(model, network, state, &case);
         let entries = nodes.stiffness(network, work);
         let size = nodes.unknowns.iter().flatten().flatten().count();
         let eigen = match size <= DENSE_MAX || 4 * count.min(size) > size {

@@ -197,6 +197,56 @@ fn a_bar_held_at_one_end_has_the_frequencies_of_its_lumped_masses() {
     }
 }
 
+#[test]
+fn a_mass_on_a_viscoelastic_rope_has_the_frequency_of_its_dynamic_stiffness() {
+    let (mass, length, fast) = (2000.0, 20.0, 1.6e6);
+    let rope = format!(
+        "line_types.nylon = {{ mass = 0.01, static_stiffness = 4e5, dynamic_stiffness = {fast:e}, static_damping = 5e6 }}"
+    );
+    let hung = draft(rope)
+        .fixed("top", [0.0; 3])
+        .free("clump", [0.0, 0.0, -20.5])
+        .with(&format!("mass = {mass:e}"))
+        .line("rope", ["top", "clump"], "nylon", length, 4)
+        .start();
+    let modes = modes(&hung);
+    let axial = (fast / (mass * length)).sqrt();
+    let nearest = modes.frequencies.iter().map(|found| (found / axial - 1.0).abs());
+    let nearest = nearest.fold(f64::INFINITY, f64::min);
+    assert!(nearest < 1e-3, "{axial} {:?}", &modes.frequencies[..3]);
+}
+
+/// A load that lasts for a part of a step acts with its whole impulse, wherever in the step it begins.
+#[test]
+fn a_short_pulse_gives_its_impulse_to_a_point() {
+    let (mass, load) = (100.0, 1e4);
+    for integrator in [
+        Integrator::Leapfrog,
+        Integrator::AxialImplicit,
+        Integrator::GeneralisedAlpha,
+        Integrator::Bossak,
+    ] {
+        for [from, to] in [[1.01, 1.04], [1.04, 1.06], [1.02, 1.28]] {
+            let scene = draft("gravity = 0.0\nline_types.thread = { mass = 1e-3, weight = 0.0, axial_stiffness = 1e4 }")
+                .fixed("end", [0.0; 3])
+                .free("block", [5.0, 0.0, 0.0])
+                .with(&format!(
+                    "mass = {mass:e}, force = {{ x = {{ table = [[0.0, 0.0], [{from}, 0.0], [{from}, {load}], [{to}, {load}], [{to}, 0.0]] }} }}"
+                ))
+                .line("thread", ["end", "block"], "thread", 100.0, 2)
+                .with("initial = 'straight'")
+                .scene();
+            let mut simulation = start(&with_integrator(scene, integrator, 0.05));
+            run(&mut simulation, 0.05, 40);
+            let before = place(&simulation, "block").x;
+            run(&mut simulation, 0.05, 20);
+            let speed = place(&simulation, "block").x - before;
+            let expected = load * (to - from) / mass;
+            assert_relative_eq!(speed, expected, max_relative = 1e-3);
+        }
+    }
+}
+
 /// Displacement of the bar's tip from its initial position, every `step` [s].
 fn tip_history(n: usize, step: f64, count: usize) -> Vec<f64> {
     let scene = with_integrator(loaded_bar(n), Integrator::Leapfrog, step);

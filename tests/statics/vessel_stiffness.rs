@@ -205,6 +205,31 @@ fn the_stiffness_in_a_current_has_the_change_of_the_drag() {
     assert!((stiffness[(0, 2)] - stiffness[(2, 0)]).abs() > 0.5 * stiffness[(2, 2)].abs());
 }
 
+/// Four tendons of 80 m, stretched by 31 mm: they slacken where the platform turns by a thousandth.
+#[test]
+fn a_weak_current_changes_nothing_in_the_stiffness_of_short_tendons() {
+    let stiffness = |water: &str| {
+        let mut platform = draft(format!(
+            "water = {{ density = 1025.0, surface = false{water} }}
+            vessels = [{{ name = 'platform', position = [0.0, 0.0, 0.0] }}]
+            line_types.tendon = {{ mass = 50.0, diameter = 0.25, axial_stiffness = 1e9, drag_normal = 1.0 }}"
+        ));
+        for (number, [x, y]) in [[40.0, 0.0], [0.0, 40.0], [-40.0, 0.0], [0.0, -40.0]]
+            .into_iter()
+            .enumerate()
+        {
+            let [foot, head] = ["foot", "head"].map(|name| format!("{name}{number}"));
+            let moored = platform.fixed(&foot, [x, y, -80.0]);
+            let held = on(moored, "platform", &head, [x, y, 0.0]);
+            platform = held.line(&format!("tendon{number}"), [&foot, &head], "tendon", 79.969, 8);
+        }
+        matrix(posed(&platform.scene(), [0.0; 6]).vessel_stiffness(0).unwrap())
+    };
+    let still = stiffness("");
+    let error = difference(&stiffness(", current = { velocity = [0.01, 0.0, 0.0] }"), &still);
+    assert!(error < 1e-3, "{error:e}");
+}
+
 #[test]
 fn the_stiffness_of_catenaries_is_the_slope_of_their_force() {
     let solver = "integrator = \"quasi_static\"";

@@ -276,7 +276,7 @@ impl Side<'_> {
             }
         }
         for &point in &network.free_points {
-            let load = self.model.points[point].load_at(self.t);
+            let load = self.model.points[point].load_about(self.t, self.passed.length());
             flow.external_work += load.dot(&self.passed.point_velocity_mean(point));
             if let Some(free) = self.model.points[point].free() {
                 flow.add(self.point_power(free, point));

@@ -8,7 +8,7 @@ use super::network::LeapfrogNetwork;
 use super::step::Step;
 use crate::dynamics::limit::least_mass;
 use crate::elements::friction::point_stick;
-use crate::model::{End, FreePoint, Model, Network, Seabed};
+use crate::model::{End, FreePoint, Model, Network, Point, Seabed};
 use crate::physics::airy::Orbit;
 use crate::physics::friction::Axes;
 use crate::physics::slender::Slender;
@@ -65,7 +65,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
             let way = step.kick * 0.5 * (last + velocity);
             let power = load.current_power - load.current_power_loss.dot(&(velocity - last));
             let by_water = load.froude_krylov.dot(&way) + step.kick * power;
-            self.point_flow.external_work += point.load_at(t).dot(&way) + by_water;
+            self.point_flow.external_work += load_over(point, t, step).dot(&way) + by_water;
             self.point_flow.dissipation += (load.force - load.resistance).dot(&way) + step.kick * power;
         }
         state.half_step = [velocity, last];
@@ -109,7 +109,8 @@ impl LeapfrogNetwork<Explicit> {
             let height = self.points[free].position.z;
             let seabed = SeabedBelow::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
-            let mut load = load_in_water((model, index, law), [height, t], now, waves, None);
+            let mut load = load_in_water((model, law), [height, t], now, waves, None);
+            load.force += load_over(&model.points[index], t, step);
             springs.clear();
             springs.extend(ContactSpring::under_point(law, &seabed, step));
             for &(at, end) in &self.attached[free] {
@@ -136,17 +137,21 @@ pub(super) fn attached(model: &Model, network: &Network, point: usize) -> Vec<(u
     model.points[point].attached.iter().filter_map(place).collect()
 }
 
-/// Weight, load and water forces on a free point at a height [m] and a time [s], moving at a velocity [m/s]. If a step of `kick` [s] is given, the change
+/// Mean load on a point over the kick of a step from `t` [s], in [N], so that a short pulse is neither missed nor counted twice.
+pub(super) fn load_over(point: &Point, t: f64, step: Step) -> Vector3<f64> {
+    point.load_mean(t - step.lag(), t + 0.5 * step.drift)
+}
+
+/// Weight and water forces on a free point at a height [m] and a time [s], moving at a velocity [m/s]. If a step of `kick` [s] is given, the change
 /// of the drag C|u|u over the step is implicit, with its slope C(|u| I + u uᵀ/|u|): trapezoidal, but limited where it exceeds inertia, so that it does not
 /// reverse a velocity. The difference between the buoyancy and that in still water counts as Froude-Krylov force.
 pub(super) fn load_in_water(
-    (model, index, law): (&Model, usize, &FreePoint),
+    (model, law): (&Model, &FreePoint),
     [height, t]: [f64; 2],
     velocity: Vector3<f64>,
     waves: Option<Orbit>,
     kick: Option<f64>,
 ) -> PointLoad {
-    let point = &model.points[index];
     let surface = waves.map_or(0.0, |orbit| orbit.elevation);
     let at = law.at(height - surface);
     let stream = model.stream(t);
@@ -166,7 +171,7 @@ pub(super) fn load_in_water(
         implicit = Slender::new([part(across), part(2.0 * across)]).matrix(along);
     }
     PointLoad {
-        force: point.load_at(t) - weight * Vector3::z() + drag + froude_krylov,
+        force: drag - weight * Vector3::z() + froude_krylov,
         resistance: drag,
         froude_krylov,
         current_power: drag.dot(&water),

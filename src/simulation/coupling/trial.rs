@@ -15,6 +15,8 @@ use crate::simulation::{Simulation, Snapshot};
 
 /// Displacement in a difference quotient, relative to the longest line [-].
 const ASIDE: f64 = 1e-8;
+/// Least displacement in a difference quotient, relative to the coordinates, which are rounded [-].
+const ROUNDING: f64 = 5e-11;
 /// Least lever arm of rotations, relative to the longest line [-].
 const LEVER_MIN: f64 = 1e-3;
 
@@ -160,7 +162,7 @@ impl Trial {
         motion: EndMotion,
         read: impl Fn(&Simulation) -> T,
     ) -> Result<Sides<T>, String> {
-        let mut by = distance(&self.simulation, motion);
+        let mut by = distance(&self.simulation, motion.body, motion.axis, ASIDE);
         if motion.is_velocity {
             by /= self.length;
         }
@@ -181,7 +183,7 @@ pub(super) fn both_sides_of_statics<T>(
     motion: EndMotion,
     read: impl Fn(&Simulation) -> T,
 ) -> Result<Sides<T>, String> {
-    let by = distance(simulation, motion);
+    let by = distance(simulation, motion.body, motion.axis, ASIDE);
     let side = |by: f64| {
         let mut moved = simulation.clone();
         moved.inputs_mut().body_mut(motion.body).displacement[motion.axis] += by;
@@ -194,16 +196,18 @@ pub(super) fn both_sides_of_statics<T>(
     })
 }
 
-/// Displacement in a difference quotient [m, rad].
-fn distance(simulation: &Simulation, motion: EndMotion) -> f64 {
+/// Displacement of a body along an axis [m], or its rotation about one [rad], in a difference quotient: `part` of the longest line, but enough for
+/// coordinates far from the origin.
+pub(in crate::simulation) fn distance(simulation: &Simulation, body: Body, axis: usize, part: f64) -> f64 {
     let lines = simulation.model.lines.iter();
     let lengths = lines.filter_map(|line| line.nodes.arc.last().copied());
     let longest = lengths.fold(0.0, f64::max);
-    match motion.body {
-        Body::Vessel(vessel) if motion.axis >= 3 => {
-            ASIDE * longest / simulation.scale.levers[vessel].max(LEVER_MIN * longest)
-        }
-        _ => ASIDE * longest,
+    let points = simulation.model.points.iter();
+    let farthest = points.map(|point| point.reference.amax()).fold(0.0, f64::max);
+    let way = (part * longest).max(ROUNDING * farthest);
+    match body {
+        Body::Vessel(vessel) if axis >= 3 => way / simulation.scale.levers[vessel].max(LEVER_MIN * longest),
+        _ => way,
     }
 }
 

@@ -24,7 +24,7 @@ use crate::dynamics::leapfrog::ENDS;
 use crate::dynamics::leapfrog::layout::Layout;
 use crate::dynamics::leapfrog::network::LeapfrogNetwork;
 use crate::dynamics::leapfrog::point::{
-    ContactSpring, Kicked, PointLoad, SeabedBelow, Sliding, load_in_water,
+    ContactSpring, Kicked, PointLoad, SeabedBelow, Sliding, load_in_water, load_over,
 };
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::block_banded::Pivots;
@@ -210,7 +210,8 @@ impl CoupledPoint {
         let last = state.half_step[0];
         let seabed = SeabedBelow::under(model, state.position);
         let (waves, place) = (network.waves_at(free, t), [state.position.z, t]);
-        let mut load = load_in_water((model, index, law), place, last, waves, Some(step.kick));
+        let mut load = load_in_water((model, law), place, last, waves, Some(step.kick));
+        load.force += load_over(&model.points[index], t, step);
         let rise = seabed.normal.dot(&last);
         self.springs.clear();
         let with_state = |spring: ContactSpring| (spring, spring.pushes(rise).is_some());
