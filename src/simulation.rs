@@ -125,17 +125,11 @@ impl Simulation {
         Simulation::start(model, start::Shapes::Equilibrium)
     }
 
-    fn start(mut model: Model, shapes: start::Shapes) -> Result<Simulation, Error> {
-        let begin = |model: &Model| start::begin(model, 0.0, Inputs::new(model), false, shapes);
-        let (mut snapshot, mut work) = begin(&model)?;
+    fn start(model: Model, shapes: start::Shapes) -> Result<Simulation, Error> {
+        let mut model = Arc::new(model);
         let rests = |_: usize, line: &Line| line.initial == InitialShape::Static;
-        for round in 0..start::ADAPTATIONS_MAX {
-            if !start::adapt(&mut model, &snapshot.state, rests, round) {
-                break;
-            }
-            (snapshot, work) = begin(&model)?;
-        }
-        let model = Arc::new(model);
+        let begin = |model: &Model| start::begin(model, 0.0, Inputs::new(model), false, shapes);
+        let (mut snapshot, work) = start::settle(&mut model, shapes, rests, begin)?;
         let moved_lines = MovedLine::all(&model, &snapshot.state);
         snapshot.input_record = InputRecord::of(&moved_lines);
         let lines = model.lines.iter();
@@ -163,15 +157,8 @@ impl Simulation {
         let mut still = self.clone();
         still.snapshot.inputs = Inputs::new(&self.model);
         make_still(Arc::make_mut(&mut still.model));
-        still.begin(0.0, false, start::Shapes::Equilibrium)?;
         let had_shape = |index: usize, _: &Line| self.model.lines[index].initial != InitialShape::Static;
-        for round in 0..start::ADAPTATIONS_MAX {
-            let model = Arc::make_mut(&mut still.model);
-            if !start::adapt(model, &still.snapshot.state, had_shape, round) {
-                break;
-            }
-            still.begin(0.0, false, start::Shapes::Equilibrium)?;
-        }
+        still.begin_with(0.0, false, start::Shapes::Equilibrium, had_shape)?;
         Ok(still)
     }
 
@@ -193,12 +180,24 @@ impl Simulation {
     }
 
     fn begin(&mut self, time: f64, follows_scene: bool, shapes: start::Shapes) -> Result<(), Error> {
-        let inputs = self.snapshot.inputs.clone();
-        self.scale.check_start(&self.model, &inputs)?;
+        self.begin_with(time, follows_scene, shapes, |_, _| false)
+    }
+
+    /// Begins at rest, with the clamps of the lines that `clamps` selects adapted to their tension.
+    fn begin_with(
+        &mut self,
+        time: f64,
+        follows_scene: bool,
+        shapes: start::Shapes,
+        clamps: impl Fn(usize, &Line) -> bool,
+    ) -> Result<(), Error> {
+        let inputs = &self.snapshot.inputs;
+        self.scale.check_start(&self.model, inputs)?;
         inputs.flow.check_start(&self.model)?;
         let mut model = self.model.clone();
         winches::lay_out(&mut model, &inputs.length_changes, follows_scene.then_some(time))?;
-        (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene, shapes)?;
+        let begin = |model: &Model| start::begin(model, time, inputs.clone(), follows_scene, shapes);
+        (self.snapshot, self.work) = start::settle(&mut model, shapes, clamps, begin)?;
         self.snapshot.input_record = InputRecord::of(&self.moved_lines);
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
@@ -395,8 +394,8 @@ fn make_still(model: &mut Model) {
             *motion = Motion::none();
         }
     }
-    // the initial shape of a beam may be its moment-free shape, and its equilibrium iteration starts from it
-    for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
+    // the initial shape of a beam or cable may be its moment-free shape, and its equilibrium iteration starts from it
+    for line in model.lines.iter_mut().filter(|line| !line.may_rest_bent()) {
         line.initial = InitialShape::Static;
     }
 }

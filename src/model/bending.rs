@@ -95,6 +95,12 @@ impl Bending {
 }
 
 impl Line {
+    /// Returns whether the moment-free shape of the line may be curved.
+    pub fn may_rest_bent(&self) -> bool {
+        let bent = |bending: &Bending| bending.rest.iter().any(|bend| *bend != 0.0);
+        self.beam.is_some() || self.bending.as_ref().is_some_and(bent)
+    }
+
     /// Direction from end A to end B of the clamp at an end whose point is `point` [-]; `None` if the end is pinned.
     /// No other function relates a clamp to its support.
     pub fn clamp(&self, end: End, point: &PointState) -> Option<Vector3<f64>> {

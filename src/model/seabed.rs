@@ -117,13 +117,16 @@ impl Contact {
         force * normal
     }
 
-    /// Part of the weight of a segment that the springs carry [-], with the nodes of the line at places [m].
+    /// Part of the weight of a segment across the seabed that the springs carry [-], with the nodes of the line at places [m].
     pub fn laid_part(&self, segment: usize, place: &[Vector3<f64>]) -> f64 {
-        let (weight, stiffness) = (self.weight[segment], self.stiffness[segment]);
-        if weight <= 0.0 {
+        if self.weight[segment] <= 0.0 {
             return 0.0;
         }
-        let [near, far] = [segment, segment + 1].map(|node| self.stand(node, place[node]).0);
+        let [(near, low), (far, high)] = [segment, segment + 1].map(|node| self.stand(node, place[node]));
+        let (weight, stiffness) = (
+            self.weight[segment] * 0.5 * (low.z + high.z),
+            self.stiffness[segment],
+        );
         let carried = |part: &Part| (stiffness * part.between(near, far) / weight).clamp(0.0, 1.0);
         0.25 * self.parts().iter().map(carried).sum::<f64>()
     }

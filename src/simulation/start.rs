@@ -1,5 +1,7 @@
 //! Start of a simulation: at rest, at the initial shapes of the scene or in its static equilibrium.
 
+use std::sync::Arc;
+
 use nalgebra::Matrix3;
 
 use super::flow;
@@ -13,6 +15,7 @@ use crate::dynamics::energy_balance::{EnergyBalance, Flow};
 use crate::dynamics::{beam, reaction};
 use crate::elements;
 use crate::model::{End, Line, LineState, Model, PointState, State, WinchState};
+use crate::physics::ground::Ground;
 use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::Catenary;
 use crate::statics::guess::{self, Plane};
@@ -85,19 +88,44 @@ pub(super) fn begin(
     ))
 }
 
-/// Greatest number of times that an equilibrium is solved anew for clamps and springs adapted to it [-].
-pub(super) const ADAPTATIONS_MAX: usize = 8;
+/// Greatest number of times that an equilibrium is solved anew for contact adapted to it [-].
+const ADAPTATIONS_MAX: usize = 8;
 
-/// Adapts the lines that `rests` selects to a state of rest, in the first `round` their clamps and then the springs of the seabed alone; returns whether
-/// any line is adapted.
-pub(super) fn adapt(
-    model: &mut Model,
-    state: &State,
-    rests: impl Fn(usize, &Line) -> bool,
-    round: usize,
-) -> bool {
-    let clamps = round == 0 && stiffen_clamps(model, state, &rests);
-    adapt_contact(model, state, rests) || clamps
+/// Solves the start of a model with `begin`, and again with the clamps of the lines that `clamps` selects and the contact with soundings adapted to the
+/// equilibrium. Contact to which no equilibrium is found is not adapted.
+///
+/// # Errors
+/// No equilibrium is found.
+pub(super) fn settle(
+    model: &mut Arc<Model>,
+    shapes: Shapes,
+    clamps: impl Fn(usize, &Line) -> bool,
+    begin: impl Fn(&Model) -> Result<(Snapshot, Integrators), Error>,
+) -> Result<(Snapshot, Integrators), Error> {
+    let mut found = begin(model)?;
+    let bends = model.lines.iter().any(|line| line.bending.is_some());
+    if bends && stiffen_clamps(Arc::make_mut(model), &found.0.state, clamps) {
+        found = begin(model)?;
+    }
+    let ground = model.seabed.as_ref().map(|seabed| &seabed.ground);
+    if !matches!(ground, Some(Ground::Grid(_))) {
+        return Ok(found);
+    }
+    let rests = |line: &Line| shapes == Shapes::Equilibrium || line.initial == InitialShape::Static;
+    for _ in 0..ADAPTATIONS_MAX {
+        let before = model.clone();
+        if !adapt_contact(Arc::make_mut(model), &found.0.state, rests) {
+            break;
+        }
+        match begin(model) {
+            Ok(adapted) => found = adapted,
+            Err(_) => {
+                *model = before;
+                break;
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// Adapts the clamp joints of the lines that `rests` selects to their tension in a state of rest; returns whether any joint is adapted.
@@ -118,11 +146,11 @@ fn stiffen_clamps(model: &mut Model, state: &State, rests: impl Fn(usize, &Line)
 }
 
 /// Adapts the regularised contact of the lines that `rests` selects to the loads in a state of rest; returns whether any changed.
-fn adapt_contact(model: &mut Model, state: &State, rests: impl Fn(usize, &Line) -> bool) -> bool {
+fn adapt_contact(model: &mut Model, state: &State, rests: impl Fn(&Line) -> bool) -> bool {
     let Model { lines, points, .. } = model;
     let mut any = false;
-    for (index, (line, shape)) in lines.iter_mut().zip(&state.lines).enumerate() {
-        if rests(index, line) {
+    for (line, shape) in lines.iter_mut().zip(&state.lines) {
+        if rests(line) {
             let tension = |i: usize| reaction::tension(line, shape, i, false);
             let tension: Vec<f64> = (0..line.segment_count()).map(tension).collect();
             any |= line.adapt_contact(points, &shape.position, &tension);

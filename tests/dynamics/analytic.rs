@@ -216,6 +216,36 @@ fn a_mass_on_a_viscoelastic_rope_has_the_frequency_of_its_dynamic_stiffness() {
     assert!(nearest < 1e-3, "{axial} {:?}", &modes.frequencies[..3]);
 }
 
+/// A line as long as the parabola on which it starts is not strained there.
+#[test]
+fn a_parabola_of_the_length_of_its_line_is_without_strain() {
+    for elements in [20, 80] {
+        let simulation = draft("line_types.rope = { mass = 100.0, axial_stiffness = 5e8 }")
+            .fixed("left", [-50.0, 0.0, 0.0])
+            .fixed("right", [50.0, 0.0, 0.0])
+            .line("rope", ["left", "right"], "rope", 100.6627227216039, elements)
+            .with("initial = { parabola = 5.0 }")
+            .start();
+        let [least, most] = strains(nodes(&simulation), 100.6627227216039);
+        let chord = (0.5 * 0.004 * 100.0 / elements as f64).powi(2) / 6.0; // chords are shorter than arcs
+        assert!(
+            most < 1e-6 && least > -1.2 * chord - 1e-6,
+            "{elements}: {least:e} {most:e}"
+        );
+    }
+}
+
+/// Least and greatest strain of segments of equal unstretched length, of a line of a length [m].
+fn strains(nodes: &[Vector3<f64>], length: f64) -> [f64; 2] {
+    let unstretched = length / (nodes.len() - 1) as f64;
+    let strain = nodes
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).norm() / unstretched - 1.0);
+    strain.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], strain| {
+        [least.min(strain), most.max(strain)]
+    })
+}
+
 /// A load that lasts for a part of a step acts with its whole impulse, wherever in the step it begins.
 #[test]
 fn a_short_pulse_gives_its_impulse_to_a_point() {

@@ -389,6 +389,46 @@ fn a_taut_chain_does_not_sink_into_a_ridge() {
     }
 }
 
+/// On ripples no longer than two elements, the equilibrium on adapted springs may not be found; that on springs sized for the weight is then kept.
+#[test]
+fn a_chain_on_ripples_finds_an_equilibrium() {
+    let x: Vec<f64> = (0..35).map(|i| 20.0 * f64::from(i)).collect();
+    let depth: Vec<f64> = (0..35).map(|i| if i % 2 == 0 { 98.0 } else { 102.0 }).collect();
+    for span in [540.0, 548.0, 556.0] {
+        let simulation = draft(format!(
+            "water.density = 1025.0
+            seabed = {{ depth = 100.0, grid = {{ x = {x:?}, y = [0.0], depth = [{depth:?}] }} }}
+            line_types.chain = {{ mass = 100.0, diameter = 0.1, axial_stiffness = 5e8 }}"
+        ))
+        .fixed("anchor", [0.0, 0.0, -98.0])
+        .coupled("fairlead", [span, 0.0, -5.0])
+        .line("line", ["anchor", "fairlead"], "chain", 600.0, 60)
+        .start();
+        assert!(
+            simulation.tension_b(0) > 9e4,
+            "{span}: {}",
+            simulation.tension_b(0)
+        );
+    }
+}
+
+#[test]
+fn a_line_that_lies_on_a_slope_lies_there_with_its_whole_length() {
+    for slope in [0.0, 0.2, 1.0_f64] {
+        let (cos, length) = (1.0 / slope.hypot(1.0), 200.0);
+        let simulation = draft(format!(
+            "water.density = 1025.0
+            seabed = {{ depth = 500.0, slope = [{slope}, 0.0] }}
+            line_types.chain = {{ mass = 100.0, diameter = 0.1, axial_stiffness = 5e8 }}"
+        ))
+        .fixed("foot", [0.0, 0.0, -500.0])
+        .fixed("head", [length * cos, 0.0, -500.0 + length * slope * cos])
+        .line("line", ["foot", "head"], "chain", length, 20)
+        .start();
+        assert_relative_eq!(simulation.laid_length(0), length, max_relative = 0.02);
+    }
+}
+
 #[test]
 fn a_hundred_times_stiffer_seabed_takes_the_same_steps() {
     for seabed in ["friction = 0.5", "slope = [0.02, 0.0]"] {

@@ -36,7 +36,7 @@ const RISE: f64 = 3.0;
 /// Length of the rise relative to ℓ for a line with bending stiffness, where ℓ counts up to an element [-].
 const RISE_BENT: f64 = 5.0;
 /// Least change of the load of a segment to which the contact is adapted, relative to the weight [-].
-const CHANGE_MIN: f64 = 0.02;
+const CHANGE_MIN: f64 = 1e-3;
 
 /// Sizes regularised springs and dampers for the loads of the segments, of the given lengths [m], but at least for their weights, and sets the level at
 /// which a line that loads them so lies on the seabed.
