@@ -22,8 +22,9 @@ const EXCESS_MAX: f64 = 100.0;
 const HALVINGS: u32 = 8;
 /// Fraction of the tolerance allowed for the error of axial-implicit steps on a mesh that was not tried [-].
 const UNTRIED: f64 = 0.5;
-/// Number of axial-implicit steps that are tried for a mesh that was not, each half the one before [-].
-const HALVINGS_UNTRIED: u32 = 4;
+/// Number of axial-implicit steps that are tried for a mesh that was not [-], and the ratio of each to the one before [-].
+const STEPS_UNTRIED: u32 = 6;
+const SHORTER: f64 = 0.7;
 /// Greatest number of trials between two mesh levels [-].
 const TRIALS_BETWEEN: usize = 2;
 /// Ratio of the expected to the allowed error above which an option is not tried [-].
@@ -354,7 +355,7 @@ impl<'a> Search<'a> {
         };
         let right = self.trials.run(&elements, explicit).ok()??;
         let mut step = longest;
-        for _ in 0..HALVINGS_UNTRIED {
+        for _ in 0..STEPS_UNTRIED {
             let steps = self.implicit(step);
             let runs = self.trials.run(&elements, steps).ok()??;
             let errors = runs.iter().zip(&right).map(|(run, right)| distance(run, right));
@@ -364,7 +365,7 @@ impl<'a> Search<'a> {
                     false => steps.of(scene.clone()),
                 });
             }
-            step = rounded_down(0.5 * step);
+            step = rounded_down(SHORTER * step);
         }
         Some(explicit.of(scene.clone()))
     }
