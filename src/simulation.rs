@@ -36,6 +36,7 @@ use paths::Paths;
 use prescribed::{MotionSource, PrescribedMotion};
 use results::Reactions;
 use scale::Scale;
+use start::Started;
 
 pub use coupling::{EndMotion, Impedance};
 pub use flow::{FLOW_COMPONENTS, NO_FLOW, WaterFlow};
@@ -158,7 +159,10 @@ impl Simulation {
         still.snapshot.inputs = Inputs::new(&self.model);
         make_still(Arc::make_mut(&mut still.model));
         let had_shape = |index: usize, _: &Line| self.model.lines[index].initial != InitialShape::Static;
-        still.begin_with(0.0, false, start::Shapes::Equilibrium, had_shape)?;
+        let shapes = start::Shapes::Equilibrium;
+        still.begin_with(0.0, false, shapes, |model, begin| {
+            start::settle(model, shapes, had_shape, begin)
+        })?;
         Ok(still)
     }
 
@@ -180,16 +184,17 @@ impl Simulation {
     }
 
     fn begin(&mut self, time: f64, follows_scene: bool, shapes: start::Shapes) -> Result<(), Error> {
-        self.begin_with(time, follows_scene, shapes, |_, _| false)
+        // the model remains that of the reference positions, so that a state can be restored in another simulation
+        self.begin_with(time, follows_scene, shapes, |model, begin| begin(model))
     }
 
-    /// Begins at rest, with the clamps of the lines that `clamps` selects adapted to their tension.
+    /// Begins at rest as `solve` finds it, from the model and the function that solves the start of a model.
     fn begin_with(
         &mut self,
         time: f64,
         follows_scene: bool,
         shapes: start::Shapes,
-        clamps: impl Fn(usize, &Line) -> bool,
+        solve: impl FnOnce(&mut Arc<Model>, &dyn Fn(&Model) -> Started) -> Started,
     ) -> Result<(), Error> {
         let inputs = &self.snapshot.inputs;
         self.scale.check_start(&self.model, inputs)?;
@@ -197,7 +202,7 @@ impl Simulation {
         let mut model = self.model.clone();
         winches::lay_out(&mut model, &inputs.length_changes, follows_scene.then_some(time))?;
         let begin = |model: &Model| start::begin(model, time, inputs.clone(), follows_scene, shapes);
-        (self.snapshot, self.work) = start::settle(&mut model, shapes, clamps, begin)?;
+        (self.snapshot, self.work) = solve(&mut model, &begin)?;
         self.snapshot.input_record = InputRecord::of(&self.moved_lines);
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;

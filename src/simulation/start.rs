@@ -21,6 +21,9 @@ use crate::statics::catenary::Catenary;
 use crate::statics::guess::{self, Plane};
 use crate::statics::{self, StaticsError, catenary_network, equilibrium};
 
+/// A simulation at rest and its integrators.
+pub(super) type Started = Result<(Snapshot, Integrators), Error>;
+
 /// Treatment of lines with an initial shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shapes {
@@ -100,8 +103,8 @@ pub(super) fn settle(
     model: &mut Arc<Model>,
     shapes: Shapes,
     clamps: impl Fn(usize, &Line) -> bool,
-    begin: impl Fn(&Model) -> Result<(Snapshot, Integrators), Error>,
-) -> Result<(Snapshot, Integrators), Error> {
+    begin: impl Fn(&Model) -> Started,
+) -> Started {
     let mut found = begin(model)?;
     let bends = model.lines.iter().any(|line| line.bending.is_some());
     if bends && stiffen_clamps(Arc::make_mut(model), &found.0.state, clamps) {
