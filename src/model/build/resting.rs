@@ -65,7 +65,7 @@ fn mean_at_node(of_segments: &[f64], node: usize) -> f64 {
 
 impl Line {
     /// Adapts regularised contact to soundings that press on the segments with another load than their weight, w + Tκ per length. `place` are the nodes
-    /// at rest [m], and `tension` the tensions of the segments [N]. Returns whether the load of any segment changed by more than [`CHANGE_MIN`].
+    /// at rest [m], and `tension` the tensions of the segments [N]. Returns whether the load of any segment changed by more than a thousandth of its weight.
     pub fn adapt_contact(&mut self, points: &[Point], place: &[Vector3<f64>], tension: &[f64]) -> bool {
         let Some(contact) = self.nodes.contact.as_mut().filter(|_| self.winch.is_none()) else {
             return false; // the nodes of a line on a winch move along it
