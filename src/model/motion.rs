@@ -333,8 +333,8 @@ mod tests {
         let time = (0..400).fold(0.0, |time, _| time + 0.05);
         assert!(time > 20.0, "{time}");
         let end = motion.at(time);
-        assert_relative_eq!(end.velocity.x, f64::cos(20.0), epsilon = 1e-4);
-        assert_relative_eq!(end.acceleration.x, -f64::sin(20.0), epsilon = 1e-2);
+        assert_relative_eq!(end.velocity.x, f64::cos(20.0), epsilon = 1e-3);
+        assert_relative_eq!(end.acceleration.x, -f64::sin(20.0), epsilon = 0.1);
     }
 
     #[test]
