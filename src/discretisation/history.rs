@@ -100,12 +100,12 @@ impl History {
         self.variation().max(self.least_deviation())
     }
 
-    /// Returns whether the history varies so little that its errors are related to the least deviation.
+    /// Returns whether the history varies so little that its errors are relative to the least deviation.
     pub(super) fn is_still(&self) -> bool {
         self.variation() < self.least_deviation()
     }
 
-    /// Least deviation to which errors are related, in the history's unit.
+    /// Least deviation to which errors are relative, in the history's unit.
     fn least_deviation(&self) -> f64 {
         match self.kind {
             Kind::Tension { .. } => STILL_TENSION * mean(&self.series[0]).abs(),

@@ -86,7 +86,7 @@ pub struct Mesh {
     pub error: f64,
     /// True if a trial was run on this mesh, or none is needed; false if it was extrapolated, or no trial could be run.
     pub tried: bool,
-    /// True if a line varies so little in the trials that its errors are related to the least deviation used, not to its own.
+    /// True if a line varies so little in the trials that its errors are relative to the least deviation, not to its own.
     pub still: bool,
     /// Elements of sections that are one element on all levels [-]; `None` if their error could not be tried.
     pub short_sections: Option<usize>,
@@ -253,7 +253,7 @@ impl Discretisation {
                 ToleranceOf::Tension | ToleranceOf::LowPassedTension => ("tension", "1 % of its mean"),
             };
             said.push(format!(
-                "the {quantity}{of_line} varies by less than {least}, to which these errors are therefore related: in its variation they are greater"
+                "the {quantity}{of_line} varies by less than {least}: these errors are relative to that, and greater relative to its variation"
             ));
         }
         match mesh.short_sections {

@@ -22,8 +22,9 @@ const EXCESS_MAX: f64 = 100.0;
 const HALVINGS: u32 = 8;
 /// Fraction of the tolerance allowed for the error of axial-implicit steps on a mesh that was not tried [-].
 const UNTRIED: f64 = 0.5;
-/// Number of axial-implicit steps that are tried for a mesh that was not [-], and the ratio of each to the one before [-].
+/// Number of axial-implicit steps that are compared with explicit ones for a mesh that was not tried [-].
 const STEPS_UNTRIED: u32 = 6;
+/// Ratio of each of these steps to the one before [-].
 const SHORTER: f64 = 0.7;
 /// Greatest number of trials between two mesh levels [-].
 const TRIALS_BETWEEN: usize = 2;
@@ -322,7 +323,7 @@ impl<'a> Search<'a> {
             return self.implicit(step).of(scene);
         }
         if !tried {
-            let found = self.with_coarser_steps(&scene);
+            let found = self.with_compared_steps(&scene);
             self.untried_steps = found.is_none();
             return found.unwrap_or(scene);
         }
@@ -336,9 +337,9 @@ impl<'a> Search<'a> {
         self.implicit(step).of(self.trials.with(&elements_of(meshes)))
     }
 
-    /// Returns a scene on meshes that were not tried with steps that keep the error on the finest meshes assessed, compared with explicit steps on these:
-    /// those of the rules, else shorter axial-implicit steps, else explicit ones. `None` if these runs fail or cost too much.
-    fn with_coarser_steps(&mut self, scene: &Scene) -> Option<Scene> {
+    /// Chooses the steps of a scene whose meshes were not tried: those of the rules, or else shorter axial-implicit ones whose error is small on the finest
+    /// meshes assessed, by comparison with explicit steps there, or else explicit steps. `None` if these runs fail or cost too much.
+    fn with_compared_steps(&mut self, scene: &Scene) -> Option<Scene> {
         let simulation = Simulation::new(scene).ok()?;
         let choices = simulation.choices();
         let axial_implicit = choices.filter(|choice| choice.integrator == Integrator::AxialImplicit);
@@ -355,14 +356,14 @@ impl<'a> Search<'a> {
         };
         let right = self.trials.run(&elements, explicit).ok()??;
         let mut step = longest;
-        for _ in 0..STEPS_UNTRIED {
+        for shortening in 0..STEPS_UNTRIED {
             let steps = self.implicit(step);
             let runs = self.trials.run(&elements, steps).ok()??;
             let errors = runs.iter().zip(&right).map(|(run, right)| distance(run, right));
             if errors.fold(0.0, f64::max) <= UNTRIED * self.tolerance() {
-                return Some(match step == longest {
-                    true => scene.clone(),
-                    false => steps.of(scene.clone()),
+                return Some(match shortening {
+                    0 => scene.clone(),
+                    _ => steps.of(scene.clone()),
                 });
             }
             step = rounded_down(SHORTER * step);

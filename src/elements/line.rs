@@ -207,12 +207,12 @@ impl LineWork {
         let g = Geometry::new(position[i], position[i + 1], unstretched);
         let stretch = line.segments.law[i].at(g.strain);
         let ea = line.segments.axial_stiffness[i].min(case.stiffness_max);
-        let in_motion = if case.vibrates {
+        let stiffness = if case.vibrates {
             line.segments.in_motion(i).0
         } else {
             ea
         };
-        let (elastic, slope) = (ea * stretch.force, in_motion * stretch.slope / unstretched);
+        let (elastic, slope) = (ea * stretch.force, stiffness * stretch.slope / unstretched);
         (self.elastic[i], self.slope[i], self.direction[i]) = (elastic, slope, g.direction);
         if case.slack > 0.0 {
             return self.add_taut_segment(&g, case, [ea, unstretched], i);

@@ -396,7 +396,8 @@ pub struct Contact {
 pub struct Regularised {
     /// Stiffness and damping of the scene.
     pub given: Vec<ContactCoefficients>,
-    /// Load that compresses the spring by the static penetration [N]: the weight less buoyancy, or the greater load over a ridge.
+    /// Load at rest [N]: the weight less buoyancy, more over a ridge of soundings and less on its flanks. Springs are sized for this load, but at least
+    /// for the weight.
     pub load: Vec<f64>,
 }
 

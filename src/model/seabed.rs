@@ -145,7 +145,7 @@ impl Contact {
             return weight;
         }
         let along = (ends[1] - ends[0]).xy().try_normalize(0.0).unwrap_or_default();
-        let curvature = ground.crest(0.5 * (ends[0] + ends[1]), length * along);
+        let curvature = ground.curvature(0.5 * (ends[0] + ends[1]), length * along);
         (weight + tension * curvature * length).max(0.0)
     }
 

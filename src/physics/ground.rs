@@ -135,9 +135,9 @@ impl Ground {
         self.relief(x, y).height
     }
 
-    /// Curvature of the surface along a horizontal step [m], from the heights at a place and a step before and behind it [1/m]; positive on crests, and 0
-    /// along no step.
-    pub fn crest(&self, place: Vector3<f64>, step: Vector2<f64>) -> f64 {
+    /// Curvature of the surface along a horizontal step [m], from the heights at a place and one step before and after it [1/m]; positive on crests, and 0
+    /// for a step of zero length.
+    pub fn curvature(&self, place: Vector3<f64>, step: Vector2<f64>) -> f64 {
         let height = |count: f64| self.height(place.x + count * step.x, place.y + count * step.y);
         let [before, here, after] = [-1.0, 0.0, 1.0].map(height);
         let square = step.norm_squared();

@@ -272,7 +272,7 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
     let period = scene.periods().reduce(f64::min).filter(|_| follows_steps);
     rules! { notes, "";
         "solver.integrator" given period = period.filter(|period| *period < STEPS_PER_PERIOD * longest) =>
-            "steps of up to {} do not resolve the motion with a period of {}; {} would take {STEPS_PER_PERIOD} steps in it",
+            "steps of up to {} do not resolve the motion with a period of {}; steps of {} would give {STEPS_PER_PERIOD} per period",
             quantity(longest, "s"), quantity(period, "s"), quantity(period / STEPS_PER_PERIOD, "s");
         "gravity" if scene.gravity == 0.0 => "0: lines and points are weightless";
         "seabed.friction" if slides && types.any(|line_type| scene.makes_beams(line_type)) =>

@@ -95,7 +95,7 @@ pub(super) fn begin(
 const ADAPTATIONS_MAX: usize = 8;
 
 /// Solves the start of a model with `begin`, and again with the clamps of the lines that `clamps` selects and the contact with soundings adapted to the
-/// equilibrium. Contact to which no equilibrium is found is not adapted.
+/// equilibrium. If no equilibrium is found with adapted contact, the last one that was found is kept.
 ///
 /// # Errors
 /// No equilibrium is found.

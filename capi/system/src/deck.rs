@@ -150,7 +150,7 @@ fn coupled(lists: &Lists, scene: &Scene) -> Vec<Coupled> {
     bodies.chain(points).map(place).collect()
 }
 
-/// Remarks on laws of a scene that differ from MoorDyn's with any settings.
+/// Remarks on laws of a scene that differ from MoorDyn's, regardless of the settings.
 fn other_laws(scene: &Scene) -> Vec<&'static str> {
     let seabed = scene.seabed.as_ref();
     let viscoelastic = scene

@@ -114,7 +114,7 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
     let numbers = &deck.options.numbers;
     if let Some(damping) = numbers.get(&Meaning::FrictionDamping) {
-        let text = "friction here sticks up to its limit and needs no damping below it, with which a line at rest creeps in MoorDyn";
+        let text = "here friction holds up to its limit and needs no damping; in MoorDyn a line at rest creeps against that damping";
         findings.remark(damping, text);
     }
     if let Some(scale) = numbers.get(&Meaning::StaticFriction)

@@ -89,7 +89,7 @@ fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
     let notes = notes.join("\n");
     let scale = "static friction of 1.5 times the kinetic is not modelled";
-    assert_says(&notes, &[scale, "needs no damping below it"]);
+    assert_says(&notes, &[scale, "here friction holds up to its limit"]);
     assert_converted(&loaded);
 }
 

@@ -18,7 +18,7 @@
 //! elements as ℓ approaches an element.
 //!
 //! Over a ridge of soundings a line under the tension T presses on the seabed with w + Tκ per length, and on the flanks with less than w. On springs sized
-//! for w it would sink in at the crest and lie high on the flanks, shorter than the ridge by far more than its stretch.
+//! for w it would sink in at the crest and lie high on the flanks, and be shorter than the ridge by far more than its stretch.
 //! [`Line::adapt_contact`] sizes the springs for the load at rest, if it exceeds the weight, and lowers the level where it is less than the weight, so that
 //! laid nodes are δ/2 below the seabed everywhere. κ is taken over an element to either side, and T in the first equilibrium.
 //!
@@ -38,8 +38,8 @@ const RISE_BENT: f64 = 5.0;
 /// Least change of the load of a segment to which the contact is adapted, relative to the weight [-].
 const CHANGE_MIN: f64 = 1e-3;
 
-/// Sizes regularised springs and dampers for the loads of the segments, of the given lengths [m], but at least for their weights, and sets the level at
-/// which a line that loads them so lies on the seabed.
+/// Sizes regularised springs and dampers for the loads of the segments, of the given lengths [m], but at least for their weights, and sets the level so
+/// that a line with these loads lies on the seabed.
 pub(super) fn size(contact: &mut Contact, length: &[f64]) {
     let mut sinks = vec![0.0; length.len()]; // compression of softened contact under the load [m]
     if let Some(Regularised { given, load }) = &contact.regularised {
@@ -64,7 +64,7 @@ fn mean_at_node(of_segments: &[f64], node: usize) -> f64 {
 }
 
 impl Line {
-    /// Adapts regularised contact to soundings that press on the segments with another load than their weight, w + Tκ per length. `place` are the nodes
+    /// Adapts regularised contact to soundings, which press on the segments with a load other than their weight: w + Tκ per length. `place` are the nodes
     /// at rest [m], and `tension` the tensions of the segments [N]. Returns whether the load of any segment changed by more than a thousandth of its weight.
     pub fn adapt_contact(&mut self, points: &[Point], place: &[Vector3<f64>], tension: &[f64]) -> bool {
         let Some(contact) = self.nodes.contact.as_mut().filter(|_| self.winch.is_none()) else {
