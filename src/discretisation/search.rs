@@ -323,7 +323,9 @@ impl<'a> Search<'a> {
             return self.implicit(step).of(scene);
         }
         if !tried {
-            let found = self.with_compared_steps(&scene);
+            // steps are not worth a trial on meshes that miss the tolerance
+            let misses = meshes.iter().any(|mesh| mesh.error > self.tolerance());
+            let found = (!misses).then(|| self.with_compared_steps(&scene)).flatten();
             self.untried_steps = found.is_none();
             return found.unwrap_or(scene);
         }
