@@ -273,12 +273,11 @@ fn nudged(base: &Base, scene: &Scene, seed: usize) -> f64 {
     same(base, scene, &other).map_or(f64::INFINITY, |(_, gap)| gap.most)
 }
 
-/// Returns whether every segment that starts at rest or on a parabola is in tension: the position of slack ones on a seabed is indeterminate.
+/// Returns whether every segment that starts at rest is in tension: the position of slack ones on a seabed is indeterminate.
 fn is_taut_at_rest(scene: &Scene) -> bool {
     let simulation = Simulation::new(scene).expect("the scene has run");
     let lines = scene.lines.iter().enumerate();
-    let hangs = |line: &Line| matches!(line.initial, InitialShape::Static | InitialShape::Parabola(_));
-    let mut at_rest = lines.filter(|(_, line)| hangs(line));
+    let mut at_rest = lines.filter(|(_, line)| line.initial == InitialShape::Static);
     at_rest.all(|(index, _)| {
         let tensions = simulation.tensions(index);
         let greatest = tensions.iter().copied().fold(0.0, f64::max);

@@ -178,6 +178,14 @@ impl SegmentRow {
         force
     }
 
+    /// Takes over the linearised springs of another row in the lanes where `gate` is positive.
+    #[inline(always)]
+    pub(super) fn adopt_spring(&mut self, other: &SegmentRow, gate: Lanes) {
+        self.stiffness = gate.choose(other.stiffness, self.stiffness);
+        self.curvature = gate.choose(other.curvature, self.curvature);
+        self.elastic = gate.choose(other.elastic, self.elastic);
+    }
+
     /// Force of the springs in T̄ [N] at a stretching velocity [m/s].
     #[inline(always)]
     pub(super) fn spring(&self, along: Lanes) -> Lanes {

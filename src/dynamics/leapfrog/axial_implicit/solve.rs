@@ -233,7 +233,7 @@ impl AxialLine {
             let off = (curve.positive() - spring.positive()).abs() - tolerance;
             let off = off.where_positive(segment.taut);
             if off.any_positive() {
-                *segment = laid; // unchanged otherwise, so that the energy balance uses the law of the step
+                segment.adopt_spring(&laid, off); // unchanged otherwise, so that the energy balance uses the law of the step
             }
             again = again.max(off);
         }
@@ -275,7 +275,9 @@ impl AxialLine {
                 if self.kernel.forgets {
                     segment.remember(segment.rate(along, sizes), sizes);
                 }
-                (segment.curvature, segment.taut) = (curvature, taut);
+                // by lane: which segments share a row must not matter
+                segment.curvature = again.choose(curvature, segment.curvature);
+                segment.taut = again.choose(taut, segment.taut);
                 revised = true;
             }
         }
