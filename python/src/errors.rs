@@ -207,7 +207,9 @@ fn set_statics(error: &StaticsError, facts: &Bound<'_, PyDict>) -> PyResult<()> 
         StaticsError::BeamFlies { line, residual } => {
             (format!("line \"{line}\""), Some(line), Some(*residual))
         }
-        StaticsError::BeamSpins { line, .. } => (format!("line \"{line}\""), Some(line), None),
+        StaticsError::Unstable { line, .. } | StaticsError::BeamSpins { line, .. } => {
+            (format!("line \"{line}\""), Some(line), None)
+        }
         StaticsError::BeamFolded { line, node } => (at_node(line, *node), Some(line), None),
         StaticsError::NotFinite { place, .. } => (place.clone(), None, None),
     };

@@ -201,6 +201,12 @@ fn check_finite(model: &Model, points: &[PointState]) -> Result<(), StaticsError
     Ok(())
 }
 
+/// Largest EI/L² of a line, a force that bends it markedly; 0 if it is perfectly flexible [N].
+fn stiffness_in_bending(line: &Line) -> f64 {
+    let stiffness = line.bending.iter().flat_map(|bending| &bending.stiffness);
+    stiffness.copied().fold(0.0, f64::max) / line.unstretched_length().powi(2)
+}
+
 /// Largest stiffness along the seabed of a sticking node [N/m].
 fn stiffest_stick(line: &Line) -> f64 {
     let contact = line.nodes.contact.iter();
@@ -214,7 +220,7 @@ struct Problem<'a> {
     network: &'a Network,
     number: usize,
     time: f64,
-    /// Sum of the external forces [N], or 1 N without any.
+    /// Sum of the external forces [N]; without any, the largest EI/L² of the lines or, if they do not bend, 1 N.
     force: f64,
     /// Length of the longest line [m].
     length: f64,
@@ -239,6 +245,9 @@ impl<'a> Problem<'a> {
         for line in lines.clone().filter(|line| line.bending.is_some()) {
             let moments = model.end_moments(line, time);
             force += moments.map(|moment| moment.norm()).iter().sum::<f64>() / line.unstretched_length();
+        }
+        if force == 0.0 {
+            force = lines.clone().map(stiffness_in_bending).fold(0.0, f64::max);
         }
         let nodes: usize = lines.clone().map(|line| line.segment_count()).sum();
         Problem {
@@ -348,12 +357,21 @@ impl<'a> Problem<'a> {
     fn not_converged(&self, state: &State, work: &mut Workspace, start: usize) -> StaticsError {
         work.assemble_static(self.model, self.network, state, &self.full_case());
         let (residual, place) = work.greatest_residual(self.network);
-        StaticsError::NotConverged {
-            place: place.name(self.model),
-            residual,
-            tolerance: self.tolerance(state, work, f64::INFINITY),
-            iterations: work.counters.solves - start,
-            advice: self.advice(work),
+        let tolerance = self.tolerance(state, work, f64::INFINITY);
+        let (iterations, advice) = (work.counters.solves - start, self.advice(work));
+        match residual <= tolerance {
+            true => StaticsError::Unstable {
+                line: self.model.lines[self.network.lines[0]].name.clone(),
+                iterations,
+                advice,
+            },
+            false => StaticsError::NotConverged {
+                place: place.name(self.model),
+                residual,
+                tolerance,
+                iterations,
+                advice,
+            },
         }
     }
 
@@ -452,12 +470,16 @@ impl<'a> Problem<'a> {
 
     /// Anchoring stiffness that raises pivots above the rounding of the stiffest spring [N/m].
     fn rounding_stiffness(&self, case: &StaticCase) -> f64 {
+        8.0 * f64::EPSILON * self.stiffest(case)
+    }
+
+    /// Largest stiffness of a spring in a case [N/m].
+    fn stiffest(&self, case: &StaticCase) -> f64 {
         let spring = |line: &Line| {
             let spring = self.stiffest_spring(line, case.stiffness_max);
             spring.max(stiffest_stick(line))
         };
-        let springs = self.model.lines_of(self.network).map(spring);
-        8.0 * f64::EPSILON * springs.fold(0.0, f64::max)
+        self.model.lines_of(self.network).map(spring).fold(0.0, f64::max)
     }
 
     /// Largest stiffness of a segment of at most this EA [N], of the seabed under a node, or of a joint [N/m].
@@ -677,7 +699,11 @@ impl<'a> Problem<'a> {
             true => bending::INSTABILITY,
             false => INSTABILITY,
         };
-        let anchoring = self.rounding_stiffness(&case) + least * self.force / self.length;
+        let lines = self.model.lines_of(self.network);
+        let longest = lines.map(Line::segment_count).fold(8, usize::max);
+        // the rounding of the pivots adds up along a line
+        let rounding = longest as f64 * f64::EPSILON * self.stiffest(&case);
+        let anchoring = rounding + least * self.force / self.length;
         let case = StaticCase {
             anchoring,
             predicted: false,

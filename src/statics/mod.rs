@@ -47,6 +47,19 @@ pub enum StaticsError {
         /// Advice.
         advice: &'static str,
     },
+    /// The iteration ended in a shape that is in balance but not stable.
+    #[error(
+        "line \"{line}\": no stable equilibrium found in {iterations} solves: the last shape is in balance, but any disturbance moves it away; \
+         {advice}"
+    )]
+    Unstable {
+        /// Name of the line, or of the first line of its network.
+        line: String,
+        /// Linear solves spent [-].
+        iterations: usize,
+        /// Advice.
+        advice: &'static str,
+    },
     /// The search for the equilibrium of a beam ended without one.
     #[error(
         "line \"{line}\", node {node}: no equilibrium of the beam found in {iterations} solves, {residual:.3e} N are out of balance; \
