@@ -430,3 +430,35 @@ fn a_bridle_shares_its_load_between_two_legs() {
     let leg = end_force(&model, &state, 0, End::A, &mut Workspace::new(&model));
     assert!((leg.norm() - 5000.0).abs() < 0.1, "{leg}");
 }
+
+// ------------------------------------------------------------------ friction under a hanging end
+
+/// Where end A hangs above the seabed, a line laid without tension hangs straight down from it.
+#[test]
+fn friction_acts_on_a_line_from_a_raised_anchor_as_in_the_closed_form() {
+    for (height, span, friction) in [
+        (0.0, 400.0, 0.5),
+        (0.3, 400.0, 0.5),
+        (1.0, 400.0, 0.5),
+        (10.0, 392.0, 0.7),
+    ] {
+        let simulation = draft(format!(
+            "water.density = 1000.0
+            seabed = {{ depth = 130.0, friction = {friction} }}
+            line_types.chain = {{ mass = 126.0, diameter = 0.144, axial_stiffness = 5.5e8 }}"
+        ))
+        .fixed("anchor", [span, 0.0, height - 130.0])
+        .coupled("fairlead", [0.0, 0.0, -10.0])
+        .line("line", ["anchor", "fairlead"], "chain", 450.0, 90)
+        .start();
+        let exact = simulation.catenary(0).unwrap();
+        let at_a = exact.horizontal_a().hypot(exact.vertical_a());
+        let [a, b] = [End::A, End::B].map(|end| simulation.line_end_force(0, end).norm());
+        assert!(
+            (b - exact.tension_b()).abs() < 0.01 * b,
+            "{height} m: {b} {}",
+            exact.tension_b()
+        );
+        assert!((a - at_a).abs() < 0.02 * b, "{height} m: {a} {at_a} {b}");
+    }
+}

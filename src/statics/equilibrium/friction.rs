@@ -4,9 +4,11 @@
 //! tension and hauled at end B, or from B if only B lies on the seabed. The equilibrium without friction is found first. Every node there gets an
 //! anchor, its position on the same path if the line lay there without stretch,
 //!
-//!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i,
+//!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i.
 //!
-//! and friction then pulls it towards that anchor: fully where the line slid, T falling by μw per metre towards A, and not at all beyond the point
+//! Where end A hangs above the seabed, a line without tension hangs straight down to it, and the rest lies from there: nodes that do not touch the
+//! seabed have a_{i+1} = a_i + l_i t_i, with t_i along the seabed and without the length that hangs. Friction then pulls every node
+//! towards its anchor: fully where the line slid, T falling by μw per metre towards A, and not at all beyond the point
 //! where no tension is left. The stiffness of sticking is raised in small steps. The anchors of free points are their positions of rest without
 //! friction.
 //!
@@ -19,9 +21,11 @@
 //! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5; the problem with kept normal forces is that of
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
+use nalgebra::Vector3;
+
 use super::{Problem, StaticCase};
 use crate::elements::{Workspace, copy_network, free_points};
-use crate::model::{LineState, State};
+use crate::model::{LineState, Seabed, State};
 use crate::physics::catenary::is_laid_from_b;
 use crate::statics::StaticsError;
 
@@ -29,6 +33,8 @@ use crate::statics::StaticsError;
 /// displacement mobilises, and every sliding node has a taut neighbour that holds it.
 const SOFTEST: f64 = 1e-6;
 const GROWTH: f64 = 3.0;
+/// Height of an end above the seabed, relative to the length of the line, above which the line hangs from it [-].
+const HANGS: f64 = 1e-6;
 /// Maximum number of rounds of normal forces and friction.
 const ROUNDS_MAX: usize = 20;
 
@@ -99,14 +105,23 @@ impl Problem<'_> {
             let heights = [0, last].map(|end| -seabed.touch(position[end], 0.0).penetration);
             let from_b = is_laid_from_b(heights, line.unstretched_length());
             anchor.clone_from(position);
+            let mut hanging = heights[usize::from(from_b)]; // length that is not laid yet [m]
+            let mut flies = hanging > HANGS * line.unstretched_length();
             for k in 0..last {
                 let (segment, from, to) = match from_b {
                     true => (last - 1 - k, last - k, last - 1 - k),
                     false => (k, k, k + 1),
                 };
-                let step = position[to] - position[from];
-                let part = line.segments.length[segment] / step.norm();
-                anchor[to] = anchor[from] + step * part.min(1.0);
+                let (length, step) = (line.segments.length[segment], position[to] - position[from]);
+                flies &= seabed.touch(position[from], 0.0).penetration <= 0.0;
+                anchor[to] = anchor[from];
+                if flies {
+                    let laid = (length - hanging).max(0.0);
+                    hanging -= length - laid;
+                    anchor[to] += laid * along_seabed(seabed, position[to], step);
+                } else {
+                    anchor[to] += step * (length / step.norm()).min(1.0);
+                }
             }
         }
         for (index, free) in free_points(self.model, self.network) {
@@ -114,4 +129,13 @@ impl Problem<'_> {
             point.anchor = free.contact.map(|_| point.position);
         }
     }
+}
+
+/// Direction along the seabed below a place [m] of a step [m]; zero for a step along its normal.
+fn along_seabed(seabed: &Seabed, place: Vector3<f64>, step: Vector3<f64>) -> Vector3<f64> {
+    let normal = seabed.touch(place, 0.0).normal;
+    let along = step - normal * normal.dot(&step);
+    along
+        .try_normalize(f64::EPSILON * step.norm())
+        .unwrap_or_else(Vector3::zeros)
 }
