@@ -116,7 +116,7 @@ table! {
         pub at: LineEnd,
         /// Tension of the end's segment that breaks it [N].
         pub tension: Option<f64> => positive(1e15),
-        /// Time at which it breaks [s].
+        /// Time at which it breaks [s], at the end of the internal step that reaches it.
         pub time: Option<f64> => not_negative(1e9),
     }
 }

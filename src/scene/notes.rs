@@ -270,10 +270,14 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
         Integrator::Auto | Integrator::Leapfrog | Integrator::QuasiStatic
     );
     let period = scene.periods().reduce(f64::min).filter(|_| follows_steps);
+    let mut lines = scene.lines.iter();
+    let comes_off = lines.any(|line| line.release.is_some() || line.failure.is_some());
     rules! { notes, "";
         "solver.integrator" given period = period.filter(|period| *period < STEPS_PER_PERIOD * longest) =>
             "steps of up to {} do not resolve the motion with a period of {}; steps of {} would give {STEPS_PER_PERIOD} per period",
             quantity(longest, "s"), quantity(period, "s"), quantity(period / STEPS_PER_PERIOD, "s");
+        "output.stiffness" if scene.output.stiffness && !scene.vessels.is_empty() && comes_off =>
+            "once a line is released or broken, the stiffness of its vessel has no value: hosts that read all outputs together then get an error";
         "gravity" if scene.gravity == 0.0 => "0: lines and points are weightless";
         "seabed.friction" if slides && types.any(|line_type| scene.makes_beams(line_type)) =>
             "beams have no friction on the seabed: for them `friction` changes nothing";

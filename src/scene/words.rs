@@ -230,6 +230,11 @@ pub(crate) fn metres(length: f64) -> String {
     quantity(rounded(length, 4), "m")
 }
 
+/// A moment of a run to the microsecond: times are sums of steps, with their rounding.
+pub(crate) fn moment(time: f64) -> String {
+    format!("t = {}", quantity((time * 1e6).round() / 1e6, "s"))
+}
+
 /// A fraction [-] in percent.
 pub(crate) fn percent(part: f64) -> String {
     format!("{} %", significant(100.0 * part))

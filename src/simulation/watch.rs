@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::Simulation;
 use crate::model::{End, Release};
-use crate::scene::{Note, Scene, metres};
+use crate::scene::{Note, Scene, metres, moment};
 
 /// Fraction of the unstretched length of a line by which its end may move in one communication step [-].
 const JUMP: f64 = 0.1;
@@ -179,9 +179,9 @@ fn jump(
     let mut jumps = [0, 1].into_iter().filter(prescribed);
     let end = jumps.find(|end| moved(*end) > JUMP * length)?;
     let text = format!(
-        "at t = {} s, {} has moved by {:.3} m in one communication step, more than a tenth of {} ({} long): paths without jumps, or shorter \
+        "at {}, {} has moved by {:.3} m in one communication step, more than a tenth of {} ({} long): paths without jumps, or shorter \
          steps, are usual; reported once",
-        simulation.time(),
+        moment(simulation.time()),
         model.points[data.ends[end]].name,
         moved(end),
         data.name,
@@ -195,9 +195,9 @@ fn risen(simulation: &Simulation, line: usize, now: [Vector3<f64>; 2]) -> Option
     let (model, data) = (&simulation.model, &simulation.model.lines[line]);
     let end = (0..2).find(|end| now[*end].z > 0.0)?;
     let text = format!(
-        "at t = {} s, {} is at z = {:.3} m, but {} is modelled as submerged there too: `surface = true` in [water] models the free surface, except \
+        "at {}, {} is at z = {:.3} m, but {} is modelled as submerged there too: `surface = true` in [water] models the free surface, except \
          for beams; reported once",
-        simulation.time(),
+        moment(simulation.time()),
         model.points[data.ends[end]].name,
         now[end].z,
         data.name
@@ -257,8 +257,8 @@ fn strain(simulation: &Simulation, line: usize) -> f64 {
 
 fn strained(simulation: &Simulation, line: usize, strain: f64, limit: f64) -> Note {
     let text = format!(
-        "at t = {} s, {} is strained by {:.1} %: less than {:.0} % is usual, with EA in N and lengths in m; reported once",
-        simulation.time(),
+        "at {}, {} is strained by {:.1} %: less than {:.0} % is usual, with EA in N and lengths in m; reported once",
+        moment(simulation.time()),
         simulation.model.lines[line].name,
         100.0 * strain,
         100.0 * limit

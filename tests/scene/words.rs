@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use moorline::scene::Scene;
+use moorline::scene::{LineEnd, Scene};
 
 use crate::SCENE;
 use crate::common::{assert_says, assert_written_and_read, draft, in_words};
@@ -100,6 +100,17 @@ fn notes_speak_of_what_is_unused_or_strange() {
             "\noutput.interval: the duration of 60 s is not a whole number of intervals",
         ],
     );
+}
+
+#[test]
+fn the_stiffness_on_a_vessel_is_noted_where_a_line_may_come_off() {
+    let vessel = "\n[[vessels]]\nname = \"ship\"\nposition = [0.0, 0.0, 0.0]\n";
+    let mut scene = Scene::from_toml(&format!("{SCENE}{vessel}")).unwrap();
+    scene.output.stiffness = true;
+    let is_noted = |scene: &Scene| scene.notes().iter().any(|note| note.at == "output.stiffness");
+    assert!(!is_noted(&scene));
+    scene.lines[0].release = Some(LineEnd::B);
+    assert!(is_noted(&scene));
 }
 
 #[test]

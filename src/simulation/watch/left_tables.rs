@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 
 use super::is_beyond;
-use crate::scene::{Line, Note, Scene, Section};
+use crate::scene::{Line, Note, Scene, Section, moment};
 use crate::simulation::Simulation;
 
 /// Fraction of the height of a current profile by which a line may leave the profile without a note, as a line on the seabed does [-].
@@ -123,10 +123,10 @@ fn look_at_strain(
         let strain = (pair[1] - pair[0]).norm() / length - 1.0;
         if strain > section.strain_max {
             let text = format!(
-                "{} is strained by {strain:.4} at t = {} s, beyond the last row at {}: its tension continues with the last slope, where MoorDyn \
+                "{} is strained by {strain:.4} at {}, beyond the last row at {}: its tension continues with the last slope, where MoorDyn \
                  keeps the last tension",
                 of.name,
-                simulation.time(),
+                moment(simulation.time()),
                 section.strain_max
             );
             let at = format!("line_types.{}.tension_strain", section.line_type);
@@ -150,9 +150,9 @@ fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -
         false => ("above the highest", high),
     };
     Some(format!(
-        "{} is at z = {z:.2} m at t = {} s, {side} row at {row} m: the current is that of this row there",
+        "{} is at z = {z:.2} m at {}, {side} row at {row} m: the current is that of this row there",
         simulation.model.lines[line].name,
-        simulation.time()
+        moment(simulation.time())
     ))
 }
 
@@ -167,11 +167,11 @@ fn outside_soundings(simulation: &Simulation, line: usize, soundings: [[f64; 2];
     let nodes = &simulation.snapshot.state.lines[line].position;
     let (_, r) = nodes.iter().enumerate().find(|(node, r)| lies(*node, **r))?;
     Some(format!(
-        "{} lies at ({:.2}, {:.2}) m at t = {} s, outside the soundings: the seabed goes on as at their edge there",
+        "{} lies at ({:.2}, {:.2}) m at {}, outside the soundings: the seabed goes on as at their edge there",
         of.name,
         r.x,
         r.y,
-        simulation.time()
+        moment(simulation.time())
     ))
 }
 
