@@ -55,6 +55,30 @@ impl Ladder {
         (self.passed, self.found) = (false, None);
     }
 
+    /// Returns the work of the finest run in explicit steps of an element [-] and its elements [-], if a mesh was found by it.
+    pub(super) fn finest(&self) -> Option<(f64, usize)> {
+        let run = self.runs.last().filter(|_| self.open && self.found.is_some())?;
+        Some((run.work, run.elements))
+    }
+
+    /// Rejects the mesh found, whose error is that against a much finer run, if it exceeds `aim`, and restarts at half the elements of that run.
+    pub(super) fn reject(&mut self, finer: &Run, aim: f64) {
+        let Some(error) = self
+            .assessed()
+            .map(|run| distance(run, finer))
+            .filter(|error| *error > aim)
+        else {
+            return;
+        };
+        let halved = LEVELS.into_iter().filter(|level| 2 * level <= finer.elements);
+        self.coarsest = halved.last().unwrap_or(LEVELS[0]);
+        if let Some(trial) = self.trials.last_mut() {
+            trial.error = error;
+        }
+        self.runs.clear();
+        (self.passed, self.found) = (false, None);
+    }
+
     /// Returns whether a run with this number of elements [-] is needed.
     pub(super) fn needs(&self, elements: usize) -> bool {
         self.found.is_none() && elements >= self.coarsest

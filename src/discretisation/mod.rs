@@ -10,7 +10,9 @@
 //! where n_{j+2} has twice the elements. If the errors of the meshes are uncorrelated, d(j, j+2) ≈ e_j and c ≈ 1; if they fall with n², d(j, j+2) = ¾
 //! e_j, d(j, j+1) = ½ e_j and c = 4/3. On 21 scenes, e_j was 0.66 to 1.4 times the error of meshes with errors of 0.5 to 6 %, and less than 0.8 times
 //! on one in twelve: nodes that land cause errors that fall with n and are correlated between meshes. The mesh selected is the coarsest whose e_j is
-//! below 0.7 of the tolerance, interpolated between mesh levels and tried once more there.
+//! below 0.7 of the tolerance, interpolated between mesh levels and tried once more there. Meshes whose elements are too long to carry waves across
+//! the line at the shortest period of the motion agree with one another without these waves: if all runs are of this kind, the mesh found is compared
+//! with one that resolves the waves, and rejected if it differs by more.
 //!
 //! Every network of lines has a separate mesh: its error is that of the line with the greatest error, over the
 //! standard deviation of that line's tension. All networks run together, at the elements of the mesh level until
@@ -41,6 +43,7 @@ mod expense;
 mod history;
 mod kinds;
 mod ladder;
+mod later;
 mod rest;
 mod search;
 mod short_sections;
@@ -172,9 +175,13 @@ impl Discretisation {
     }
 
     /// Returns a note for each mesh whose error is expected to exceed the tolerance, because it was extrapolated or has the greatest number of
-    /// elements that is selected, and for each mesh whose error, or that of its short sections, could not be tried.
+    /// elements that is selected, for each mesh whose error, or that of its short sections, could not be tried, and on what the trials do not cover.
     pub fn shortfalls(&self) -> Vec<Note> {
         let tolerance = self.scene.solver.tolerance;
+        let besides = match self.untried_steps {
+            true => ", besides that of the time steps, which was not tried,",
+            false => "",
+        };
         let of_mesh = |mesh: &Mesh| {
             let coarse = (!mesh.tried && mesh.error > tolerance).then(|| {
                 let cure = match self.scene.solver.tolerance_of {
@@ -182,7 +189,7 @@ impl Discretisation {
                     ToleranceOf::LowPassedTension | ToleranceOf::Position => "",
                 };
                 format!(
-                    "an error of up to about {:.2} % is expected with {} elements, above solver.tolerance = {tolerance}; set `elements` for a finer \
+                    "an error of up to about {:.2} %{besides} is expected with {} elements, above solver.tolerance = {tolerance}; set `elements` for a finer \
                      mesh{cure}",
                     100.0 * mesh.error,
                     mesh.elements
@@ -210,9 +217,8 @@ impl Discretisation {
             [coarse, untried, unknown].into_iter().flatten()
         };
         let sentences = self.meshes.iter().flat_map(of_mesh);
-        sentences
-            .map(|text| Note::new("solver.tolerance", text))
-            .collect()
+        let notes = sentences.map(|text| Note::new("solver.tolerance", text));
+        notes.chain(later::note(&self.scene, self.duration)).collect()
     }
 
     fn needs_more_at_rest(&self) -> bool {

@@ -126,6 +126,9 @@ impl<'a> Search<'a> {
             self.ladders.iter_mut().for_each(Ladder::restart);
             spent = self.climb(AIM * tolerance);
         }
+        if self.lacks_short_waves(AIM * tolerance) == Some(true) {
+            self.climb(AIM * tolerance);
+        }
         let between = self.between(AIM * tolerance);
         let ladders = self.ladders.iter().zip(between);
         ladders
@@ -240,6 +243,42 @@ impl<'a> Search<'a> {
         let ladders = self.ladders.iter().zip(&halved);
         let errors = ladders.filter_map(|(ladder, halved)| Some(smooth_error(ladder.assessed()?, halved)));
         (errors.fold(0.0, f64::max) / most, step)
+    }
+
+    /// Compares the meshes found with finer ones if none of their runs carries waves across the lines with the shortest period of the motion: meshes
+    /// without these waves agree with one another. Returns whether a mesh was rejected; `None` if no run is needed, possible or affordable, or no mesh found.
+    fn lacks_short_waves(&mut self, aim: f64) -> Option<bool> {
+        let period = self.scene().periods().reduce(f64::min)?;
+        if self.ladders.iter().any(Ladder::is_open) {
+            return None;
+        }
+        let found = self.assessed();
+        let simulation = Simulation::new(&self.trials.with(&found)).ok()?;
+        let (mut elements, mut work) = (Vec::new(), 0.0);
+        for (network, ladder) in self.ladders.iter().enumerate() {
+            let coarsest = self.trials.coarsest(network);
+            let needed = found[network] as f64 * self.trials.steepness(&simulation, network, period);
+            let level = LEVELS.into_iter().find(|level| *level as f64 >= needed);
+            let finer = ladder
+                .finest()
+                .zip(level)
+                .filter(|((_, finest), level)| finest < level);
+            elements.push(finer.map_or(coarsest, |(_, level)| level));
+            work += finer.map_or(0.0, |((work, finest), level)| {
+                work * (level as f64 / finest as f64).powi(2)
+            });
+        }
+        if work == 0.0 || !self.trials.allow(work) {
+            return None;
+        }
+        let runs = self.trials.run(&elements, self.at_level(&elements)).ok()??;
+        let finer = self
+            .ladders
+            .iter_mut()
+            .zip(&runs)
+            .filter(|(ladder, run)| ladder.finest().is_some_and(|(_, finest)| run.elements > finest));
+        finer.for_each(|(ladder, run)| ladder.reject(run, aim));
+        Some(self.ladders.iter().any(Ladder::is_open))
     }
 
     /// Elements of the meshes found, or else of the last ones assessed.

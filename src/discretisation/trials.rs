@@ -1,5 +1,6 @@
 //! Runs of a scene's networks on other meshes and with other steps.
 
+use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use super::Networks;
@@ -129,6 +130,21 @@ impl<'a> Trials<'a> {
     pub(super) fn coarsest(&self, network: usize) -> usize {
         let elements = self.runs[network].iter().map(|run| run.elements);
         elements.min().unwrap_or(LEVELS[0])
+    }
+
+    /// Largest ωl/c of a network's lines at a period [s], with c = √(T/m) the speed of waves across a line where its tension is greatest, and l the length
+    /// of the element there [-]. Elements carry such waves up to 2 and resolve them up to about 1.
+    pub(super) fn steepness(&self, simulation: &Simulation, network: usize, period: f64) -> f64 {
+        let of_line = |&line: &usize| {
+            let tensions = simulation.tensions(line).iter().copied().enumerate();
+            let (node, tension) = tensions.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let of = &simulation.model().lines[line];
+            let segment = node.min(of.segment_count() - 1);
+            let mass = of.nodes.mass_normal[segment].max(of.nodes.mass_normal[segment + 1]);
+            (tension > 0.0).then(|| TAU / period * (of.segments.length[segment] * mass / tension).sqrt())
+        };
+        let lines = self.networks.lines[network].iter();
+        lines.filter_map(of_line).fold(0.0, f64::max)
     }
 
     /// Returns runs of all networks with these elements [-]; `None` if a line needs an integrator that is not tried. Networks do not affect each
