@@ -144,26 +144,41 @@ impl System {
 
     /// Returns the mass matrix of the end nodes on a coupled body, about its reference point; zero for a point.
     pub(crate) fn carried_mass(&self, coupled: &Coupled) -> Outcome<BodyMass> {
-        let simulation = self.simulation()?;
-        let place = &self.motion[0][coupled.first..];
         let mut sum = [[0.0; 6]; 6];
-        let points = simulation.model().points.iter().enumerate();
-        for (point, data) in points {
-            let carrier = match data.role {
-                Role::Carried { vessel, .. } => Some(Body::Vessel(vessel)),
-                _ => None,
-            };
-            if carrier.is_none() || carrier != coupled.body {
-                continue;
-            }
-            let at = simulation.state().points[point].position;
-            add_mass(
-                &mut sum,
-                &end_mass(simulation, point),
-                at - Vector3::from_row_slice(&place[..3]),
-            );
+        for (mass, arm) in self.carried_nodes(coupled)? {
+            add_mass(&mut sum, &mass, arm);
         }
         Ok(sum)
+    }
+
+    /// Returns −Σ m ω × (ω × r) of the end nodes on a coupled body that turns at ω [N].
+    pub(crate) fn centrifugal_force(&self, coupled: &Coupled) -> Outcome<Vector3<f64>> {
+        let turning = Vector3::from_row_slice(&self.motion[1][coupled.first + 3..coupled.first + 6]);
+        let forces = self.carried_nodes(coupled)?;
+        Ok(forces
+            .map(|(mass, arm)| -mass * turning.cross(&turning.cross(&arm)))
+            .sum())
+    }
+
+    /// Mass [kg] of the end nodes on every point of a coupled body, and its position relative to the body's reference point [m].
+    fn carried_nodes(
+        &self,
+        coupled: &Coupled,
+    ) -> Outcome<impl Iterator<Item = (Matrix3<f64>, Vector3<f64>)>> {
+        let simulation = self.simulation()?;
+        let (body, origin) = (
+            coupled.body,
+            Vector3::from_row_slice(&self.motion[0][coupled.first..][..3]),
+        );
+        let points = simulation.model().points.iter().enumerate();
+        let carried = points.filter(move |(_, data)| match data.role {
+            Role::Carried { vessel, .. } => Some(Body::Vessel(vessel)) == body,
+            _ => false,
+        });
+        Ok(carried.map(move |(point, _)| {
+            let at = simulation.state().points[point].position;
+            (end_mass(simulation, point), at - origin)
+        }))
     }
 
     /// Returns the kind of a point's motion; a point on a body counts as fixed.

@@ -6,7 +6,7 @@ use moorline::dynamics::{StepError, StepFailure};
 use moorline::model::Body;
 use moorline::scene::{AngleOrder, InitialShape, Scene};
 use moorline::simulation::{Simulation, Watch};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::channels::Files;
@@ -169,8 +169,14 @@ impl System {
                 Some(Body::Vessel(vessel)) => {
                     let vessel = &mut scene.vessels[vessel];
                     vessel.position = [place[0], place[1], place[2]];
-                    let near = Vector3::from(vessel.attitude);
-                    vessel.attitude = host_angles(&place[3..6], near).into();
+                    let deck_attitude = Vector3::from(vessel.attitude);
+                    let (before, now) = (
+                        AngleOrder::Zyx.rotation(deck_attitude),
+                        host_rotation(&place[3..6]),
+                    );
+                    vessel.attitude = AngleOrder::Zyx.angles(&now, deck_attitude).into();
+                    let name = vessel.name.clone();
+                    turn_clamps(&mut scene, &name, &(now * before.inverse()));
                 }
                 None => {}
             }
@@ -317,8 +323,9 @@ impl System {
         };
         for coupled in &self.deck.coupled {
             let Some(body) = coupled.body else { continue };
-            let at = |index: usize| x[coupled.first + index] + reach * xd[coupled.first + index];
-            let rate = |index: usize| is_given.then(|| xd[coupled.first + index]);
+            let [place, motion] = [x, xd].map(|values| &values[coupled.first..coupled.first + coupled.size]);
+            let at = |index: usize| place[index] + reach * motion[index];
+            let rate = |index: usize| is_given.then(|| motion[index]);
             let model = simulation.model();
             match body {
                 Body::Point(point) => {
@@ -331,7 +338,10 @@ impl System {
                     let (origin, attitude) = (model.vessels[vessel].position, model.vessels[vessel].attitude);
                     let [.., roll, pitch, yaw] = simulation.inputs().body(body).displacement;
                     let near = attitude + Vector3::new(roll, pitch, yaw);
-                    let turned = host_angles(&[at(3), at(4), at(5)], near) - attitude;
+                    let turn =
+                        UnitQuaternion::from_scaled_axis(reach * Vector3::from_row_slice(&motion[3..6]));
+                    let turned =
+                        AngleOrder::Zyx.angles(&(turn * host_rotation(&place[3..6])), near) - attitude;
                     let moved = [0, 1, 2].map(|axis| at(axis) - origin[axis]);
                     let pose = [moved[0], moved[1], moved[2], turned.x, turned.y, turned.z];
                     simulation.set_body(body, pose, [0, 1, 2, 3, 4, 5].map(rate));
@@ -340,8 +350,8 @@ impl System {
         }
     }
 
-    /// Computes the forces on the coupled objects [N, N m], in the order of the degrees of freedom. As in MoorDyn, nodal forces on a body contain −M a of the
-    /// nodes that it carries, and those on a point do not.
+    /// Computes the forces on the coupled objects [N, N m], in the order of the degrees of freedom. As in MoorDyn, nodal forces on a body contain −M a and
+    /// the centrifugal force of the nodes that it carries, without the moment of the latter, and those on a point do not.
     ///
     /// # Errors
     /// A wrong number of forces, the system was not started, or a force is not finite.
@@ -373,6 +383,8 @@ impl System {
                 for (force, row) in on_coupled.iter_mut().zip(mass) {
                     *force -= row.iter().zip(acceleration).map(|(m, a)| m * a).sum::<f64>();
                 }
+                let centrifugal = self.centrifugal_force(coupled)?;
+                (0..3).for_each(|axis| on_coupled[axis] += centrifugal[axis]);
             }
         }
         Ok(())
@@ -404,10 +416,25 @@ impl System {
     }
 }
 
-/// Converts roll, pitch and yaw of a host to moorline's order [rad]; of equivalent angles, those nearest to `near` [rad].
-pub(crate) fn host_angles(angles: &[f64], near: Vector3<f64>) -> Vector3<f64> {
-    let rotation = AngleOrder::Xyz.rotation(Vector3::from_row_slice(angles));
-    AngleOrder::Zyx.angles(&rotation, near)
+/// Rotation by roll, pitch and yaw of a host [rad].
+fn host_rotation(angles: &[f64]) -> UnitQuaternion<f64> {
+    AngleOrder::Xyz.rotation(Vector3::from_row_slice(angles))
+}
+
+/// Turns the clamps of the lines on a vessel, whose directions are global.
+fn turn_clamps(scene: &mut Scene, vessel: &str, turn: &UnitQuaternion<f64>) {
+    let Scene { points, lines, .. } = scene;
+    let is_on_vessel = |name: &str| {
+        let mut points = points.iter();
+        points.any(|point| point.name == name && point.on.as_deref() == Some(vessel))
+    };
+    for line in lines {
+        for (point, clamp) in [(&line.from, &mut line.clamped_a), (&line.to, &mut line.clamped_b)] {
+            if let Some(along) = clamp.as_mut().filter(|_| is_on_vessel(point)) {
+                *along = (turn * Vector3::from(*along)).into();
+            }
+        }
+    }
 }
 
 fn simulation(scene: &Scene) -> Outcome<Simulation> {

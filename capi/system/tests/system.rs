@@ -152,11 +152,14 @@ fn the_force_on_a_body_has_the_inertia_of_the_nodes_that_it_carries() {
     }
     let system = &case.system;
     let mut expected = nalgebra::Vector6::zeros();
+    let turning = nalgebra::Vector3::new(rate[3], rate[4], rate[5]);
     for point in [2, 5] {
         let force = nalgebra::Vector3::from(system.point_force(point).unwrap());
         let arm = system.point_state(point).unwrap().position
             - nalgebra::Vector3::new(place[0], place[1], place[2]);
         let moment = arm.cross(&force);
+        let mass = nalgebra::Matrix3::from(system.point_mass(point).unwrap()).transpose();
+        let force = force - mass * turning.cross(&turning.cross(&arm)); // as in MoorDyn, without its moment
         expected += nalgebra::Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
     }
     let mass = nalgebra::Matrix6::from_fn(|row, column| system.body_mass(1).unwrap()[row][column]);
@@ -192,6 +195,88 @@ fn the_moment_on_a_body_is_that_of_its_points_forces_at_turned_arms() {
     let arm = system.point_state(2).unwrap().position.x;
     assert_relative_eq!(arm, 3.0 * b.cos() * c.cos(), max_relative = 1e-12);
     assert_eq!(system.body_state(1).unwrap().place, place[..6]);
+}
+
+/// A cable clamped to the rod of a coupled body that is pitched by `pitch` [deg].
+fn clamped_deck(pitch: f64) -> String {
+    format!(
+        "\
+a clamped cable
+--- LINE TYPES ---
+Name Diam Mass EA BA EI Cd Ca CdAx CaAx
+- m kg/m N N-s N-m2 - - - -
+cable 0.2 80 5E7 -0.8 3E5 1.2 1.0 0.05 0.0
+--- ROD TYPES ---
+Name Diam Mass Cd Ca CdEnd CaEnd
+- m kg/m - - - -
+bar 0.25 100 0 0 0 0
+--- BODIES ---
+ID Attachment X0 Y0 Z0 r0 p0 y0 Mass CG I Volume CdA Ca
+- - m m m deg deg deg kg m kg-m2 m3 m2 -
+1 Coupled 0 0 -20 0 {pitch} 0 0 0 0 0 0 0
+--- RODS ---
+ID Type Attachment Xa Ya Za Xb Yb Zb NumSegs Outputs
+- - - m m m m m m - -
+1 bar Body1 0 0 0 1 0 0 0 -
+--- POINTS ---
+ID Type X Y Z Mass Volume CdA Ca
+- - m m m kg m3 m2 -
+1 Fixed 60 0 -60 0 0 0 0
+--- LINES ---
+ID LineType AttachA AttachB UnstrLen NumSegs Outputs
+- - - - m - -
+1 cable 1 R1B 75 20 -
+--- OPTIONS ---
+60 WtrDpth
+--- end ---
+"
+    )
+}
+
+#[test]
+fn a_clamp_turns_with_its_body_from_the_angles_of_the_deck_to_those_of_the_host() {
+    let pitch = 20.0_f64;
+    let place = [0.0, 0.0, -20.0, 0.1, pitch.to_radians(), 0.0];
+    let force = |deck_pitch: f64| {
+        let mut case = case(&clamped_deck(deck_pitch));
+        case.system.start(&place, &[0.0; 6], false).unwrap();
+        case.system.body_force(0).unwrap()
+    };
+    let [level, pitched] = [force(0.0), force(pitch)];
+    for (one, other) in level.into_iter().zip(pitched) {
+        assert!(
+            (one - other).abs() < 1e-6 * pitched[0].abs(),
+            "{level:?} {pitched:?}"
+        );
+    }
+}
+
+#[test]
+fn a_smooth_path_of_a_turning_body_ends_where_its_angular_velocity_takes_it() {
+    let settings = Settings {
+        path: Path::Smooth,
+        ..Settings::default()
+    };
+    let mut case = case_with(DECK, settings);
+    let turn = nalgebra::UnitQuaternion::from_euler_angles;
+    let mut place = PLACE;
+    (place[3], place[4]) = (0.4, 0.3);
+    case.system.start(&place, &[0.0; 9], false).unwrap();
+    let mut rate = [0.0; 9];
+    rate[3..6].copy_from_slice(&[0.2, -0.1, 0.3]); // [rad/s]
+    let step = 0.1;
+    case.system.step(&place, &rate, 0.0, step).unwrap();
+    // R = Rx Ry Rz, turned about global axes
+    let start = turn(0.4, 0.0, 0.0) * turn(0.0, 0.3, 0.0);
+    let way = nalgebra::UnitQuaternion::from_scaled_axis(step * nalgebra::Vector3::new(0.2, -0.1, 0.3));
+    for (point, arm) in [
+        (2, nalgebra::Vector3::new(3.0, 0.0, 0.0)),
+        (5, nalgebra::Vector3::new(0.0, 4.0, 0.0)),
+    ] {
+        let expected = nalgebra::Vector3::new(0.0, 0.0, -10.0) + way * start * arm;
+        let found = case.system.point_state(point).unwrap().position;
+        assert!((found - expected).norm() < 1e-9, "{found} {expected}");
+    }
 }
 
 #[test]
