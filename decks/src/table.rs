@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use moorline::scene::nearest::nearest;
 use moorline::scene::rows::{Field, Row, number, shown};
-use moorline::scene::units::differ;
+use moorline::scene::units::{differ, is_foreign};
 
 use crate::findings::{Findings, Placed};
 
@@ -165,6 +165,31 @@ pub(crate) fn check_unique<'d, T: Ord + Display + 'd>(
     }
 }
 
+/// Returns whether a row begins a section: nothing is in front of its dashes `---` but marks, or the name of a section.
+pub(crate) fn begins_section(row: &Row<'_>, is_known: impl Fn(&str) -> bool) -> bool {
+    let Some((front, _)) = row.text.split_once("---") else {
+        return false;
+    };
+    !front.contains(char::is_alphanumeric) || front.trim_start().starts_with("--") || is_known(front)
+}
+
+/// Refuses a line for the names or units of columns that is a row of the table, as it would not be read. Rows have a number in the column
+/// `numbered`.
+pub(crate) fn check_heading(section: &str, heading: &Row<'_>, numbered: usize, findings: &mut Findings) {
+    let fields = heading.fields();
+    let is_number = |field: &&Field<'_>| number(field.text).is_ok();
+    let numbers = fields.iter().filter(is_number).count();
+    let is_row = fields.get(numbered).as_ref().is_some_and(is_number);
+    if fields.len() > 2 && (is_row || 2 * numbers > fields.len()) {
+        findings.mistake(
+            section,
+            heading.span(),
+            "the two lines below a section's header are the names and units of its columns and are never read, \
+             and this one holds numbers: write both of them above the rows",
+        );
+    }
+}
+
 /// Returns the remark on an unknown option or flag, which is ignored.
 pub(crate) fn left_out<'a>(
     what: &str,
@@ -176,8 +201,8 @@ pub(crate) fn left_out<'a>(
     format!("the {what} {} is not known and left out{meant}", shown(name))
 }
 
-/// Refuses a unit above a column with numbers other than 0 if it differs from the column's unit of the same quantity. The programs that use
-/// such decks do not read units either.
+/// Refuses a unit above a column with numbers other than 0 if it differs from the column's unit of the same quantity, and remarks on one that
+/// is no unit of this quantity. The programs that use such decks do not read units either.
 pub(crate) fn check_units(units: &Row<'_>, columns: &[Column], rows: &[Row<'_>], findings: &mut Findings) {
     for (place, (unit, column)) in units.fields().iter().zip(columns).enumerate() {
         let counts = |row: &Row<'_>| {
@@ -185,12 +210,20 @@ pub(crate) fn check_units(units: &Row<'_>, columns: &[Column], rows: &[Row<'_>],
                 .get(place)
                 .is_some_and(|cell| number(cell.text) != Ok(0.0))
         };
-        if differ(unit.text, column.unit) && rows.iter().take(ROWS_MAX).any(counts) {
+        if !rows.iter().take(ROWS_MAX).any(counts) {
+            continue;
+        }
+        if differ(unit.text, column.unit) {
             let problem = format!(
                 "the header has {} over {}, but numbers there are read in {}, whatever stands above them: convert them, and write that unit",
                 unit.text, column.name, column.unit
             );
             findings.mistake("", unit.span.clone(), problem);
+        } else if is_foreign(unit.text, column.unit) && !column.unit.contains(',') {
+            // A column whose numbers have several meanings has separate remarks.
+            let (word, name, read) = (shown(unit.text), column.name, column.unit);
+            let text = format!("the header has {word} over {name}, but numbers there are read in {read}");
+            findings.remark_at(unit.span.start, text);
         }
     }
 }

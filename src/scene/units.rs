@@ -102,15 +102,30 @@ pub fn factor_to(si: &str, text: &str) -> Result<f64, String> {
     }
 }
 
-/// Returns whether two units of the same quantity differ, judged by their first factors, such as `(kN-s)` and `N s`.
+/// Returns whether two units differ in a factor of the same quantity, such as `(kN-s)` and `N s`.
 pub fn differ(one: &str, other: &str) -> bool {
-    let [one, other] = [one, other].map(|text| {
-        let text = bare(text);
-        &text[..text.find(|c: char| !c.is_alphabetic()).unwrap_or(text.len())]
-    });
+    factors(one).zip(factors(other)).any(|(one, other)| {
+        let mut quantities = HEADER_UNITS.iter().map(|(quantity, ..)| *quantity);
+        let both =
+            quantities.find_map(|quantity| factor(one, quantity).ok().zip(factor(other, quantity).ok()));
+        both.is_some_and(|(one, other)| one != other)
+    })
+}
+
+/// Returns whether the first factor of a unit is of another quantity than that of the `expected` unit, or unknown, such as `(lbf)` for `N`.
+pub fn is_foreign(text: &str, expected: &str) -> bool {
+    let Some((text, expected)) = factors(text).next().zip(factors(expected).next()) else {
+        return false;
+    };
     let mut quantities = HEADER_UNITS.iter().map(|(quantity, ..)| *quantity);
-    let both = quantities.find_map(|quantity| factor(one, quantity).ok().zip(factor(other, quantity).ok()));
-    both.is_some_and(|(one, other)| one != other)
+    let quantity = quantities.find(|quantity| factor(expected, *quantity).is_ok());
+    quantity.is_some_and(|quantity| factor(text, quantity).is_err())
+}
+
+/// The units in a product, without exponents: N and m of `(N-m^2)`.
+fn factors(text: &str) -> impl Iterator<Item = &str> {
+    let words = text.split(|c: char| !c.is_ascii_alphabetic());
+    words.filter(|word| !word.is_empty())
 }
 
 /// Returns whether a text is a unit other than an SI unit.
@@ -181,8 +196,20 @@ mod tests {
             ("(Pa-s/-)", "N s", false),
             ("(-)", "N", false),
             ("(m)", "-", false),
+            ("(kg/km)", "kg/m", true),
+            ("(N-mm^2)", "N m²", true),
         ] {
             assert_eq!(differ(one, other), apart, "{one} {other}");
+        }
+        for (text, expected, foreign) in [
+            ("(lbf)", "N", true),
+            ("(N/m)", "kg/m", true),
+            ("(mˆ3)", "m³", false),
+            ("(Kg)", "kg", false),
+            ("(-)", "N", false),
+            ("(name)", "-", false),
+        ] {
+            assert_eq!(is_foreign(text, expected), foreign, "{text} {expected}");
         }
         for (text, quantity) in [
             ("mN", Quantity::Force),

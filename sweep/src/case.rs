@@ -135,7 +135,8 @@ impl Case {
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let mut names = Vec::new();
         let document = self.input.document.parse().map(Value::Table);
-        file_names(&document.expect("a document that was written"), &mut names);
+        let mut document = document.expect("a document that was written");
+        for_each_file(&mut document, &mut |name| names.push(name.clone()));
         let folder = folder_of(&self.input.base);
         let named = names.iter().map(|name| folder.join(name));
         let files = named.chain(self.input.drive.file.clone());
@@ -147,18 +148,18 @@ impl Case {
     }
 }
 
-/// Collects the texts under keys named `file`.
-fn file_names(value: &Value, found: &mut Vec<String>) {
+/// Calls a function with each text under a key named `file`.
+fn for_each_file(value: &mut Value, call: &mut impl FnMut(&mut String)) {
     match value {
         Value::Table(table) => {
-            for (key, value) in table {
-                match value.as_str().filter(|_| key == "file") {
-                    Some(name) => found.push(name.to_string()),
-                    None => file_names(value, found),
+            for (key, value) in table.iter_mut() {
+                match value {
+                    Value::String(name) if key == "file" => call(name),
+                    value => for_each_file(value, call),
                 }
             }
         }
-        Value::Array(list) => list.iter().for_each(|value| file_names(value, found)),
+        Value::Array(list) => list.iter_mut().for_each(|value| for_each_file(value, call)),
         _ => {}
     }
 }
@@ -356,11 +357,12 @@ impl<'b> Builder<'b> {
             match (in_si(target, &entry.value, &entry.span), &target.place) {
                 (Err(mistake), _) => mistakes.push(mistake),
                 (Ok(value), None) => file = value.as_str().map(|name| self.beside(name)),
-                (Ok(Value::String(name)), Some(place)) if place.is_file() => {
-                    let path = self.beside(&name).display().to_string();
-                    place.set(&mut document, Value::String(path));
-                }
-                (Ok(value), Some(place)) => {
+                (Ok(mut value), Some(place)) => {
+                    let mut move_beside = |name: &mut String| *name = self.beside(name).display().to_string();
+                    match &mut value {
+                        Value::String(name) if place.is_file() => move_beside(name),
+                        value => for_each_file(value, &mut move_beside),
+                    }
                     if place.path() == DURATION {
                         duration = value.as_float().or(value.as_integer().map(|value| value as f64));
                     }

@@ -143,6 +143,15 @@ fn motion_files_stand_beside_the_file_of_cases_and_take_the_place_of_the_motion(
 }
 
 #[test]
+fn files_within_the_values_of_cases_stand_beside_the_file_of_cases_too() {
+    let folder = Folder::with(ROPE, "cases.toml", "motion.fairlead = [{ file = \"a.csv\" }]\n");
+    folder.write("cases/a.csv", "time,x,y,z\n0,0,0,0\n1,0.1,0,0\n2,0,0,0\n");
+    let cases = folder.cases("cases.toml").unwrap();
+    let scene = cases[0].scene().unwrap();
+    assert_eq!(scene.motion["fairlead"].rows().map(<[_]>::len), Some(3));
+}
+
+#[test]
 fn the_duration_of_a_case_is_kept_beside_a_motion_file() {
     let folder = Folder::with(ROPE, "cases.csv", "motion,output.duration\na.csv,1.5\na.csv,\n");
     folder.write("cases/a.csv", "time,x,y,z\n0,0,0,0\n1,0.1,0,0\n2,0,0,0\n");

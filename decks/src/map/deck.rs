@@ -4,8 +4,8 @@ use moorline::scene::rows::{Field, Row, number, shown};
 
 use crate::findings::{Findings, Placed};
 use crate::table::{
-    Cells, Column, ROWS_MAX, check_unique, check_units, column, compare_header, is_one_of, left_out,
-    placed_text, read_rows, title,
+    Cells, Column, ROWS_MAX, begins_section, check_heading, check_unique, check_units, column,
+    compare_header, is_one_of, left_out, placed_text, read_rows, title,
 };
 
 /// A whole deck.
@@ -165,13 +165,10 @@ struct Section<'t> {
 impl<'t> Section<'t> {
     /// Returns the section that a row begins; `None` if the row is not a header.
     fn begun_by(row: &Row<'t>) -> Option<Section<'t>> {
-        if !row.text.contains("---") {
+        if !begins_section(row, |front| known_header(front).is_some()) {
             return None;
         }
-        let upper = row.text.to_uppercase();
-        let mut known = HEADERS.iter();
-        let known = known.find(|(.., words)| words.iter().any(|words| upper.contains(words)));
-        let (table, name, _) = known.copied().unwrap_or((Table::Other, "", &[]));
+        let (table, name) = known_header(row.text).unwrap_or((Table::Other, ""));
         Some(Section {
             table,
             name,
@@ -184,6 +181,37 @@ impl<'t> Section<'t> {
     fn body(&self) -> &[Row<'t>] {
         self.rows.get(2..).unwrap_or_default()
     }
+
+    /// Checks that the two rows above the body are not part of it.
+    fn check_headings(&self, findings: &mut Findings) {
+        let numbered = match self.table {
+            Table::LineTypes => 1, // below the name of the type
+            _ => 0,
+        };
+        for heading in self.rows.iter().take(2) {
+            let key = heading.fields().first().map(|field| field.text.to_uppercase());
+            if self.table != Table::Options {
+                check_heading(self.name, heading, numbered, findings);
+            } else if key.is_some_and(|key| is_option(&key)) {
+                let problem = "the two lines below the header are a heading and are never read, and this one holds an \
+                               option: write two lines above the options, such as Option and (-)";
+                findings.mistake(self.name, heading.span(), problem);
+            }
+        }
+    }
+}
+
+/// Returns whether a word in capitals is an option of MAP++.
+fn is_option(key: &str) -> bool {
+    key == REPEAT || is_one_of(key, UNNEEDED)
+}
+
+/// Returns the kind and name of the section whose header a text contains.
+fn known_header(text: &str) -> Option<(Table, &'static str)> {
+    let upper = text.to_uppercase();
+    let mut known = HEADERS.iter();
+    let known = known.find(|(.., words)| words.iter().any(|words| upper.contains(words)));
+    known.map(|(table, name, _)| (*table, *name))
 }
 
 /// Divides a text at its headers; the rows above the first header are the title.
@@ -210,7 +238,7 @@ pub(crate) fn is_deck(text: &str) -> bool {
     let mut options = sections.iter().filter(|section| section.table == Table::Options);
     let key_first = |row: &Row<'_>| {
         let key = row.fields().first().map(|field| field.text.to_uppercase());
-        key.is_some_and(|key| key == REPEAT || is_one_of(&key, UNNEEDED))
+        key.is_some_and(|key| is_option(&key))
     };
     let options_of_map = options.any(|section| section.rows.iter().any(key_first));
     options_of_map || nodes.body().iter().take(ROWS_MAX).any(is_node_of_map)
@@ -271,6 +299,7 @@ fn table<T>(
     findings: &mut Findings,
     read: fn(&mut Cells<'_, '_>) -> T,
 ) -> Vec<T> {
+    section.check_headings(findings);
     if let Some(header) = section.rows.first() {
         compare_header(header, columns, findings);
     }
@@ -369,6 +398,7 @@ fn line(cells: &mut Cells<'_, '_>) -> Line {
 }
 
 fn options(section: &Section<'_>, deck: &mut Deck, findings: &mut Findings) {
+    section.check_headings(findings);
     for row in section.body().iter().take(ROWS_MAX) {
         let fields = row.fields();
         let [key, values @ ..] = fields.as_slice() else {

@@ -1,9 +1,9 @@
 //! Division of a deck into sections at its headers.
 
-use moorline::scene::rows::{Row, number, shown};
+use moorline::scene::rows::{Row, shown};
 
 use crate::findings::{Findings, Placed};
-use crate::table::is_one_of;
+use crate::table::{begins_section, check_heading, is_one_of};
 
 /// Kind of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,6 +67,14 @@ impl Kind {
     fn is_table(self) -> bool {
         !matches!(self, Kind::Options | Kind::Outputs)
     }
+
+    /// Returns the column that has a number in every row of a table.
+    fn numbered(self) -> usize {
+        match self {
+            Kind::LineTypes | Kind::RodTypes => 1, // below the name of the type
+            _ => 0,
+        }
+    }
 }
 
 /// Header and the rows below it, without comments.
@@ -81,6 +89,13 @@ pub(super) struct Section<'t> {
     /// Line with their units.
     pub units: Option<Row<'t>>,
     pub rows: Vec<Row<'t>>,
+}
+
+impl Section<'_> {
+    /// Returns whether the lines below the header still lack the names or units of columns.
+    fn lacks_units(&self) -> bool {
+        self.kind.is_table() && self.units.is_none()
+    }
 }
 
 /// Deck divided into sections.
@@ -103,12 +118,22 @@ impl<'t> Sections<'t> {
     }
 }
 
-fn is_header(row: &Row<'_>) -> bool {
-    row.text.contains("---")
+/// Returns the row without its comment. In the names and units of columns, a mark within a word, such as `(#)`, begins no comment.
+fn without_comment<'t>(row: &Row<'t>, heads_columns: bool) -> Row<'t> {
+    if !heads_columns {
+        return row.before(&COMMENTS);
+    }
+    let mut fields = row.fields().into_iter();
+    let comment = fields.find(|field| field.text.starts_with(COMMENTS));
+    let end = comment.map_or(row.text.len(), |field| field.span.start - row.start);
+    Row {
+        text: row.text[..end].trim_end(),
+        start: row.start,
+    }
 }
 
-fn kind_of(row: &Row<'_>) -> Option<Kind> {
-    let upper = row.text.to_uppercase();
+fn kind_of(text: &str) -> Option<Kind> {
+    let upper = text.to_uppercase();
     let mut kinds = KINDS.iter();
     let known = kinds.find(|(.., words)| words.iter().any(|words| upper.contains(words)));
     known.map(|(kind, ..)| *kind)
@@ -119,7 +144,7 @@ pub(crate) fn is_deck(text: &str) -> bool {
     let mut rows = Row::all(text).map(|row| row.before(&COMMENTS));
     rows.any(|row| {
         let rule = row.text.trim_start().starts_with("---");
-        rule && (kind_of(&row).is_some() || row.text.to_uppercase().contains("MOORDYN"))
+        rule && (kind_of(row.text).is_some() || row.text.to_uppercase().contains("MOORDYN"))
     })
 }
 
@@ -129,14 +154,20 @@ pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> 
     // All rows below an unknown header count as one mistake.
     let mut unknown: Option<Row<'t>> = None;
     for whole in Row::all(text) {
-        let row = whole.before(&COMMENTS);
+        let heads_columns = sections.list.last().is_some_and(Section::lacks_units);
+        let row = without_comment(&whole, heads_columns);
         if row.text.trim().is_empty() {
             continue;
         }
-        if is_header(&row) {
-            if row.text.to_uppercase().contains("NEED THIS LINE") {
-                break;
-            }
+        let has_rule = row.text.contains("---");
+        if has_rule && row.text.to_uppercase().contains("NEED THIS LINE") {
+            break;
+        }
+        if has_rule && !sections.list.is_empty() && !begins_section(&row, |front| kind_of(front).is_some()) {
+            let problem = "MoorDyn ends the section at a row with `---`, and neither this row nor those below it \
+                           would be read: take the dashes out, or begin a header with them";
+            findings.mistake("", row.span(), problem);
+        } else if has_rule {
             unknown = begin(&mut sections, row, findings);
         } else if let Some(header) = &unknown {
             let problem = format!(
@@ -154,7 +185,9 @@ pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> 
         }
     }
     for section in &sections.list {
-        check_names(section, findings);
+        for heading in [&section.names, &section.units].into_iter().flatten() {
+            check_heading(section.kind.name(), heading, section.kind.numbered(), findings);
+        }
         check_count(section, findings);
     }
     sections
@@ -162,7 +195,7 @@ pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> 
 
 /// Begins a section; returns the header if it is unknown.
 fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findings) -> Option<Row<'t>> {
-    let Some(kind) = kind_of(&header) else {
+    let Some(kind) = kind_of(header.text) else {
         // The title of the file looks like a header as well.
         return (!sections.list.is_empty()).then_some(header);
     };
@@ -223,20 +256,4 @@ fn check_count(section: &Section<'_>, findings: &mut Findings) {
         None => "expected the number of rows below".to_string(),
     };
     findings.wrong(section.kind.name(), count, problem);
-}
-
-/// Checks that the lines for names and units contain no row of the table, which would not be read.
-fn check_names(section: &Section<'_>, findings: &mut Findings) {
-    for row in [&section.names, &section.units].into_iter().flatten() {
-        let fields = row.fields();
-        let numbers = fields.iter().filter(|field| number(field.text).is_ok());
-        if fields.len() > 2 && 2 * numbers.count() > fields.len() {
-            findings.mistake(
-                section.kind.name(),
-                row.span(),
-                "the two lines below a section's header are the names and units of its columns and are never read, \
-                 and this one holds numbers: write both of them above the rows",
-            );
-        }
-    }
 }

@@ -29,6 +29,34 @@ fn a_unit_above_a_column_that_has_none_or_only_zeros_is_read() {
 }
 
 #[test]
+fn a_unit_of_another_quantity_or_an_unknown_one_is_noted() {
+    let force = with(OPENFAST, "(kg/m)", "(N/m)");
+    let said = notes(&loaded(&with(&force, "(N) ", "(lbf)")));
+    assert_says(
+        &said,
+        &[
+            "the header has \"(N/m)\" over Mass, but numbers there are read in kg/m",
+            "the header has \"(lbf)\" over EA, but numbers there are read in N\n",
+        ],
+    );
+    assert!(!notes(&loaded(OPENFAST)).contains("the header has"));
+}
+
+#[test]
+fn a_deck_may_end_at_any_row_of_dashes() {
+    let (deck, _) = OPENFAST.split_once("END\n").unwrap();
+    let expected = loaded(deck).scene;
+    for end in [
+        "------- END ----",
+        "---",
+        "need this line ---",
+        "--- NEED THIS LINE ---\nrest ---\n",
+    ] {
+        assert_eq!(loaded(&format!("{deck}{end}")).scene, expected, "{end}");
+    }
+}
+
+#[test]
 fn a_free_body_is_not_refused_as_if_a_host_moved_it() {
     let deck = with(C_STYLE, "1    Coupled     0", "1    Free     0");
     let said = said(&with(&deck, "90      0    0|0|0", "90      7e3    0|0|0"));
