@@ -129,9 +129,10 @@ def run_all(arguments):
     module = {"PYO3_BUILD_EXTENSION_MODULE": "1", "PYO3_PYTHON": str(interpreter)}
     settings = {**libclang(interpreter), **module, "MOORLINE": str(program)}
     # Programs, tests and bench in one build: dependencies of the tests add features to those of the library, which would then be built twice.
-    must("cargo", "build", "--release", *EVERYTHING, "--lib", "--bins", "--test", "*", "--bench", "instructions", **settings)
+    # The library and its unit tests are each one unit of code, which takes one core for minutes: they are built side by side.
+    must("cargo", "build", "--release", *EVERYTHING, "--lib", "--bins", "--tests", "--bench", "instructions", **settings)
     with concurrent.futures.ThreadPoolExecutor() as aside, tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
-        # Beside those in Rust, which use one core for minutes: the unit tests of the library are one unit of code, and some tests run alone.
+        # Beside those in Rust, some of which run alone and use one core.
         tests = aside.submit(test_python, interpreter, built, program, arguments, log)
         # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
         rust = run("cargo", "test", "--release", *EVERYTHING, "--no-fail-fast", **settings)
