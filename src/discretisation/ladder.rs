@@ -30,6 +30,8 @@ pub(super) struct Ladder {
     passed: bool,
     /// Number of elements whose error is small enough, once found [-].
     found: Option<usize>,
+    /// True if no run carries waves across the line with the shortest period of the motion.
+    pub(super) lacks_waves: bool,
 }
 
 impl Ladder {
@@ -43,6 +45,7 @@ impl Ladder {
             trials: Vec::new(),
             passed: false,
             found: None,
+            lacks_waves: false,
         }
     }
 
@@ -55,10 +58,9 @@ impl Ladder {
         (self.passed, self.found) = (false, None);
     }
 
-    /// Returns the work of the finest run in explicit steps of an element [-] and its elements [-], if a mesh was found by it.
-    pub(super) fn finest(&self) -> Option<(f64, usize)> {
-        let run = self.runs.last().filter(|_| self.open && self.found.is_some())?;
-        Some((run.work, run.elements))
+    /// Returns the finest run, if a mesh was found by it.
+    pub(super) fn finest(&self) -> Option<&Rc<Run>> {
+        self.runs.last().filter(|_| self.open && self.found.is_some())
     }
 
     /// Rejects the mesh found, whose error is that against a much finer run, if it exceeds `aim`, and restarts at half the elements of that run.
@@ -70,8 +72,8 @@ impl Ladder {
         else {
             return;
         };
-        let halved = LEVELS.into_iter().filter(|level| 2 * level <= finer.elements);
-        self.coarsest = halved.last().unwrap_or(LEVELS[0]);
+        let halved = LEVELS.into_iter().rfind(|level| 2 * level <= finer.elements);
+        self.coarsest = halved.unwrap_or(LEVELS[0]);
         if let Some(trial) = self.trials.last_mut() {
             trial.error = error;
         }
@@ -232,6 +234,7 @@ impl Ladder {
                 .runs
                 .last()
                 .is_some_and(|run| run.histories.iter().any(History::is_still)),
+            lacks_waves: self.lacks_waves,
             short_sections: Some(1),
             rest: None,
         })

@@ -91,6 +91,8 @@ pub struct Mesh {
     pub tried: bool,
     /// True if a line varies so little in the trials that its errors are relative to the least deviation, not to its own.
     pub still: bool,
+    /// True if no trial carries waves across the line with the shortest period of the motion: without them, coarse meshes agree with one another.
+    pub lacks_waves: bool,
     /// Elements of sections that are one element on all levels [-]; `None` if their error could not be tried.
     pub short_sections: Option<usize>,
     /// Static error that requires more elements than the motion or the rule, if there is one.
@@ -116,6 +118,7 @@ impl Mesh {
             error: 0.0,
             tried: true,
             still: false,
+            lacks_waves: false,
             short_sections: Some(1),
             rest: None,
         }
@@ -214,7 +217,14 @@ impl Discretisation {
                     self.names(&[mesh])
                 )
             });
-            [coarse, untried, unknown].into_iter().flatten()
+            let lacks_waves = mesh.lacks_waves.then(|| {
+                format!(
+                    "{}: no trial has elements short enough for waves across the line with the shortest period of the motion, so the error may be \
+                     larger; compare with a run with more `elements`",
+                    self.names(&[mesh])
+                )
+            });
+            [coarse, untried, unknown, lacks_waves].into_iter().flatten()
         };
         let sentences = self.meshes.iter().flat_map(of_mesh);
         let notes = sentences.map(|text| Note::new("solver.tolerance", text));

@@ -110,7 +110,20 @@ impl<'a> Search<'a> {
     pub(super) fn meshes(&mut self) -> Option<Vec<Mesh>> {
         let tolerance = self.tolerance();
         self.step = self.coarse_step();
-        let mut spent = self.climb(AIM * tolerance);
+        self.find_meshes(AIM * tolerance);
+        if self.rejects_without_short_waves(AIM * tolerance) {
+            self.find_meshes(AIM * tolerance);
+        }
+        let between = self.between(AIM * tolerance);
+        let ladders = self.ladders.iter().zip(between);
+        ladders
+            .map(|(ladder, between)| ladder.mesh(between, tolerance))
+            .collect()
+    }
+
+    /// Refines the meshes until their errors are small enough, and shortens implicit steps until theirs are on these meshes.
+    fn find_meshes(&mut self, aim: f64) {
+        let mut spent = self.climb(aim);
         while let Some(step) = self.step {
             let (excess, step) = self.excess(step);
             if excess <= 1.0 {
@@ -124,16 +137,8 @@ impl<'a> Search<'a> {
             }
             self.step = Some(shorter * step);
             self.ladders.iter_mut().for_each(Ladder::restart);
-            spent = self.climb(AIM * tolerance);
+            spent = self.climb(aim);
         }
-        if self.lacks_short_waves(AIM * tolerance) == Some(true) {
-            self.climb(AIM * tolerance);
-        }
-        let between = self.between(AIM * tolerance);
-        let ladders = self.ladders.iter().zip(between);
-        ladders
-            .map(|(ladder, between)| ladder.mesh(between, tolerance))
-            .collect()
     }
 
     /// Doubles the elements of sections that are one element on all levels, until their error together with that of the mesh is within the tolerance.
@@ -246,39 +251,65 @@ impl<'a> Search<'a> {
     }
 
     /// Compares the meshes found with finer ones if none of their runs carries waves across the lines with the shortest period of the motion: meshes
-    /// without these waves agree with one another. Returns whether a mesh was rejected; `None` if no run is needed, possible or affordable, or no mesh found.
-    fn lacks_short_waves(&mut self, aim: f64) -> Option<bool> {
-        let period = self.scene().periods().reduce(f64::min)?;
-        if self.ladders.iter().any(Ladder::is_open) {
-            return None;
+    /// without these waves agree with one another. Returns whether a mesh was rejected. Meshes without such a run are marked.
+    fn rejects_without_short_waves(&mut self, aim: f64) -> bool {
+        let needed = self.needed_for_short_waves();
+        if needed.is_empty() {
+            return false;
         }
+        let mut elements: Vec<usize> = (0..needed.len())
+            .map(|network| self.trials.coarsest(network))
+            .collect();
+        let mut work = 0.0;
+        for (network, needed) in needed.iter().enumerate() {
+            let Some(finest) = self.ladders[network].finest() else {
+                continue;
+            };
+            let mut levels = LEVELS.into_iter().filter(|level| *level > finest.elements);
+            let level = levels.find(|level| *level as f64 >= *needed);
+            if let (true, Some(level)) = (*needed > finest.elements as f64, level) {
+                elements[network] = level;
+                work += finest.work * (level as f64 / finest.elements as f64).powi(2);
+            }
+        }
+        let runs = match work > 0.0 && self.trials.allow(work) {
+            true => self
+                .trials
+                .run(&elements, self.at_level(&elements))
+                .ok()
+                .flatten(),
+            false => None,
+        };
+        let runs = runs.as_deref().unwrap_or_default();
+        for (network, ladder) in self.ladders.iter_mut().enumerate() {
+            let Some(finest) = ladder.finest().map(|run| run.elements) else {
+                continue;
+            };
+            match runs.get(network).filter(|run| run.elements > finest) {
+                Some(finer) => ladder.reject(finer, aim),
+                None => {
+                    ladder.lacks_waves = needed[network] > finest as f64;
+                }
+            }
+        }
+        self.ladders.iter().any(Ladder::is_open)
+    }
+
+    /// Elements of each network that carry waves across its lines with the shortest period of the motion [-]; empty if a mesh is not found or the motion
+    /// has no period.
+    fn needed_for_short_waves(&self) -> Vec<f64> {
+        let period = self.scene().periods().reduce(f64::min);
+        let Some(period) = period.filter(|_| !self.ladders.iter().any(Ladder::is_open)) else {
+            return Vec::new();
+        };
         let found = self.assessed();
-        let simulation = Simulation::new(&self.trials.with(&found)).ok()?;
-        let (mut elements, mut work) = (Vec::new(), 0.0);
-        for (network, ladder) in self.ladders.iter().enumerate() {
-            let coarsest = self.trials.coarsest(network);
-            let needed = found[network] as f64 * self.trials.steepness(&simulation, network, period);
-            let level = LEVELS.into_iter().find(|level| *level as f64 >= needed);
-            let finer = ladder
-                .finest()
-                .zip(level)
-                .filter(|((_, finest), level)| finest < level);
-            elements.push(finer.map_or(coarsest, |(_, level)| level));
-            work += finer.map_or(0.0, |((work, finest), level)| {
-                work * (level as f64 / finest as f64).powi(2)
-            });
-        }
-        if work == 0.0 || !self.trials.allow(work) {
-            return None;
-        }
-        let runs = self.trials.run(&elements, self.at_level(&elements)).ok()??;
-        let finer = self
-            .ladders
-            .iter_mut()
-            .zip(&runs)
-            .filter(|(ladder, run)| ladder.finest().is_some_and(|(_, finest)| run.elements > finest));
-        finer.for_each(|(ladder, run)| ladder.reject(run, aim));
-        Some(self.ladders.iter().any(Ladder::is_open))
+        let Ok(simulation) = Simulation::new(&self.trials.with(&found)) else {
+            return Vec::new();
+        };
+        let of_network = |(network, found): (usize, &usize)| {
+            *found as f64 * self.trials.steepness(&simulation, network, period)
+        };
+        found.iter().enumerate().map(of_network).collect()
     }
 
     /// Elements of the meshes found, or else of the last ones assessed.
