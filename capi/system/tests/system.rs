@@ -279,6 +279,68 @@ fn a_smooth_path_of_a_turning_body_ends_where_its_angular_velocity_takes_it() {
     }
 }
 
+/// A chain with BA/EA = 0.02 s: axial damping carries the strain of a jump through several segments in a step of the host.
+const DAMPED: &str = "\
+a damped chain
+--- LINE TYPES ---
+Name Diam Mass EA BA EI Cd Ca CdAx CaAx
+- m kg/m N N-s N-m2 - - - -
+chain 0.17 183.4 4.39E8 8.75E6 0 2.4 0.7 0 0
+--- POINTS ---
+ID Type X Y Z Mass Volume CdA Ca
+- - m m m kg m3 m2 -
+1 Fixed 61.5 75.2 -40 0 0 0 0
+2 Coupled 1.4 1.75 -9.9 0 0 0 0
+--- LINES ---
+ID LineType AttachA AttachB UnstrLen NumSegs Outputs
+- - - - m - -
+1 chain 1 2 102.9 24 -
+--- OPTIONS ---
+40 WtrDpth
+--- end ---
+";
+
+/// Forces on the fairlead of [`DAMPED`] [N] in the second half of a run with steps of `step` [s], at a tolerance.
+fn damped(tolerance: f64, step: f64) -> Vec<f64> {
+    let settings = Settings {
+        tolerance,
+        ..Settings::default()
+    };
+    let mut case = case_with(DAMPED, settings);
+    let place = [1.4, 1.75, -9.9];
+    case.system.start(&place, &[0.0; 3], false).unwrap();
+    let count = (20.0 / step) as usize;
+    let row = |k: usize| {
+        let t = k as f64 * step;
+        let (mut x, mut v) = (place, [0.0; 3]);
+        for (axis, size, period) in [(0, 0.8, 10.0), (1, 0.6, 9.0), (2, 0.7, 11.0)] {
+            let omega = 2.0 * std::f64::consts::PI / period;
+            x[axis] += size * (1.0 - (omega * t).cos());
+            v[axis] = size * omega * (omega * t).sin();
+        }
+        case.system.step(&x, &v, t, step).unwrap();
+        let mut force = [0.0; 3];
+        case.system.forces(&mut force).unwrap();
+        nalgebra::Vector3::from(force).norm()
+    };
+    let all: Vec<f64> = (0..count).map(row).collect();
+    all[count / 2..].to_vec()
+}
+
+#[test]
+fn a_heavily_damped_line_keeps_the_tolerance_where_velocities_jump() {
+    for step in [0.005, 0.01, 0.02] {
+        let [default, exact] = [Settings::default().tolerance, 5e-5].map(|tolerance| damped(tolerance, step));
+        let count = exact.len() as f64;
+        let mean = exact.iter().sum::<f64>() / count;
+        let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>() / count;
+        let deviation = square(&mut exact.iter().map(|x| x - mean));
+        let error = square(&mut default.iter().zip(&exact).map(|(a, b)| a - b));
+        let error = (error / deviation).sqrt();
+        assert!(error < 0.005, "{step} s: {error}");
+    }
+}
+
 #[test]
 fn the_forces_on_a_node_add_up_to_its_mass_times_its_acceleration() {
     let mut case = started();
