@@ -23,9 +23,11 @@ mod table;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use moorline::physics::tension_table::TensionTable;
 use moorline::scene::path::quoted;
 use moorline::scene::{
-    LoadError, LoadedScene, Note, Scene, SceneError, TensionStrain, folder_of, is_toml, load_text, read_text,
+    LineType, LoadError, LoadedScene, Note, Scene, SceneError, TensionStrain, folder_of, is_toml, load_text,
+    read_text,
 };
 
 pub use moordyn::lists::{BodyRow, Carrier, LineRow, Lists, RodRow, lists as moordyn_lists};
@@ -140,6 +142,7 @@ fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneEr
     if !mistakes.is_empty() {
         return Err(mistakes);
     }
+    draft.scene.line_types.values_mut().for_each(scale_damping_ratio);
     notes.extend(draft.scene.notes());
     Ok(notes)
 }
@@ -185,6 +188,16 @@ fn cut_tables(scene: &mut Scene) -> Vec<Note> {
         }
     }
     notes
+}
+
+/// Refers the damping ratio of a line type with a table to MoorDyn's stiffness, the last tension over the last strain.
+fn scale_damping_ratio(line_type: &mut LineType) {
+    if let (Some(table), Some(ratio)) = (&line_type.tension_strain, &mut line_type.damping_ratio)
+        && let Some([strain, tension]) = table.rows.last()
+    {
+        let (_, steepest) = TensionTable::through(&table.rows);
+        *ratio *= (tension / strain / steepest).sqrt();
+    }
 }
 
 /// Removes the rows below zero strain and returns their number [-]. If no row is at zero strain, one is added there by linear interpolation

@@ -230,11 +230,12 @@ fn surroundings(deck: &Deck, draft: &mut Draft<'_>) {
     let mut water = Water::still(density.unwrap_or(SEA_WATER));
     moving_water(deck, &mut water, draft);
     draft.scene.water = Some(water);
+    let file = soundings(deck, draft);
     let given = options.depth.as_ref().and_then(|depth| match depth.value {
+        Property::Number(value) if file.is_some() => Some(value),
         Property::Number(value) => Some(down_to_the_anchors(&depth.with(value), draft)),
         _ => None,
     });
-    let file = soundings(deck, draft);
     let Some(depth) = draft.depth(given, file.is_some()) else {
         return;
     };

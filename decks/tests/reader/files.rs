@@ -122,6 +122,10 @@ fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_seabed() {
             found.notes
         );
     }
+    let shallow = deck.replace("110 WtrDpth", "90 WtrDpth");
+    let found = with_files(folder.path(), &shallow, &[("seabed.txt", &heights)]).unwrap();
+    let said: Vec<&str> = found.notes.iter().map(|note| &note.text[..]).collect();
+    assert!(!said.join("\n").contains("deep everywhere"), "{said:?}");
     let error = with_files(folder.path(), &deck, &[("seabed.txt", axes)]).unwrap_err();
     let lack = "seabed.txt: no height at x = 900 m, y = -900 m";
     assert_says(&error.list(), &["mooring.dat:27:1: OPTIONS, bathymetry: ", lack]);
@@ -164,6 +168,13 @@ fn decks_say_static_and_dynamic_stiffness_or_name_a_table() {
     assert_eq!(of(&read.scene).len(), 3);
     let converted = Scene::from_toml(&read.to_commented_toml()).unwrap();
     assert_eq!(of(&converted), of(&read.scene));
+    let model = Model::new(&read.scene).unwrap();
+    let of_moordyn = 0.8 * (218.0 / 10.0) * (3.0e6_f64 / 0.02 * 22.0).sqrt(); // the last tension over the last strain
+    assert_relative_eq!(
+        model.lines[0].segments.axial_damping[3],
+        of_moordyn,
+        max_relative = 1e-9
+    );
 }
 
 #[test]
