@@ -1,7 +1,8 @@
 //! Bending in the assembled system: joints that couple three nodes, and the chain that they form.
 //!
 //! A joint at node i has the slopes g₁ and g₂ of its energy with respect to the vectors e₁ and e₂ of its two segments, so that R_{i−1} −= g₁, R_i +=
-//! g₁ − g₂, R_{i+1} += g₂; J follows likewise from the second derivatives. A clamp acts as a segment that does not move. A moment on an end is a
+//! g₁ − g₂, R_{i+1} += g₂; J follows likewise from the second derivatives. A clamp acts as a segment that turns with its support: the damper of its
+//! joint resists the rate of the segment's vector e as seen from there, ė − ω × e. A moment on an end is a
 //! couple of forces ± f on the nodes of its segment, and its slope is part of the block of that segment.
 
 use nalgebra::{Matrix3, Vector3};
@@ -80,11 +81,12 @@ impl BendingWork {
 }
 
 impl LineWork {
-    /// Adds the joints of a line to residual and tangent, after its segments; without damping if no velocities are given.
+    /// Adds the joints of a line to residual and tangent, after its segments; without damping if no velocities are given. The clamps turn at `spins`
+    /// [rad/s].
     pub(super) fn add_bending(
         &mut self,
         bending: &Bending,
-        clamps: [Option<Vector3<f64>>; 2],
+        (clamps, spins): ([Option<Vector3<f64>>; 2], [Vector3<f64>; 2]),
         velocity: &[Vector3<f64>],
         parts: &Parts,
     ) {
@@ -109,7 +111,10 @@ impl LineWork {
             });
             if let Some(damping) = moving(bending, velocity) {
                 let damper = turn.damper(damping[i]);
-                let drag = damper.product(rates(i, last, |node| velocity[node]));
+                let chord =
+                    |segment: usize| self.direction[segment].along / self.direction[segment].per_length;
+                let rates = rates_from_clamps([i, last], chord, |node| velocity[node], spins);
+                let drag = damper.product(rates);
                 (first, second) = (first + drag[0], second + drag[1]);
                 tangent = tangent.map(|stiff| stiff.plus(&damper.times(parts.velocity)));
             }
@@ -256,24 +261,44 @@ pub(crate) fn rates(node: usize, last: usize, velocity: impl Fn(usize) -> Vector
     ]
 }
 
-/// Power dissipated by the joint dampers of a line [W] at node velocities `motion` [m/s]; the dampers resist the velocities of `state`.
+/// [`rates`] as seen from a clamp at that node, which turns at one of the `spins` [rad/s].
+fn rates_from_clamps(
+    [node, last]: [usize; 2],
+    chord: impl Fn(usize) -> Vector3<f64>,
+    velocity: impl Fn(usize) -> Vector3<f64>,
+    spins: [Vector3<f64>; 2],
+) -> [Vector3<f64>; 2] {
+    let [mut first, mut second] = rates(node, last, velocity);
+    if node == 0 {
+        second -= spins[0].cross(&chord(0));
+    } else if node == last {
+        first -= spins[1].cross(&chord(last - 1));
+    }
+    [first, second]
+}
+
+/// Power dissipated by the joint dampers of a line [W] at velocities `motion` [m/s] of its nodes and angular velocities `turning` [rad/s] of its clamps;
+/// the dampers resist the velocities of `state` and the angular velocities of the `points`.
 pub fn joint_damping_power(
     line: &Line,
     state: &LineState,
-    clamps: [Option<Vector3<f64>>; 2],
+    points: &[PointState],
     motion: impl Fn(usize) -> Vector3<f64>,
+    turning: [Vector3<f64>; 2],
 ) -> f64 {
     let Some(damping) = line.bending.as_ref().and_then(|bending| bending.damping.as_ref()) else {
         return 0.0;
     };
-    let last = line.segment_count();
+    let (last, clamps) = (line.segment_count(), line.clamps(points));
+    let spins = line.ends.map(|point| points[point].spin);
+    let chord = |segment: usize| state.position[segment + 1] - state.position[segment];
     let power = |(i, damping): (usize, &f64)| {
         let Some(turn) = joint(clamps, &state.position, i) else {
             return 0.0;
         };
-        let resisted = rates(i, last, |node| state.velocity[node]);
+        let resisted = rates_from_clamps([i, last], chord, |node| state.velocity[node], spins);
         let drag = turn.damper(*damping).product(resisted);
-        let rates = rates(i, last, &motion);
+        let rates = rates_from_clamps([i, last], chord, &motion, turning);
         drag[0].dot(&rates[0]) + drag[1].dot(&rates[1])
     };
     damping.iter().enumerate().map(power).sum()
@@ -314,9 +339,9 @@ pub fn shear(
         };
         let mut slope = turn.energy(bending.joint[node], bending.rest[node]).slope;
         if let Some(damping) = moving(bending, velocity) {
-            let drag = turn
-                .damper(damping[node])
-                .product(rates(node, last, |i| velocity[i]));
+            let chord = |segment: usize| position[segment + 1] - position[segment];
+            let rates = rates_from_clamps([node, last], chord, |i| velocity[i], [point.spin; 2]);
+            let drag = turn.damper(damping[node]).product(rates);
             slope = [slope[0] + drag[0], slope[1] + drag[1]];
         }
         force += slope[side];
@@ -327,18 +352,28 @@ pub fn shear(
     }
 }
 
-/// Moment [N m] of a line on its clamp at an end.
-pub fn end_moment(line: &Line, position: &[Vector3<f64>], end: End, point: &PointState) -> Vector3<f64> {
+/// Moment [N m] of a line on its clamp at an end. Without velocities there is no damping.
+pub fn end_moment(
+    line: &Line,
+    [position, velocity]: [&[Vector3<f64>]; 2],
+    end: End,
+    point: &PointState,
+) -> Vector3<f64> {
     let (Some(bending), Some(clamp)) = (&line.bending, line.clamp(end, point)) else {
         return Vector3::zeros();
     };
-    let node = line.end_node(end);
-    let (clamps, sign) = match end {
-        End::A => ([Some(clamp), None], 1.0),
-        End::B => ([None, Some(clamp)], -1.0),
+    let (node, last) = (line.end_node(end), line.segment_count());
+    let (clamps, segment, side, sign) = match end {
+        End::A => ([Some(clamp), None], 0, 1, 1.0),
+        End::B => ([None, Some(clamp)], last - 1, 0, -1.0),
     };
-    let turn = joint(clamps, position, node);
-    turn.map_or(Vector3::zeros(), |turn| {
-        sign * turn.moment_on_first(bending.joint[node], bending.rest[node])
+    let Some(turn) = joint(clamps, position, node) else {
+        return Vector3::zeros();
+    };
+    let elastic = sign * turn.moment_on_first(bending.joint[node], bending.rest[node]);
+    moving(bending, velocity).map_or(elastic, |damping| {
+        let chord = |segment: usize| position[segment + 1] - position[segment];
+        let rates = rates_from_clamps([node, last], chord, |i| velocity[i], [point.spin; 2]);
+        elastic + chord(segment).cross(&turn.damper(damping[node]).product(rates)[side])
     })
 }

@@ -172,7 +172,7 @@ impl LineWork {
         }
         if let (Some(bending), true) = (&line.bending, case.bends) {
             let clamps = line.clamps(&state.points);
-            self.add_bending(bending, clamps, &[], &Parts::AT_REST);
+            self.add_bending(bending, (clamps, [Vector3::zeros(); 2]), &[], &Parts::AT_REST);
         }
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
@@ -276,7 +276,9 @@ impl LineWork {
             self.add_dynamic_segment::<TANGENT>(line, shape, weights, model.solver.negative_tension, i);
         }
         if let Some(bending) = &line.bending {
-            self.add_bending(bending, line.clamps(&state.points), &shape.velocity, &parts);
+            let spins = line.ends.map(|point| state.points[point].spin);
+            let clamps = (line.clamps(&state.points), spins);
+            self.add_bending(bending, clamps, &shape.velocity, &parts);
         }
         let surface = [weights.force, weights.position];
         self.add_surface(line, &shape.position, water, surface, 0.0);

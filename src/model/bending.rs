@@ -83,6 +83,17 @@ impl Bending {
         is_clamped
     }
 
+    /// Curvature at a node [1/m] with a bend |κb| [-]; where EI changes, that of the softer side, under the moment of the joint.
+    pub fn curvature(&self, node: usize, bend: f64) -> f64 {
+        let last = self.stiffness.len() - 1;
+        let [before, after] = [node.saturating_sub(1), node.min(last)].map(|segment| self.stiffness[segment]);
+        let (length, rest) = (self.length[node], self.rest[node]);
+        match before == after {
+            true => bend / length,
+            false => rest / length + self.joint[node] * (bend - rest) / before.min(after),
+        }
+    }
+
     /// Takes a shape of the line as the unstressed one.
     pub fn rest_at(&mut self, position: &[Vector3<f64>]) {
         for node in 0..position.len() {

@@ -269,7 +269,12 @@ impl Simulation {
                     let clamped = view.beam.clamped[usize::from(end == End::B)].is_some();
                     clamped.then(|| view.end_action(end, at).1)
                 }
-                None => Some(elements::end_moment(data, &shape.position, end, at)),
+                None => Some(elements::end_moment(
+                    data,
+                    [&shape.position, &shape.velocity],
+                    end,
+                    at,
+                )),
             }
         };
         let attached = &model.points[point].attached;
@@ -482,7 +487,7 @@ impl Simulation {
             let turn = (bending.joint[i] > 0.0).then(|| joint(clamps, nodes, i));
             let bend = turn.flatten().map(|turn| turn.bend());
             bend.map_or(NodeBending::default(), |bend| NodeBending {
-                curvature: bend / bending.length[i],
+                curvature: bending.curvature(i, bend),
                 moment: bending.joint[i] * (bend - bending.rest[i]).abs(),
             })
         };

@@ -696,6 +696,71 @@ fn a_line_that_is_unstressed_as_it_lies_stays_there() {
     assert!(moved < 1e-6, "{moved} m");
 }
 
+/// A light rod of 10 m and EI = 10 kN m² under an end moment of 100 N m, of which the half at the clamp is ten times as stiff.
+const STEPPED: &str = "
+    gravity = 0.0
+    line_types.soft = { mass = 1.0, axial_stiffness = 1e7, bending_stiffness = 1e4 }
+    line_types.stiff = { mass = 1.0, axial_stiffness = 1e7, bending_stiffness = 1e5 }
+    points = [{ name = 'root', position = [0, 0, 0], kind = 'fixed' },
+      { name = 'tip', position = [10, 0, 0], kind = 'free', moment = { y = { table = [[0.0, -100.0], [1.0, -100.0]] } } }]
+    lines = [{ name = 'rod', from = 'root', to = 'tip', clamped_a = [1, 0, 0],
+      sections = [{ type = 'stiff', length = 5, elements = 10 }, { type = 'soft', length = 5, elements = 10 }] }]";
+
+#[test]
+fn where_the_stiffness_changes_the_curvature_is_that_of_the_softer_side() {
+    let rod = start(&Scene::from_toml(STEPPED).unwrap());
+    let nodes = rod.bending(0).unwrap();
+    for (node, stiffness) in [(5, 1e5), (9, 1e5), (10, 1e4), (11, 1e4), (15, 1e4)] {
+        let curvature = 100.0 / stiffness;
+        assert!(
+            (nodes[node].curvature / curvature - 1.0).abs() < 1e-3,
+            "{node}: {:?}",
+            nodes[node]
+        );
+    }
+}
+
+/// A light rod of 10 m, pinned at end A, whose end B is clamped to a vessel that pitches by 0.02 rad at 2 rad/s. Rayleigh damping makes its stiffness
+/// EI (1 + iωβ) with β = 0.5 s.
+const ON_A_PITCHING_VESSEL: &str = "
+    gravity = 0.0
+    line_types.rod = { mass = 0.1, axial_stiffness = 1e6, bending_stiffness = 1e4, rayleigh = { ratios = [0.25, 0.5], frequencies = [1.0, 2.0] } }
+    points = [{ name = 'pin', position = [0, 0, 0], kind = 'free', free = ['x'], mass = 1.0 },
+      { name = 'clamp', position = [0, 0, 0], kind = 'coupled', on = 'ship' }]
+    lines = [{ name = 'rod', from = 'pin', to = 'clamp', clamped_b = [1, 0, 0], sections = [{ type = 'rod', length = 10 }] }]
+    vessels = [{ name = 'ship', position = [10, 0, 0] }]
+    motion.ship = { pitch = [[0.02, 3.141592653589793]], ramp = 8.0 }
+    solver = { integrator = 'generalised_alpha', time_step_max = 0.005 }";
+
+#[test]
+fn a_damped_rod_resists_the_rotation_of_its_clamp_by_its_complex_stiffness() {
+    let stiffness = 3.0 * 1e4 / 10.0;
+    let wanted = stiffness * 0.02 * 1.0_f64.hypot(2.0 * 0.5);
+    for elements in [20, 40, 80] {
+        let scene = with_elements(Scene::from_toml(ON_A_PITCHING_VESSEL).unwrap(), elements);
+        let mut rod = following(&balanced(scene));
+        run(&mut rod, 0.1, 160);
+        let mut most = 0.0_f64;
+        for _ in 0..160 {
+            rod.advance(0.02).unwrap();
+            let [_, _, fz, _, my, _] = rod.vessel_force(0);
+            most = most.max(my.abs());
+            // about the clamp, the only other force on the light rod is that of the pin
+            assert!(
+                (my.abs() - 10.0 * fz.abs()).abs() < 0.02 * wanted,
+                "{elements}: {my} {fz}"
+            );
+        }
+        println!("{elements}: {most} {wanted} {}", balance_error(&rod));
+        assert!((most / wanted - 1.0).abs() < 0.02, "{elements}: {most} {wanted}");
+        assert!(
+            balance_error(&rod).abs() < 1e-3,
+            "{elements}: {}",
+            balance_error(&rod)
+        );
+    }
+}
+
 #[test]
 fn a_line_that_bends_needs_two_elements() {
     let message = Simulation::new(&heavy_rod(1.0, 1, LEVEL)).unwrap_err();

@@ -153,12 +153,12 @@ impl<'a> BeamView<'a> {
         (moment - moment.dot(&tangent) * tangent).norm()
     }
 
-    /// Curvature at a node relative to the stress-free shape [1/m]: bending moment divided by bending stiffness.
+    /// Curvature at a node relative to the stress-free shape [1/m]: bending moment divided by bending stiffness, that of the softer side where it changes.
     pub fn curvature(&self, node: usize) -> f64 {
         let last = self.beam.elements.len() - 1;
         let adjacent = [node.saturating_sub(1), node.min(last)];
-        let compliance = adjacent.map(|i| 0.5 / self.beam.elements[i].law.bending);
-        self.bending_moment(node) * compliance.iter().sum::<f64>()
+        let [before, after] = adjacent.map(|i| self.beam.elements[i].law.bending);
+        self.bending_moment(node) * (1.0 / before.min(after))
     }
 
     /// Force [N] and moment [N m] of the beam on the point at one of its ends: those of the end element and the half node.

@@ -63,8 +63,14 @@ fn end_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -
         };
         given -= work([0, 1].map(force), points.map(|at| at.position));
         if line.bending.is_some() {
-            let moment =
-                |state: &State| end_moment(line, &state.lines[index].position, end, &state.points[point]);
+            let moment = |state: &State| {
+                end_moment(
+                    line,
+                    [&state.lines[index].position, &[]],
+                    end,
+                    &state.points[point],
+                )
+            };
             let moments = states.map(moment);
             let turned = points[1].orientation * points[0].orientation.inverse();
             given -= 0.5 * (moments[0] + moments[1]).dot(&turned.scaled_axis());

@@ -242,7 +242,7 @@ impl Passed<'_> {
             let turned = self.length() * self.spin_mean(point);
             let works = [0, 1].map(|side| {
                 let at = &self.states[side].points[point];
-                0.0 - end_moment(line, shapes[side], end, at).dot(&turned)
+                0.0 - end_moment(line, [shapes[side], &[]], end, at).dot(&turned)
             });
             sum += self.beyond_mean(works);
         }
@@ -383,18 +383,18 @@ impl Side<'_> {
                     let node = line.end_node(end);
                     let segment = node.min(line.segment_count() - 1);
                     let shear = shear(line, motion, segment, (end, at), moments);
-                    let moment = end_moment(line, &shape.position, end, at);
+                    let moment = end_moment(line, motion, end, at);
                     let mean = self.passed.velocity_mean(index, node);
                     -shear.dot(&mean) - moment.dot(&self.passed.spin_mean(point))
                 }
             }
         };
-        let clamps = line.clamps(&self.state.points);
         let passing = |node| self.passed.velocity_mean(index, node);
+        let turning = line.ends.map(|point| self.passed.spin_mean(point));
         let ends = [End::A, End::B].into_iter().zip(line.ends);
         Flow {
             external_work: ends.map(given).sum::<f64>() + end_moment_power(&shape.position, moments, passing),
-            dissipation: joint_damping_power(line, shape, clamps, passing),
+            dissipation: joint_damping_power(line, shape, &self.state.points, passing, turning),
             algorithmic_dissipation: 0.0,
         }
     }
