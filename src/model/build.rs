@@ -466,6 +466,11 @@ fn build_line(
     if let Some(bending) = built.bending.as_mut().filter(|_| scene.solver.negative_tension) {
         bending.compression_max.fill(0.0); // springs of other codes carry no compression
     }
+    if let (Some(bending), Some(laws)) = (&built.bending, &mut built.segments.viscoelastic) {
+        for (law, most) in laws.iter_mut().zip(&bending.compression_max) {
+            law.push = *most;
+        }
+    }
     if scene.meets_surface_between(line, names.ends(line)) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }

@@ -19,6 +19,9 @@
 //! A rope cannot push: where T would be negative it is zero, and the slow part contracts freely, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the
 //! standard linear solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
 //!
+//! A segment of a line with bending stiffness carries a compression of up to P: T ≥ −P. With ε₁ and e = ε − ε₁ measured from their values at rest
+//! under −P, the law above holds for T + P.
+//!
 //! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² with e = ε − ε₁ while it is stretched; the rest of the work is dissipated. The tension of the
 //! fast part over a step is
 //!
@@ -50,6 +53,8 @@ pub struct Viscoelastic {
     pub yielding: f64,
     /// Rate EA₁/BA_s at which the slow part contracts in a slack rope [1/s].
     pub contraction: f64,
+    /// Compression P that it carries at most [N].
+    pub push: f64,
 }
 
 /// Result of a step.
@@ -148,6 +153,7 @@ impl Viscoelastic {
             fast_damping,
             yielding,
             contraction: slow / slow_damping,
+            push: 0.0,
         }
     }
 
@@ -162,7 +168,31 @@ impl Viscoelastic {
             fast_damping: damping,
             yielding: 0.0,
             contraction: 0.0,
+            push: 0.0,
         }
+    }
+
+    /// Compressive strains of the segment and of its slow part at rest under −P [-].
+    fn pushed(&self) -> [f64; 2] {
+        let slow = match self.yielding {
+            0.0 => 0.0,
+            _ => self.push / self.slow,
+        };
+        [slow + self.push / self.fast, slow]
+    }
+
+    /// The law of T + P over a step, in strains from the rest under −P, as that of T.
+    fn above_push(
+        &self,
+        [before, after]: [f64; 2],
+        slow: f64,
+        step: impl Fn([f64; 2], f64) -> ViscoelasticStep,
+    ) -> ViscoelasticStep {
+        let [whole, part] = self.pushed();
+        let mut done = step([before + whole, after + whole], slow + part);
+        done.slow -= part;
+        done.mean.tension -= self.push;
+        done
     }
 
     /// Slow damper BA_s [N s]; 0 for a segment without memory.
@@ -178,7 +208,8 @@ impl Viscoelastic {
         if self.yielding == 0.0 {
             return 0.0;
         }
-        strain.max(0.0) * self.fast / (self.fast + self.slow)
+        let [whole, part] = self.pushed();
+        (strain + whole).max(0.0) * self.fast / (self.fast + self.slow) - part
     }
 
     /// Tension without the damper C, before it is clipped at zero [N].
@@ -211,6 +242,13 @@ impl Viscoelastic {
 
     /// Step of `dt` [s] between two strains [-].
     pub fn step(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
+        self.above_push(strains, slow, |strains, slow| {
+            self.pulling_step(strains, slow, dt)
+        })
+    }
+
+    /// Step of a rope that cannot push.
+    fn pulling_step(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
         let series = Series::of(self, strains[0], slow, dt);
         let [_, before] = series.before;
         let damper = self.fast_damping / dt;
@@ -238,8 +276,12 @@ impl Viscoelastic {
         series.step(self, after, self.pull([before, after], damper))
     }
 
-    /// Step as if the fast part could push, which equals [`Viscoelastic::step`] where it pulls throughout.
+    /// Step as if the fast part could push without limit, which equals [`Viscoelastic::step`] where it does not reach its limit.
     pub fn held(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
+        self.above_push(strains, slow, |strains, slow| self.linear_step(strains, slow, dt))
+    }
+
+    fn linear_step(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
         let damper = self.fast_damping / dt;
         if self.yielding == 0.0 {
             return self.without_memory(strains, self.linear_pull(strains, damper));
@@ -312,7 +354,7 @@ impl Viscoelastic {
             mean: Mean {
                 tension: 0.0,
                 slope: 0.0,
-                taken: self.energy(before, slow[0]) - self.energy(after, slow[1]),
+                taken: self.pulling_energy(before, slow[0]) - self.pulling_energy(after, slow[1]),
             },
         }
     }
@@ -320,6 +362,12 @@ impl Viscoelastic {
     /// Stored energy per unstretched length [N].
     #[inline(always)]
     pub fn energy(&self, strain: f64, slow: f64) -> f64 {
+        let [whole, part] = self.pushed();
+        self.pulling_energy(strain + whole, slow + part) - self.push * (strain + 0.5 * whole)
+    }
+
+    /// Stored energy per unstretched length of a rope that cannot push [N].
+    fn pulling_energy(&self, strain: f64, slow: f64) -> f64 {
         let fast = (strain - slow).max(0.0);
         0.5 * (self.slow * slow * slow + self.fast * fast * fast)
     }
@@ -418,11 +466,12 @@ mod tests {
         }
     }
 
-    /// Ropes with all, one and none of the dampers, and steps that stay taut, slacken, snap and stay slack, with the
-    /// memory of a slack one.
+    /// Ropes with all, one and none of the dampers, and segments that carry compression; steps that stay taut, slacken, snap and stay slack, with the
+    /// memory of a slack rope.
     fn all_steps() -> impl Iterator<Item = (Viscoelastic, [f64; 2], f64, f64)> {
         let laws = [0.0, 1.1e7, 4.0e8].map(rope).into_iter();
         let laws = laws.chain([Viscoelastic::plain(1.0e8, 1.0e5)]);
+        let laws = laws.flat_map(|law| [0.0, 2.0e5].map(|push| Viscoelastic { push, ..law }));
         let strains = [-0.05, -1e-3, -1e-7, 0.0, 1e-7, 1e-3, 2e-3, 0.05];
         laws.flat_map(move |law| {
             strains.into_iter().flat_map(move |before| {
@@ -445,10 +494,11 @@ mod tests {
             let held = law.energy(after.0, after.1) - law.energy(before.0, before.1);
             let given = step.mean.tension * (strains[1] - strains[0]);
             let scale = law.energy(after.0, after.1) + law.energy(before.0, before.1) + given.abs();
-            let case = (strains, slow, dt, step);
-            assert!((given - held - step.mean.taken).abs() <= 1e-9 * scale, "{case:?}");
-            assert!(step.mean.tension >= 0.0, "{case:?}");
-            assert!(step.mean.taken >= -1e-9 * scale, "{case:?}");
+            let (case, pushed) = ((law, strains, slow, dt, step), law.push * law.push / law.fast);
+            let rounding = 1e-9 * scale + 1e-12 * pushed;
+            assert!((given - held - step.mean.taken).abs() <= rounding, "{case:?}");
+            assert!(step.mean.tension >= -law.push, "{case:?}");
+            assert!(step.mean.taken >= -rounding, "{case:?}");
         }
     }
 

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use crate::common::*;
 use approx::assert_relative_eq;
+use moorline::model::End;
 use moorline::physics::viscoelastic::Viscoelastic;
 use moorline::scene::{Integrator, Scene, Water};
 use moorline::simulation::Simulation;
@@ -191,6 +192,33 @@ fn a_viscoelastic_rope_rests_as_one_of_its_static_stiffness_does_and_stays_there
             balance_error(&simulation)
         );
     }
+}
+
+/// A line that bends, 0.1 m longer than the distance between its clamps, and stands as an arch under 0.1 kN/m.
+fn arch(keys: &str) -> Scene {
+    draft(format!(
+        "water.density = 1025.0
+        line_types.pipe = {{ {}, bending_stiffness = 1e4, mass = 20.0, diameter = 0.15, drag_normal = 1.2, added_mass_normal = 1.0 }}",
+        keys.replace('\n', ", ")
+    ))
+    .fixed("a", [0.0, 0.0, -50.0])
+    .coupled("b", [9.9, 0.0, -50.0])
+    .line("pipe", ["a", "b"], "pipe", 10.0, 20)
+    .with("clamped_a = [1.0, 0.0, 0.0], clamped_b = [1.0, 0.0, 0.0]")
+    .scene()
+}
+
+#[test]
+fn a_viscoelastic_line_that_bends_pushes_at_rest_as_one_of_its_static_stiffness_does() {
+    let force = |simulation: &Simulation| simulation.line_end_force(0, End::B);
+    let still = force(&start(&arch("axial_stiffness = 4.0e7")));
+    let mut simulation = start(&balanced(arch(VISCOELASTIC)));
+    assert!((force(&simulation) - still).norm() < 1e-6 * still.norm());
+    run(&mut simulation, 0.2, 50);
+    let after = force(&simulation);
+    assert!((after - still).norm() < 1e-5 * still.norm(), "{after} {still}");
+    let error = balance_error(&simulation);
+    assert!(error.abs() < 1e-3, "{error} J");
 }
 
 #[test]
