@@ -63,7 +63,7 @@ impl Ladder {
         self.runs.last().filter(|_| self.open && self.found.is_some())
     }
 
-    /// Rejects the mesh found, whose error is that against a much finer run, if it exceeds `aim`, and restarts at half the elements of that run.
+    /// Rejects the mesh found if its distance to a much finer run exceeds `aim`, and restarts at half the elements of that run.
     pub(super) fn reject(&mut self, finer: &Run, aim: f64) {
         let Some(error) = self
             .assessed()

@@ -1,10 +1,10 @@
 //! Notes on what happens in a run after its trials.
 
-use crate::scene::{Note, Scene, moment};
+use crate::scene::{Note, Scene, instant};
 
 /// Ratio of the RMS speed of a later part of a table of motion to that in the trials above which the trials are not representative [-].
 const FASTER: f64 = 2.0;
-/// Number of parts of a table, in the time over which the trials are evaluated, in which its speed is compared [-].
+/// Number of parts into which the evaluated time of the trials is divided; speeds are compared over parts of that length [-].
 const PARTS: usize = 4;
 
 /// Returns a note if a scene has a motion that becomes much faster, or a line that breaks, after the trials of this duration [s].
@@ -20,15 +20,15 @@ pub(super) fn note(scene: &Scene, duration: f64) -> Option<Note> {
     let motion = faster.map(|(ratio, time)| match ratio.is_finite() {
         true => format!(
             "the motion is up to {ratio:.1} times as fast later, about {}",
-            moment(time)
+            instant(time)
         ),
-        false => format!("the motion begins later, about {}", moment(time)),
+        false => format!("the motion begins later, about {}", instant(time)),
     });
     let breaks = scene.lines.iter().filter_map(|line| line.failure.as_ref()?.time);
     let later = breaks.filter(|time| *time > duration && *time < scene.output.duration);
     let broken = later
         .reduce(f64::min)
-        .map(|time| format!("a line breaks at {}", moment(time)));
+        .map(|time| format!("a line breaks at {}", instant(time)));
     let events: Vec<String> = motion.into_iter().chain(broken).collect();
     (!events.is_empty()).then(|| {
         let text = format!(

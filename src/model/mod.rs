@@ -273,8 +273,8 @@ impl Release {
         self.tension.is_some() || self.time.is_some() || self.on_release
     }
 
-    /// Returns whether an end under a tension [N] at time `t` [s] is released by its limit of tension or its time. The time of a run is a sum of steps
-    /// with its rounding: eight steps of 0.05 s end before 0.4 s.
+    /// Returns whether an end under a tension [N] at time `t` [s] is released by its limit of tension or its time. The time of a run is a sum of rounded
+    /// steps: eight steps of 0.05 s end just before 0.4 s.
     pub fn is_due(&self, tension: f64, t: f64) -> bool {
         let is_reached = |time: f64| t >= time - 1e-9 * (1.0 + time.abs());
         self.tension.is_some_and(|most| tension >= most) || self.time.is_some_and(is_reached)

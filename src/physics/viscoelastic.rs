@@ -19,8 +19,8 @@
 //! A rope cannot push: where T would be negative it is zero, and the slow part contracts freely, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the
 //! standard linear solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
 //!
-//! A segment of a line with bending stiffness carries a compression of up to P: T ≥ −P. With ε₁ and e = ε − ε₁ measured from their values at rest
-//! under −P, the law above holds for T + P.
+//! A segment of a line with bending stiffness carries a compression of up to P: T ≥ −P. The law of a rope holds for T + P if ε₁ and e = ε − ε₁ are
+//! measured from their values at rest under −P.
 //!
 //! The slow spring stores ½EA₁ ε₁², the fast one ½EA_d e² with e = ε − ε₁ while it is stretched; the rest of the work is dissipated. The tension of the
 //! fast part over a step is
@@ -53,7 +53,7 @@ pub struct Viscoelastic {
     pub yielding: f64,
     /// Rate EA₁/BA_s at which the slow part contracts in a slack rope [1/s].
     pub contraction: f64,
-    /// Compression P that it carries at most [N].
+    /// Greatest compression P that it carries [N].
     pub push: f64,
 }
 
@@ -181,7 +181,7 @@ impl Viscoelastic {
         [slow + self.push / self.fast, slow]
     }
 
-    /// The law of T + P over a step, in strains from the rest under −P, as that of T.
+    /// Applies a step of the law of a rope to T + P, in strains measured from those at rest under −P.
     fn above_push(
         &self,
         [before, after]: [f64; 2],

@@ -108,7 +108,7 @@ use table::{not_negative, table};
 pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use water::{Current, FlowSource, RegularWave, Sea, SpectrumKind, Water, WaveComponents, Waves};
-pub(crate) use words::{few, metres, moment, percent};
+pub(crate) use words::{few, instant, metres, percent};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;

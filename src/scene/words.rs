@@ -230,8 +230,8 @@ pub(crate) fn metres(length: f64) -> String {
     quantity(rounded(length, 4), "m")
 }
 
-/// A moment of a run to the microsecond: times are sums of steps, with their rounding.
-pub(crate) fn moment(time: f64) -> String {
+/// An instant of a run, such as `t = 0.4 s`, to the microsecond: times are sums of rounded steps.
+pub(crate) fn instant(time: f64) -> String {
     format!("t = {}", quantity((time * 1e6).round() / 1e6, "s"))
 }
 

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::Simulation;
 use crate::model::{End, Release};
-use crate::scene::{Note, Scene, metres, moment};
+use crate::scene::{Note, Scene, instant, metres};
 
 /// Fraction of the unstretched length of a line by which its end may move in one communication step [-].
 const JUMP: f64 = 0.1;
@@ -181,7 +181,7 @@ fn jump(
     let text = format!(
         "at {}, {} has moved by {:.3} m in one communication step, more than a tenth of {} ({} long): paths without jumps, or shorter \
          steps, are usual; reported once",
-        moment(simulation.time()),
+        instant(simulation.time()),
         model.points[data.ends[end]].name,
         moved(end),
         data.name,
@@ -197,7 +197,7 @@ fn risen(simulation: &Simulation, line: usize, now: [Vector3<f64>; 2]) -> Option
     let text = format!(
         "at {}, {} is at z = {:.3} m, but {} is modelled as submerged there too: `surface = true` in [water] models the free surface, except \
          for beams; reported once",
-        moment(simulation.time()),
+        instant(simulation.time()),
         model.points[data.ends[end]].name,
         now[end].z,
         data.name
@@ -258,7 +258,7 @@ fn strain(simulation: &Simulation, line: usize) -> f64 {
 fn strained(simulation: &Simulation, line: usize, strain: f64, limit: f64) -> Note {
     let text = format!(
         "at {}, {} is strained by {:.1} %: less than {:.0} % is usual, with EA in N and lengths in m; reported once",
-        moment(simulation.time()),
+        instant(simulation.time()),
         simulation.model.lines[line].name,
         100.0 * strain,
         100.0 * limit

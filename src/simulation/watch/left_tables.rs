@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 
 use super::is_beyond;
-use crate::scene::{Line, Note, Scene, Section, moment};
+use crate::scene::{Line, Note, Scene, Section, instant};
 use crate::simulation::Simulation;
 
 /// Fraction of the height of a current profile by which a line may leave the profile without a note, as a line on the seabed does [-].
@@ -126,7 +126,7 @@ fn look_at_strain(
                 "{} is strained by {strain:.4} at {}, beyond the last row at {}: its tension continues with the last slope, where MoorDyn \
                  keeps the last tension",
                 of.name,
-                moment(simulation.time()),
+                instant(simulation.time()),
                 section.strain_max
             );
             let at = format!("line_types.{}.tension_strain", section.line_type);
@@ -152,7 +152,7 @@ fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -
     Some(format!(
         "{} is at z = {z:.2} m at {}, {side} row at {row} m: the current is that of this row there",
         simulation.model.lines[line].name,
-        moment(simulation.time())
+        instant(simulation.time())
     ))
 }
 
@@ -171,7 +171,7 @@ fn outside_soundings(simulation: &Simulation, line: usize, soundings: [[f64; 2];
         of.name,
         r.x,
         r.y,
-        moment(simulation.time())
+        instant(simulation.time())
     ))
 }
 

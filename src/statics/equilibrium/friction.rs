@@ -131,7 +131,7 @@ impl Problem<'_> {
     }
 }
 
-/// Direction along the seabed below a place [m] of a step [m]; zero for a step along its normal.
+/// Direction along the seabed of a step [m] at a place [m]; zero if the step is along the normal [-].
 fn along_seabed(seabed: &Seabed, place: Vector3<f64>, step: Vector3<f64>) -> Vector3<f64> {
     let normal = seabed.touch(place, 0.0).normal;
     let along = step - normal * normal.dot(&step);
